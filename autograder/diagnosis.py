@@ -1,0 +1,49 @@
+"""What can be wrong with a submission before any behaviour is judged: a name, and a sentence to act on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Kind(str, Enum):
+    """The named outcomes of bringing a submission to life."""
+
+    OK = "ok"
+    UNSAFE_ARCHIVE = "unsafe_archive"
+    UNREADABLE = "unreadable"
+    NOTHING_SUBMITTED = "nothing_submitted"
+    NOTEBOOK_FAILED = "notebook_failed"
+    MISSING_PACKAGE = "missing_package"
+    HALF_WRITTEN_PACKAGE = "half_written_package"
+    SYNTAX_ERROR = "syntax_error"
+    BUILD_FAILED = "build_failed"
+    MISSING_EXECUTABLE = "missing_executable"
+    CRASHED_AT_IMPORT = "crashed_at_import"
+    CRASHED_AT_START = "crashed_at_start"
+    CRASHED_LATER = "crashed_later"
+    ENDED_EARLY = "ended_early"
+    NEVER_STARTED = "never_started"
+    STUCK = "stuck"
+    NEVER_STOPPED = "never_stopped"
+    FLOODED_OUTPUT = "flooded_output"
+    OUT_OF_MEMORY = "out_of_memory"
+    TIMED_OUT = "timed_out"
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """One named outcome.
+
+    Attributes:
+        kind: its name.
+        sentence: what happened and what to do, for the student.
+        detail: the relevant lines of output or traceback, already shortened; may be empty.
+    """
+
+    kind: Kind
+    sentence: str
+    detail: str = ""
+
+
+OK = Diagnosis(Kind.OK, "The package was built and its node runs.")

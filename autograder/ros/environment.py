@@ -1,0 +1,124 @@
+"""Finding ROS 2 Jazzy and switching it on, for this process and for its children."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from autograder.ros.exceptions import RosNotFoundError, WrongDistroError
+
+DISTRO = "jazzy"
+
+# The wheels' start-up hook sets these two for one Python prefix; they must not leak into another one.
+WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
+
+
+@dataclass(frozen=True)
+class RosEnvironment:
+    """A ROS 2 installation that this interpreter can import.
+
+    Attributes:
+        kind: `wheels` (pip, in this virtual environment) or `sourced` (a `setup.bash` was sourced).
+        prefixes: ament prefixes, the first one wins.
+        rclpy: the folder that `import rclpy` would load.
+    """
+
+    kind: Literal["wheels", "sourced"]
+    prefixes: tuple[Path, ...]
+    rclpy: Path
+
+    def describe(self) -> str:
+        """Say in one line which ROS 2 this is and where it lives."""
+        where = "wheels in" if self.kind == "wheels" else "sourced from"
+        return f"ROS 2 {DISTRO.capitalize()}, {where} {self.prefixes[0]}"
+
+    def variables(
+        self,
+        *,
+        overlays: tuple[Path, ...] = (),
+        domain: int | None = None,
+        log_dir: Path | None = None,
+    ) -> dict[str, str]:
+        """Return the environment variables that a process using this ROS 2 needs.
+
+        Args:
+            overlays: install prefixes of colcon workspaces, the nearest first; they go before the installation.
+            domain: `ROS_DOMAIN_ID` (0 to 232); left alone when not given.
+            log_dir: a writable folder for log files. `rclpy.init` raises without one.
+
+        Raises:
+            ValueError: `domain` is outside 0..232.
+        """
+        if domain is not None and not 0 <= domain <= 232:
+            raise ValueError(f"ROS_DOMAIN_ID must be 0 to 232, not {domain}")
+        path = os.pathsep.join(str(prefix) for prefix in (*overlays, *self.prefixes))
+        variables = {
+            "AMENT_PREFIX_PATH": path,
+            "CMAKE_PREFIX_PATH": path,
+            "ROS_DISTRO": DISTRO,
+            "ROS_VERSION": "2",
+            "ROS_PYTHON_VERSION": "3",
+            # Shared memory between two /dev/shm discovers peers and then silently delivers nothing.
+            "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
+            # Jupyter shows stdout in order; stderr would be red, and late.
+            "RCUTILS_LOGGING_USE_STDOUT": "1",
+            "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
+            "ROS_LOG_DIR": str(log_dir or Path(tempfile.gettempdir()) / f"ros2-log-{os.getuid()}"),
+        }
+        if domain is not None:
+            variables["ROS_DOMAIN_ID"] = str(domain)
+        return variables
+
+
+def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
+    """Find the ROS 2 Jazzy that this interpreter would import.
+
+    Args:
+        environ: environment variables to look in, `os.environ` by default.
+
+    Raises:
+        RosNotFoundError: `rclpy` cannot be imported.
+        WrongDistroError: a ROS 2 other than Jazzy is sourced.
+    """
+    environ = os.environ if environ is None else environ
+    spec = importlib.util.find_spec("rclpy")
+    if spec is None or spec.origin is None:
+        raise RosNotFoundError("rclpy cannot be imported: run `make setup`, or source a ROS 2 Jazzy installation")
+    rclpy = Path(spec.origin).parent
+    venv = Path(sys.prefix)
+    if rclpy.is_relative_to(venv):
+        return RosEnvironment("wheels", (venv,), rclpy)
+    distro = environ.get("ROS_DISTRO", "")
+    if distro != DISTRO:
+        raise WrongDistroError(
+            f"the sourced ROS 2 is {distro or 'of no known distribution'}, the course needs Jazzy: "
+            "open a shell without it, or source /opt/ros/jazzy/setup.bash"
+        )
+    prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
+    if not prefixes:
+        raise RosNotFoundError(f"rclpy is at {rclpy}, but AMENT_PREFIX_PATH is empty: source /opt/ros/jazzy/setup.bash")
+    return RosEnvironment("sourced", prefixes, rclpy)
+
+
+def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
+    """Switch ROS 2 on for this process and the children it starts. Safe to call twice.
+
+    Call it before the first `import rclpy`.
+
+    Raises:
+        RosError: there is no usable ROS 2 Jazzy.
+    """
+    environment = find()
+    variables = environment.variables(overlays=overlays, domain=domain)
+    # The two that a user may have chosen on purpose stay.
+    for chosen in ("ROS_LOG_DIR", "FASTDDS_BUILTIN_TRANSPORTS"):
+        if chosen in os.environ:
+            variables.pop(chosen)
+    os.environ.update(variables)
+    return environment

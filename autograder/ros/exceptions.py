@@ -1,0 +1,18 @@
+"""Errors of finding and using ROS 2.
+
+RosError
+├── RosNotFoundError   neither a sourced ROS 2 nor the wheels are there
+└── WrongDistroError   a ROS 2 is sourced, but it is not Jazzy
+"""
+
+
+class RosError(Exception):
+    """Base of every error about the ROS 2 installation."""
+
+
+class RosNotFoundError(RosError):
+    """Neither a sourced ROS 2 Jazzy nor its wheels can be imported."""
+
+
+class WrongDistroError(RosError):
+    """The sourced ROS 2 is another distribution than Jazzy."""
