@@ -1,0 +1,58 @@
+"""A 2D lidar simulator: an exact, pure core that steps robots through a world of walls.
+
+>>> from sim import Command, Simulation, World, box, observe, start, step
+>>> simulation = Simulation(World.from_segments(box(4.0, 3.0)))
+>>> state = step(simulation, start(simulation), Command(linear=0.2), dt=0.1)
+>>> observe(simulation, state).ranges[0]
+"""
+
+from sim.exceptions import EngineError, RecordingError, SimError, SpecError, WorldError
+from sim.faults import DeadSector, Faults, Window
+from sim.lidar import LDS_01, RPLIDAR_A1, UTM_30LX, LidarSpec, Scan
+from sim.pose import Command, Pose
+from sim.recording import Recorder, Recording, ScanLog, load_recording, replay, run
+from sim.robot import OdometryDrift, RobotSpec, RobotState
+from sim.simulation import Clearance, Event, Simulation, State, clearance, observe, start, step
+from sim.world import BOX_NAMES, Goal, Mover, World, box
+from sim.worldfile import load_world
+
+__all__ = [
+    "BOX_NAMES",
+    "LDS_01",
+    "RPLIDAR_A1",
+    "UTM_30LX",
+    "Clearance",
+    "Command",
+    "DeadSector",
+    "EngineError",
+    "Event",
+    "Faults",
+    "Goal",
+    "LidarSpec",
+    "Mover",
+    "OdometryDrift",
+    "Pose",
+    "Recorder",
+    "Recording",
+    "RecordingError",
+    "RobotSpec",
+    "RobotState",
+    "Scan",
+    "ScanLog",
+    "SimError",
+    "Simulation",
+    "SpecError",
+    "State",
+    "Window",
+    "World",
+    "WorldError",
+    "box",
+    "clearance",
+    "load_recording",
+    "load_world",
+    "observe",
+    "replay",
+    "run",
+    "start",
+    "step",
+]

@@ -1,0 +1,90 @@
+"""What a lidar is, and what it says: the description of the sensor, and one scan with every field of LaserScan."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.exceptions import SpecError
+from sim.pose import ORIGIN, Pose
+
+Float32s = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class LidarSpec:
+    """A planar lidar: `beams` beams from `angle_min` on, `angle_increment` apart, in radians, frame `laser`.
+
+    Ranges are in metres, `rate` in scans a second, `noise` is the standard deviation of a range in metres,
+    `dropout` the probability that a beam is lost. `mount` is the pose of `laser` in `base_link`. With `skew` the
+    beams are taken one after the other over a whole turn while the robot moves, as in a real one; without it all
+    are taken at once and `time_increment` is 0.
+    """
+
+    name: str = "LDS-01"
+    beams: int = 360
+    angle_min: float = 0.0
+    angle_increment: float = math.tau / 360
+    range_min: float = 0.12
+    range_max: float = 3.5
+    rate: float = 5.0
+    noise: float = 0.0
+    dropout: float = 0.0
+    intensities: bool = True
+    skew: bool = False
+    mount: Pose = ORIGIN
+
+    def __post_init__(self) -> None:
+        if self.beams < 1:
+            raise SpecError(f"lidar {self.name}: beams is {self.beams}; give at least 1")
+
+    @property
+    def angle_max(self) -> float:
+        """The last beam's angle in radians: never a repeat of the first."""
+        return self.angle_min + (self.beams - 1) * self.angle_increment
+
+
+LDS_01 = LidarSpec()
+RPLIDAR_A1 = LidarSpec(
+    name="RPLIDAR A1",
+    beams=360,
+    angle_min=-math.pi,
+    angle_increment=math.tau / 360,
+    range_min=0.15,
+    range_max=12.0,
+    rate=5.5,
+)
+UTM_30LX = LidarSpec(
+    name="UTM-30LX",
+    beams=1081,
+    angle_min=-math.radians(135),
+    angle_increment=math.radians(0.25),
+    range_min=0.1,
+    range_max=30.0,
+    rate=40.0,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan:
+    """One scan: the fields of sensor_msgs/LaserScan under their own names, and `stamp_ns` and `frame_id` of its header.
+
+    `ranges` and `intensities` are float32 of shape (beams,), read-only. REP 117: `+inf` no return, `-inf` too
+    close to measure, `nan` an invalid measurement. `intensities` is empty where the lidar gives none.
+    `stamp_ns` is the simulated time of the first beam in nanoseconds.
+    """
+
+    stamp_ns: int
+    ranges: Float32s
+    intensities: Float32s
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    time_increment: float
+    scan_time: float
+    range_min: float
+    range_max: float
+    frame_id: str = "laser"

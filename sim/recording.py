@@ -1,0 +1,234 @@
+"""A recording of a run: arrays of everything that happened, saved to one compact file, replayed exactly."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.codec import from_json, to_json
+from sim.exceptions import RecordingError
+from sim.lidar import Scan
+from sim.pose import Command
+from sim.simulation import Commands, Engine, Event, Simulation, State, clearance, observe, start, step
+
+FORMAT = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScanLog:
+    """The scans of one robot: S of them, the beams in the columns.
+
+    `rows` (S,) int64 says at which row of the recording each was taken, `stamps_ns` (S,) int64 when its first beam
+    was; `ranges` and `intensities` are (S, beams) float32, the latter (S, 0) where the lidar gives none.
+    """
+
+    rows: NDArray[np.int64]
+    stamps_ns: NDArray[np.int64]
+    ranges: NDArray[np.float32]
+    intensities: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """A run of K states (row 0 is the start) of R robots.
+
+    `times_ns` (K,) int64; `poses` (K, R, 3) x, y, theta in m, m, rad, frame map; `velocities` (K, R, 2) m/s, rad/s;
+    `commands` (K, R, 2), what was sent before each state, and nan where nothing was; `odometry` (K, R, 3) and
+    `covariances` (K, R, 9); `collided` (K, R) bool; `clearances` (K, R) metres; `scans`, one log a robot; `events`.
+    """
+
+    simulation: Simulation
+    times_ns: NDArray[np.int64]
+    poses: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    commands: NDArray[np.float64]
+    odometry: NDArray[np.float64]
+    covariances: NDArray[np.float64]
+    collided: NDArray[np.bool_]
+    clearances: NDArray[np.float64]
+    scans: tuple[ScanLog, ...]
+    events: tuple[Event, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.times_ns)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """The times in seconds, (K,)."""
+        return self.times_ns / 1e9
+
+    def sha256(self) -> str:
+        """Return the hash of the exact content: times, commands, states, scans and events, no engine and no file."""
+        digest = hashlib.sha256(to_json(self.simulation).encode())
+        for name, array in self._arrays().items():
+            digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
+            digest.update(np.ascontiguousarray(array).tobytes())
+        digest.update(json.dumps([asdict(event) for event in self.events]).encode())
+        return digest.hexdigest()
+
+    def save(self, path: str | Path) -> None:
+        """Write the recording to one compact file, `.npz` by custom."""
+        header = {
+            "format": FORMAT,
+            "simulation": to_json(self.simulation),
+            "events": [asdict(event) for event in self.events],
+        }
+        text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
+        arrays: dict[str, Any] = {"header": text, **self._arrays()}
+        with Path(path).open("wb") as file:
+            np.savez_compressed(file, **arrays)
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        arrays: dict[str, NDArray[Any]] = {name: getattr(self, name) for name in _COLUMNS}
+        for index, log in enumerate(self.scans):
+            arrays |= {f"scan{index}_{name}": getattr(log, name) for name in _SCAN_COLUMNS}
+        return arrays
+
+
+_COLUMNS = (
+    "times_ns",
+    "poses",
+    "velocities",
+    "commands",
+    "odometry",
+    "covariances",
+    "collided",
+    "clearances",
+)
+_SCAN_COLUMNS = ("rows", "stamps_ns", "ranges", "intensities")
+
+
+class Recorder:
+    """Collects a run state by state; `recording()` gives what has been collected so far."""
+
+    def __init__(self, simulation: Simulation, state: State | None = None) -> None:
+        self._simulation = simulation
+        self._names = [spec.name for spec in simulation.robots]
+        self._states: list[State] = []
+        self._commands: list[list[tuple[float, float]]] = []
+        self._scans: list[list[tuple[int, Scan]]] = [[] for _ in self._names]
+        self._clearances: list[list[float]] = []
+        self.append(start(simulation) if state is None else state)
+
+    def append(self, state: State, commands: Commands = None) -> None:
+        """Add a state and the commands that were given to the step that led to it."""
+        given = {self._names[0]: commands} if isinstance(commands, Command) else commands or {}
+        self._states.append(state)
+        self._commands.append(
+            [(given[name].linear, given[name].angular) if name in given else (np.nan, np.nan) for name in self._names]
+        )
+        self._clearances.append([clearance(self._simulation, state, name).distance for name in self._names])
+
+    def scan(self, scan: Scan | None, robot: str | None = None) -> None:
+        """Add a scan of the state appended last; None, from a dead lidar, adds nothing."""
+        if scan is not None:
+            self._scans[0 if robot is None else self._names.index(robot)].append((len(self._states) - 1, scan))
+
+    def recording(self) -> Recording:
+        """Return the recording so far."""
+        states, count = self._states, len(self._names)
+
+        def table(rows: list[Any], width: int) -> NDArray[np.float64]:
+            return np.array(rows, dtype=np.float64).reshape(len(states), count, width)
+
+        robots = [state.robots for state in states]
+        return Recording(
+            simulation=self._simulation,
+            times_ns=np.array([state.time_ns for state in states], dtype=np.int64),
+            poses=table([[(r.pose.x, r.pose.y, r.pose.theta) for r in row] for row in robots], 3),
+            velocities=table([[(r.velocity.linear, r.velocity.angular) for r in row] for row in robots], 2),
+            commands=table(self._commands, 2),
+            odometry=table([[(r.odometry.x, r.odometry.y, r.odometry.theta) for r in row] for row in robots], 3),
+            covariances=table([[r.covariance for r in row] for row in robots], 9),
+            collided=np.array([[r.collided for r in row] for row in robots], dtype=np.bool_),
+            clearances=np.array(self._clearances, dtype=np.float64),
+            scans=tuple(_log(scans) for scans in self._scans),
+            events=tuple(event for state in states for event in state.events),
+        )
+
+
+def _log(scans: list[tuple[int, Scan]]) -> ScanLog:
+    ranges = [scan.ranges for _, scan in scans]
+    intensities = [scan.intensities for _, scan in scans]
+    return ScanLog(
+        rows=np.array([row for row, _ in scans], dtype=np.int64),
+        stamps_ns=np.array([scan.stamp_ns for _, scan in scans], dtype=np.int64),
+        ranges=np.array(ranges, dtype=np.float32) if scans else np.empty((0, 0), np.float32),
+        intensities=np.array(intensities, dtype=np.float32) if scans else np.empty((0, 0), np.float32),
+    )
+
+
+def run(
+    simulation: Simulation,
+    policy: Callable[[State, dict[str, Scan | None]], Commands],
+    seconds: float,
+    *,
+    dt: float = 0.1,
+) -> Recording:
+    """Drive for `seconds` of simulated time and record it all.
+
+    Every `dt` seconds each lidar is read and `policy(state, scans)` gives the commands for the next `dt`.
+    """
+    state = start(simulation)
+    recorder = Recorder(simulation, state)
+    for _ in range(round(seconds / dt)):
+        scans = {}
+        for spec in simulation.robots:
+            if spec.lidar is not None:
+                scans[spec.name] = observe(simulation, state, spec.name)
+                recorder.scan(scans[spec.name], spec.name)
+        commands = policy(state, scans)
+        state = step(simulation, state, commands, dt)
+        recorder.append(state, commands)
+    return recorder.recording()
+
+
+def load_recording(path: str | Path) -> Recording:
+    """Read a recording from a file. Raises RecordingError for a file that is none, or is damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            header = json.loads(file["header"].tobytes())
+            if header["format"] != FORMAT:
+                raise RecordingError(
+                    f"{path}: format {header['format']} is not the format {FORMAT} that this version reads; "
+                    "record the run again"
+                )
+            simulation = from_json(header["simulation"])
+            columns = {name: file[name] for name in _COLUMNS}
+            scans = tuple(
+                ScanLog(**{name: file[f"scan{index}_{name}"] for name in _SCAN_COLUMNS})
+                for index in range(len(simulation.robots))
+            )
+            return Recording(
+                simulation, **columns, scans=scans, events=tuple(Event(**event) for event in header["events"])
+            )
+    except FileNotFoundError:
+        raise RecordingError(f"{path}: there is no such file; give the path of a saved recording") from None
+    except RecordingError as error:
+        raise RecordingError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
+    except (OSError, KeyError, TypeError, ValueError, AttributeError, EOFError, zipfile.BadZipFile) as error:
+        raise RecordingError(f"{path}: not a recording, or a damaged one ({error}); record the run again") from None
+
+
+def replay(recording: Recording, *, engine: Engine = "numpy") -> Iterator[State]:
+    """Run the recorded commands again from the recorded start: each state is the recorded one, bit for bit."""
+    simulation = replace(recording.simulation, engine=engine)
+    state = start(simulation)
+    yield state
+    for row in range(1, len(recording)):
+        commands = {
+            spec.name: Command(*recording.commands[row, index].tolist())
+            for index, spec in enumerate(simulation.robots)
+            if not np.isnan(recording.commands[row, index, 0])
+        }
+        dt_ns = int(recording.times_ns[row] - recording.times_ns[row - 1])
+        state = step(simulation, state, commands, dt_ns / 1e9)
+        yield state

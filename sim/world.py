@@ -1,0 +1,158 @@
+"""A world: named walls and pillars, start poses, goals and moving obstacles, as plain frozen data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sim.exceptions import WorldError
+from sim.pose import Pose
+
+Floats = NDArray[np.float64]
+Bounds = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A disc to reach: centre and `radius` in metres, frame `map`."""
+
+    x: float
+    y: float
+    radius: float = 0.25
+    name: str = "goal"
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """A disc that walks along `path` (points in metres), there and back or round and round, for ever.
+
+    `speed` is in m/s and `pause` in seconds at each point. `phase` is the share of a whole cycle by which it is
+    ahead at time 0; None draws it from the run's seed, so that each seed is another schedule.
+    """
+
+    path: tuple[tuple[float, float], ...]
+    radius: float = 0.2
+    speed: float = 0.3
+    pause: float = 0.0
+    loop: bool = False
+    phase: float | None = None
+    name: str = "mover"
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """Everything that stands around a robot, in the frame `map`.
+
+    `segments` is (N, 4) float64, one `[x1, y1, x2, y2]` a wall, and `circles` (M, 3) float64, one `[x, y, r]` a
+    pillar, all in metres and read-only. `segment_names` and `circle_names` hold one name for each (possibly
+    empty). `bounds` is `(xmin, ymin, xmax, ymax)`: of everything in the world where it is not given.
+    """
+
+    name: str = "world"
+    segments: Floats = field(default_factory=lambda: np.empty((0, 4)))
+    circles: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    starts: tuple[Pose, ...] = (Pose(),)
+    goals: tuple[Goal, ...] = ()
+    movers: tuple[Mover, ...] = ()
+    segment_names: tuple[str, ...] = ()
+    circle_names: tuple[str, ...] = ()
+    bounds: Bounds = (0.0, 0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        segments = _table(self.segments, 4, "segments")
+        circles = _table(self.circles, 3, "circles")
+        if (circles[:, 2] <= 0).any():
+            raise WorldError("a circle's radius is not above zero", "Give every circle a radius in metres")
+        put = object.__setattr__
+        put(self, "segments", segments)
+        put(self, "circles", circles)
+        put(self, "starts", tuple(self.starts) or (Pose(),))
+        put(self, "goals", tuple(self.goals))
+        put(self, "movers", tuple(self.movers))
+        put(self, "segment_names", _names(self.segment_names, len(segments), "segment_names"))
+        put(self, "circle_names", _names(self.circle_names, len(circles), "circle_names"))
+        if tuple(self.bounds) == (0.0, 0.0, 0.0, 0.0):
+            put(self, "bounds", _bounds(self))
+
+    @classmethod
+    def from_segments(
+        cls,
+        segments: ArrayLike,
+        *,
+        circles: ArrayLike = (),
+        name: str = "world",
+        starts: Iterable[Pose] = (Pose(),),
+        goals: Iterable[Goal] = (),
+        movers: Iterable[Mover] = (),
+        segment_names: Sequence[str] = (),
+        circle_names: Sequence[str] = (),
+    ) -> World:
+        """Build a world in code from rows `[x1, y1, x2, y2]` and, if wanted, circles `[x, y, r]`, in metres."""
+        return cls(
+            name=name,
+            segments=np.asarray(segments, dtype=np.float64).reshape(-1, 4),
+            circles=np.asarray(circles, dtype=np.float64).reshape(-1, 3),
+            starts=tuple(starts),
+            goals=tuple(goals),
+            movers=tuple(movers),
+            segment_names=tuple(segment_names),
+            circle_names=tuple(circle_names),
+        )
+
+
+def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Floats:
+    """Return the four walls (4, 4) of a room `width` by `height` metres, centred on `(x, y)`.
+
+    They come in the order south, east, north, west: the names in `BOX_NAMES`.
+    """
+    west, east, south, north = x - width / 2, x + width / 2, y - height / 2, y + height / 2
+    return np.array(
+        [
+            [west, south, east, south],
+            [east, south, east, north],
+            [east, north, west, north],
+            [west, north, west, south],
+        ]
+    )
+
+
+BOX_NAMES = ("south wall", "east wall", "north wall", "west wall")
+
+
+def _table(rows: ArrayLike, width: int, what: str) -> Floats:
+    try:
+        table = np.array(rows, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise WorldError(f"{what} are not numbers ({error})", f"Give rows of {width} numbers") from None
+    if table.size == 0:
+        table = np.empty((0, width))
+    if table.ndim != 2 or table.shape[1] != width:
+        raise WorldError(f"{what} have the shape {table.shape}", f"Give rows of {width} numbers")
+    if not np.isfinite(table).all():
+        raise WorldError(f"{what} hold a number that is not finite", "Give finite numbers in metres")
+    table.flags.writeable = False
+    return table
+
+
+def _names(names: Sequence[str], count: int, what: str) -> tuple[str, ...]:
+    if not names:
+        return ("",) * count
+    if len(names) != count:
+        raise WorldError(f"{what} holds {len(names)} names for {count}", "Give one name for each, or none at all")
+    return tuple(names)
+
+
+def _bounds(world: World) -> Bounds:
+    xs = [world.segments[:, 0::2].ravel(), world.circles[:, 0] - world.circles[:, 2]]
+    ys = [world.segments[:, 1::2].ravel(), world.circles[:, 1] - world.circles[:, 2]]
+    xs += [world.circles[:, 0] + world.circles[:, 2], np.array([pose.x for pose in world.starts])]
+    ys += [world.circles[:, 1] + world.circles[:, 2], np.array([pose.y for pose in world.starts])]
+    xs.append(np.array([point[0] for mover in world.movers for point in mover.path]))
+    ys.append(np.array([point[1] for mover in world.movers for point in mover.path]))
+    x, y = np.concatenate(xs), np.concatenate(ys)
+    bounds = (float(x.min()), float(y.min()), float(x.max()), float(y.max()))
+    return bounds if all(map(math.isfinite, bounds)) else (0.0, 0.0, 0.0, 0.0)
