@@ -1,0 +1,68 @@
+# `make` alone lists the targets.
+
+# The first interpreter that really runs (pyenv leaves shims that do not) and that ROS 2 Jazzy has wheels for.
+PYTHON ?= $(shell for python in python3.12 python3 python3.13 python3.11 python3.10; do \
+	$$python -c 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
+	&& echo $$python && exit; done; echo python3)
+BIN := .venv/bin
+BOOTSTRAP = $(PYTHON) -I autograder/bootstrap.py
+# `python -m autograder.ros COMMAND` runs a command with ROS switched on.
+WITH_ROS := $(BIN)/python -m autograder.ros
+
+WORKERS ?= 2
+PYTEST_ARGS ?=
+LAB_ARGS ?=
+VERIFY_ARGS ?=
+
+.PHONY: help setup demo test check lint lab bench verify lock clean
+
+help:           ## list the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup:          ## make .venv from the pinned packages; does nothing when it stands
+	@$(BOOTSTRAP)
+
+demo:           ## set up, grade the reference and flawed submissions, write .build/demo/
+	@$(BOOTSTRAP)
+	@$(BIN)/autograder demo
+
+test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=2 PYTEST_ARGS=)
+	@$(BOOTSTRAP) --dev --browser
+	@$(MAKE) --no-print-directory lint
+	$(BIN)/autograder doctor
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(PYTEST_ARGS)
+
+check:          ## the fast part of the tests
+	@$(BOOTSTRAP) --dev
+	@$(MAKE) --no-print-directory lint
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile -m "not slow and not browser" $(PYTEST_ARGS)
+
+lint:
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_ARGS=)
+	@$(BOOTSTRAP)
+	@$(WITH_ROS) jupyter lab --ServerApp.root_dir=chapters \
+		$(if $(filter 0,$(shell id -u)),--allow-root) $(LAB_ARGS)
+
+bench:          ## measure simulator, grader and builds, write .build/bench.json
+	@$(BOOTSTRAP) --dev
+	@$(BIN)/python -m tests.benchmarks
+
+verify:         ## prove the grader: reference, release, mutants, right answers, attacks (VERIFY_ARGS=)
+	@$(BOOTSTRAP) --dev
+	@$(BIN)/autograder verify $(VERIFY_ARGS)
+
+# Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
+COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \
+	--no-emit-index-url --no-annotate --no-header pyproject.toml
+lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upgrade for newer versions)
+	@$(PYTHON) -m venv .build/lock
+	@.build/lock/bin/pip install --quiet uv
+	$(COMPILE) $(LOCK_ARGS) -o requirements.lock
+	$(COMPILE) $(LOCK_ARGS) --all-extras -c requirements.lock -o requirements-dev.lock
+
+clean:          ## remove what is made, .venv too
+	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
