@@ -235,7 +235,7 @@ class SetUp:
             raise SetUpError(f"{failed} (exit status {status} of `{' '.join(command)}`)")
 
     def _pip(self, failed: str, *arguments: str) -> None:
-        self._step(failed, self.python, "-m", "pip", "install", "--quiet", *arguments)
+        self._step(failed, self.python, "-m", "pip", "install", "-qq", *arguments)
 
     def _new_environment(self) -> None:
         base = self.interpreter.executable
@@ -247,7 +247,7 @@ class SetUp:
             # Debian ships Python without ensurepip; the system's pip then installs the environment's.
             site = self.venv / "lib" / "python{}.{}".format(*self.interpreter.version) / "site-packages"
             failed = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
-            self._step(failed, base, "-m", "pip", "install", "--quiet", "--target", str(site), "pip")
+            self._step(failed, base, "-m", "pip", "install", "-qq", "--target", str(site), "pip")
 
     def _install(self, name: str) -> None:
         lock = (self.root / name).read_text()
