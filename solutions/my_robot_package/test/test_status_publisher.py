@@ -1,0 +1,69 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the status says, and that a late watcher still gets it."""
+
+import math
+
+from my_robot_interfaces.msg import RobotStatus
+from my_robot_package.nodes.status_publisher import (
+    battery_percent, STATUS_QOS, StatusPublisher)
+import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import BatteryState, JointState
+
+
+@pytest.mark.parametrize(('percentage', 'expected'), [
+    (0.0, 0), (0.854, 85), (1.0, 100), (math.nan, -1), (1.5, -1), (-0.1, -1),
+])
+def test_the_battery_is_in_whole_percent_or_unknown(percentage, expected):
+    """The driver counts from 0 to 1, and says nan for "not known"."""
+    assert battery_percent(BatteryState(percentage=percentage)) == expected
+
+
+def test_a_battery_never_heard_of_is_unknown():
+    """No message is not an empty battery."""
+    assert battery_percent(None) == RobotStatus.BATTERY_UNKNOWN
+
+
+def test_a_late_watcher_gets_what_the_sensors_said(world):
+    """The summary holds the name, the battery and the joints, and waits for whoever joins."""
+    publisher = world.add(StatusPublisher(
+        context=world.context,
+        parameter_overrides=[
+            Parameter('robot_name', value='Wall-hugger'),
+            Parameter('status_period', value=0.05),
+        ],
+    ))
+    publisher.battery_callback(BatteryState(
+        percentage=0.4, power_supply_status=BatteryState.POWER_SUPPLY_STATUS_CHARGING))
+    publisher.joint_callback(JointState(position=[0.1, 0.2]))
+    publisher.publish_status()
+    watcher = world.add(Node('watcher', context=world.context))
+    heard = []
+    watcher.create_subscription(RobotStatus, 'robot_status', heard.append, STATUS_QOS)
+    world.until(lambda: heard)
+    assert heard[0].robot_name == 'Wall-hugger'
+    assert heard[0].battery_level == 40
+    assert heard[0].is_charging
+    assert list(heard[0].joint_positions) == pytest.approx([0.1, 0.2])
+    assert heard[0].header.stamp.sec > 0
+
+
+def test_a_period_outside_its_range_is_refused(world):
+    """A parameter's descriptor guards its value."""
+    with pytest.raises(Exception, match='status_period'):
+        StatusPublisher(
+            context=world.context, parameter_overrides=[Parameter('status_period', value=0.0)])
