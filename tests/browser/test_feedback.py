@@ -1,0 +1,104 @@
+"""The feedback as a student sees it: opened in a real browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from autograder import feedback
+from autograder.result import Artifact, Result
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def complaints(page: Page) -> list[str]:
+    """All that the browser complains about while the page is open."""
+    heard: list[str] = []
+    page.on("console", lambda message: heard.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: heard.append(str(error)))
+    page.on("requestfailed", lambda request: heard.append(request.url))
+    return heard
+
+
+@pytest.fixture
+def flawed(make_result: Callable[..., Result], track: Callable[..., Artifact], tmp_path: Path) -> Path:
+    """The feedback page of a flawed submission with a picture."""
+    return feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path)
+
+
+def test_the_track_is_shown_and_hints_unfold(
+    page: Page, flawed: Path, complaints: list[str], screenshots: Path
+) -> None:
+    page.goto(flawed.as_uri())
+    expect(page.get_by_role("heading", level=1)).to_have_text("alice")
+    picture = page.get_by_role("img", name="The robot's track: it touches the north wall at t = 12.4 s.")
+    expect(picture).to_be_visible()
+    assert picture.evaluate("image => image.naturalWidth") > 0
+
+    first, second = page.get_by_text("Where is 0 rad in a scan?"), page.get_by_text("Compare the smallest forward")
+    expect(first).to_be_hidden()
+    page.get_by_text("Hint", exact=True).click()
+    expect(first).to_be_visible()
+    expect(second).to_be_hidden()
+    page.get_by_text("Second hint", exact=True).click()
+    expect(second).to_be_visible()
+
+    page.screenshot(path=screenshots / "feedback.png", full_page=True)
+    assert complaints == []
+
+
+def test_the_page_fits_a_phone(page: Page, flawed: Path, complaints: list[str], screenshots: Path) -> None:
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.goto(flawed.as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    page.screenshot(path=screenshots / "feedback-phone.png", full_page=True)
+    assert complaints == []
+
+
+def test_the_page_is_dark_for_those_who_like_it_dark(
+    page: Page, flawed: Path, complaints: list[str], screenshots: Path
+) -> None:
+    page.goto(flawed.as_uri())
+    colour = "getComputedStyle(document.body).backgroundColor"
+    light = page.evaluate(colour)
+    page.emulate_media(color_scheme="dark")
+    assert page.evaluate(colour) != light
+    page.screenshot(path=screenshots / "feedback-dark.png", full_page=True)
+    assert complaints == []
+
+
+def test_a_script_from_the_student_does_not_run(
+    page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str]
+) -> None:
+    attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
+    page.goto(feedback.write(make_result(attack), tmp_path).as_uri())
+    expect(page.get_by_role("heading", level=1)).to_have_text(attack)
+    assert "owned" not in page.title().replace(attack, "")
+    assert complaints == []
+
+
+def test_the_table_leads_to_each_page(
+    page: Page,
+    make_result: Callable[..., Result],
+    broken_result: Result,
+    ungraded_result: Result,
+    track: Callable[..., Artifact],
+    tmp_path: Path,
+    complaints: list[str],
+    screenshots: Path,
+) -> None:
+    results = [make_result("anna é%?#", artifacts=(track(tmp_path / "anna é%?#"),)), broken_result, ungraded_result]
+    for result in results:
+        feedback.write(result, tmp_path / result.student)
+    page.goto(feedback.write_summary(results, tmp_path).as_uri())
+    page.screenshot(path=screenshots / "summary.png", full_page=True)
+    for result in results:
+        page.get_by_role("link", name=result.student).click()
+        expect(page.get_by_role("heading", level=1)).to_have_text(result.student)
+        page.screenshot(path=screenshots / f"feedback-{result.status.value}-{len(result.checks)}.png", full_page=True)
+        page.go_back()
+    assert complaints == []

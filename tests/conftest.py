@@ -1,0 +1,110 @@
+"""Results to report on, shared by the tests of everything that reads one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from autograder.checks import Check, Outcome, Visibility
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.result import Artifact, Build, CheckResult, Result, Status
+
+MakeCheck = Callable[..., Check]
+MakeResult = Callable[..., Result]
+
+
+def _check(id: str, title: str, points: float, group: str, **more: Any) -> Check:
+    contract: dict[str, Any] = {"visibility": Visibility.HIDDEN, "hints": (), "doc": None, "depends": ()}
+    return Check(id=id, title=title, points=points, group=group, **(contract | more))
+
+
+STARTS = _check("starts", "The node starts and is called robot_controller.", 1, "graph")
+LISTENS = _check("listens", "The node subscribes to /scan as a best-effort lidar publishes it.", 2, "graph")
+TURNS = _check(
+    "turns",
+    "The robot turns when something stands within 1 m in front of it.",
+    4,
+    "reaction",
+    hints=("Where is 0 rad in a scan?", "Compare the smallest forward range with 1.0."),
+    doc="https://docs.ros.org/en/jazzy/p/sensor_msgs/",
+)
+STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", depends=("turns",))
+LATE = _check("late", "A secret for after the due date.", 1, "safety", visibility=Visibility.AFTER_DUE)
+
+
+@pytest.fixture
+def make_check() -> MakeCheck:
+    """Make a check from an id, a title, points and a group."""
+    return _check
+
+
+@pytest.fixture
+def make_result() -> MakeResult:
+    """Make a result of a flawed submission; keyword arguments replace its fields."""
+
+    def make(student: str = "alice", **fields: Any) -> Result:
+        base: dict[str, Any] = {
+            "assignment": "02_nodes",
+            "student": student,
+            "submission_sha256": hashlib.sha256(student.encode("utf-8", "backslashreplace")).hexdigest(),
+            "suite_version": "5ca1ab1e0000",
+            "seed": 7,
+            "isolation": "bubblewrap",
+            "checks": (
+                CheckResult.of(STARTS, Outcome.PASSED, seconds=0.41),
+                CheckResult.of(LISTENS, Outcome.PASSED, seconds=0.2),
+                CheckResult.of(TURNS, Outcome.FAILED, "it kept driving: 0.08 m from the north wall", fraction=0.25),
+                CheckResult.of(STOPS, Outcome.NOT_CHECKED, "not checked: the robot does not turn yet"),
+                CheckResult.of(LATE, Outcome.FAILED, "a message for after the due date"),
+            ),
+            "max_score": 10.0,
+            "started": "2026-05-04T09:00:00+00:00",
+            "seconds": 12.5,
+            "build": Build(ok=True, seconds=1.3, packages=("my_robot_package",)),
+        }
+        return Result(**(base | fields))
+
+    return make
+
+
+@pytest.fixture
+def broken_result(make_result: MakeResult) -> Result:
+    """A submission that did not build."""
+    return make_result(
+        "bob",
+        checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, "the build failed") for check in (STARTS, TURNS)),
+        diagnosis=Diagnosis(Kind.BUILD_FAILED, "The package does not build: setup.py line 3.", "SyntaxError: oops"),
+        build=Build(ok=False, seconds=0.9, packages=("my_robot_package",), log="Failed <<< my_robot_package"),
+    )
+
+
+@pytest.fixture
+def ungraded_result(make_result: MakeResult) -> Result:
+    """A submission that the grader failed on."""
+    return make_result("carol", checks=(), status=Status.NOT_GRADED)
+
+
+@pytest.fixture
+def track() -> Callable[..., Artifact]:
+    """Draw a picture of a robot's track into a folder and return its record."""
+
+    def draw(folder: Path, *, check: str = "turns", name: str = "turns.png") -> Artifact:
+        figure = Figure(figsize=(6, 4), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots()
+        axes.plot([0, 5, 5, 0, 0], [0, 0, 4, 4, 0], color="0.2", linewidth=3)
+        axes.plot([0.6, 2.0, 3.2, 4.1, 4.9], [0.7, 1.1, 2.2, 3.1, 3.9], color="tab:blue")
+        axes.plot([4.9], [3.9], marker="x", color="tab:red", markersize=12, markeredgewidth=3)
+        axes.set(xlabel="x in m", ylabel="y in m", aspect="equal")
+        folder.mkdir(parents=True, exist_ok=True)
+        figure.savefig(folder / name, dpi=110)
+        caption = "The robot's track: it touches the north wall at t = 12.4 s."
+        return Artifact(name, "track", hashlib.sha256((folder / name).read_bytes()).hexdigest(), check, caption)
+
+    return draw

@@ -1,0 +1,222 @@
+"""Feedback pages: what they say, what they keep to themselves, and that nothing gets out of its quotes."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from autograder import feedback
+from autograder.checks import Outcome
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import UsageError
+from autograder.result import Artifact, CheckResult, Result
+
+MakeResult = Callable[..., Result]
+
+
+class Page(HTMLParser):
+    """A page as its reader gets it: the text, the tags, the pictures."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str]] = []
+        self.pieces: list[str] = []
+        self.feed(path.read_text(encoding="utf-8"))
+        self.text = re.sub(r"\s+", " ", " ".join(self.pieces))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += [(name, value or "") for name, value in attrs]
+
+    def handle_data(self, data: str) -> None:
+        if self.tags[-1:] != ["style"]:
+            self.pieces.append(data)
+
+    def all(self, attribute: str) -> list[str]:
+        return [value for name, value in self.attributes if name == attribute]
+
+
+def test_the_page_says_the_score_each_check_and_the_reason(make_result: MakeResult, tmp_path: Path) -> None:
+    page = Page(feedback.write(make_result(), tmp_path))
+    assert "4 of 10 points, 40 %" in page.text
+    for words in ("Graph 3 / 3", "Reaction 1 / 4", "it kept driving: 0.08 m from the north wall", "1 / 4"):
+        assert words in page.text
+    assert page.all("aria-label") == ["passed", "passed", "failed", "not checked"]
+
+
+def test_the_first_failed_check_is_where_to_start(make_result: MakeResult, tmp_path: Path) -> None:
+    page = Page(feedback.write(make_result(), tmp_path))
+    assert "Start here The robot turns when something" in page.text
+    assert "#check-turns" in page.all("href")
+    assert "check-turns" in page.all("id")
+
+
+def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
+    make_result: MakeResult, tmp_path: Path
+) -> None:
+    path = feedback.write(make_result(), tmp_path)
+    html, page = path.read_text(encoding="utf-8"), Page(path)
+    assert re.search(r"<details[^>]*><summary>Hint</summary>.*<details[^>]*><summary>Second hint</summary>", html, re.S)
+    assert "open" not in page.all("class")
+    assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
+
+
+def test_a_link_that_is_no_web_address_is_not_followed(
+    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+) -> None:
+    check = make_check("bad", "A check.", 1, "graph", doc="javascript:alert(1)")
+    result = make_result(checks=(CheckResult.of(check, Outcome.FAILED, "why"),))  # type: ignore[arg-type]
+    assert "javascript:alert(1)" not in feedback.write(result, tmp_path).read_text(encoding="utf-8")
+
+
+def test_the_picture_is_part_of_the_page(
+    make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
+) -> None:
+    page = Page(feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path))
+    sources = page.all("src")
+    data = base64.b64encode((tmp_path / "turns.png").read_bytes()).decode()
+    assert sources == [f"data:image/png;base64,{data}"]
+    assert page.all("alt") == ["The robot's track: it touches the north wall at t = 12.4 s."]
+
+
+def test_a_picture_that_belongs_to_no_check_is_shown_too(
+    make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
+) -> None:
+    page = Page(feedback.write(make_result(artifacts=(track(tmp_path, check=""),)), tmp_path))
+    assert page.tags.count("img") == 1
+
+
+def test_a_picture_that_is_gone_is_said_to_be_gone(make_result: MakeResult, tmp_path: Path) -> None:
+    lost = Artifact("lost.png", "track", "0" * 64, "turns", "The robot's track.")
+    page = Page(feedback.write(make_result(artifacts=(lost,)), tmp_path))
+    assert "img" not in page.tags
+    assert "The robot's track. (The picture was not kept.)" in page.text
+
+
+def test_an_artifact_that_is_no_picture_is_left_out(make_result: MakeResult, tmp_path: Path) -> None:
+    (tmp_path / "turns.json").write_text("{}")
+    record = Artifact("turns.json", "recording", "0" * 64, "turns", "the recording")
+    assert "the recording" not in Page(feedback.write(make_result(artifacts=(record,)), tmp_path)).text
+
+
+def test_an_artifact_outside_the_folder_is_refused(make_result: MakeResult, tmp_path: Path) -> None:
+    secret = Artifact("../secret.png", "track", "0" * 64, "turns", "")
+    with pytest.raises(UsageError, match=r"'\.\./secret\.png' lies outside the result's folder"):
+        feedback.write(make_result(artifacts=(secret,)), tmp_path)
+
+
+def test_a_check_for_after_the_due_date_is_shown_only_when_asked(
+    make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
+) -> None:
+    result = make_result(artifacts=(track(tmp_path, check="late"),))
+    before = Page(feedback.write(result, tmp_path))
+    assert "A secret for after the due date" not in before.text
+    assert "a message for after the due date" not in before.text
+    assert "1 more check is shown after the due date." in before.text
+    assert "img" not in before.tags
+    after = Page(feedback.write(result, tmp_path, after_due=True))
+    assert "a message for after the due date" in after.text
+    assert "img" in after.tags
+    summary = feedback.write_summary([result], tmp_path)
+    assert "A secret for" not in Page(summary).text
+    assert "A secret for" in Page(feedback.write_summary([result], tmp_path, after_due=True)).text
+
+
+def test_a_failed_build_shows_its_log_and_the_diagnosis_on_top(broken_result: Result, tmp_path: Path) -> None:
+    page = Page(feedback.write(broken_result, tmp_path))
+    assert "Failed <<< my_robot_package" in page.text
+    assert "SyntaxError: oops" in page.text
+    assert page.text.index("does not build: setup.py line 3") < page.text.index("Graph")
+    assert "Start here" not in page.text
+
+
+def test_not_graded_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: Result, tmp_path: Path) -> None:
+    page = Page(feedback.write(ungraded_result, tmp_path))
+    assert "Not graded" in page.text
+    assert "This is not a zero" in page.text
+    assert "points" not in page.text
+    assert "works" not in page.text
+
+
+def test_full_marks_are_said_in_words(
+    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+) -> None:
+    check = make_check("a", "It works.", 10, "graph")
+    result = make_result(checks=(CheckResult.of(check, Outcome.PASSED),))  # type: ignore[arg-type]
+    page = Page(feedback.write(result, tmp_path))
+    assert "10 of 10 points, 100 %" in page.text
+    assert "Everything that was checked works." in page.text
+
+
+ATTACK = "</pre><script>alert(1)</script><img src=x onerror=alert(1)>\"'{{7*7}}"
+
+
+def test_nothing_from_the_student_becomes_markup(
+    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+) -> None:
+    check = make_check("c", ATTACK, 1, ATTACK, hints=(ATTACK, ATTACK))
+    hostile = make_result(
+        ATTACK.replace("/", ""),
+        checks=(CheckResult.of(check, Outcome.FAILED, ATTACK),),  # type: ignore[arg-type]
+        diagnosis=Diagnosis(Kind.CRASHED_LATER, ATTACK, ATTACK),
+        build=make_result().build.__class__(False, 1.0, (ATTACK,), ATTACK),
+        artifacts=(Artifact("x.png", "track", "", "c", ATTACK),),
+    )
+    (tmp_path / "x.png").write_bytes(b"\x89PNG")
+    for path in (feedback.write(hostile, tmp_path), feedback.write_summary([hostile], tmp_path)):
+        page = Page(path)
+        assert "script" not in page.tags
+        assert "onerror" not in [name for name, _ in page.attributes]
+        assert set(page.all("src")) <= {"data:image/png;base64,iVBORw=="}
+        assert "{{7*7}}" in page.text
+
+
+def test_control_characters_and_half_characters_do_not_reach_the_page(make_result: MakeResult, tmp_path: Path) -> None:
+    wild = "\x1b[31mred\x1b[0m \x00 \udcff \u202eevil"
+    result = make_result(diagnosis=Diagnosis(Kind.CRASHED_LATER, "It crashed.", wild))
+    text = Page(feedback.write(result, tmp_path)).text
+    assert "red \ufffd \ufffd \ufffdevil" in text
+
+
+def test_a_page_asks_for_nothing_from_the_network(
+    make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
+) -> None:
+    page = Page(feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path))
+    assert all(source.startswith("data:") for source in page.all("src"))
+    assert "default-src 'none'" in " ".join(page.all("content"))
+    assert [href for href in page.all("href") if "://" in href] == ["https://docs.ros.org/en/jazzy/p/sensor_msgs/"]
+
+
+def test_the_table_links_each_page_and_sums_up(
+    make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path
+) -> None:
+    alice = make_result()
+    feedback.write(alice, tmp_path / "alice")
+    page = Page(feedback.write_summary([alice, broken_result, ungraded_result], tmp_path))
+    assert [link for link in page.all("href") if link.endswith("feedback.html")] == ["alice/feedback.html"]
+    for words in (
+        "3 submissions",
+        "Mean 20 %. Not graded: 1.",
+        "alice 4 / 10 40 % it kept driving",
+        "bob 0 / 10 0 % The package does not build",
+        "carol not graded The grader itself failed. This is not a zero.",
+    ):
+        assert words in page.text
+    assert page.text.index("The robot stops when") < page.text.index("0 of 1")
+
+
+def test_the_table_of_no_submissions_is_a_page_too(tmp_path: Path) -> None:
+    assert "0 submissions" in Page(feedback.write_summary([], tmp_path)).text
+
+
+def test_a_student_whose_name_is_a_path_gets_no_link(make_result: MakeResult, tmp_path: Path) -> None:
+    (tmp_path / "feedback.html").write_text("other")
+    (tmp_path / "class").mkdir()
+    page = Page(feedback.write_summary([make_result("..")], tmp_path / "class"))
+    assert [link for link in page.all("href") if "feedback" in link] == []
