@@ -23,10 +23,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
-DISTRO = "jazzy"
-OLDEST, NEWEST = (3, 10), (3, 13)
 STAMP = "course-set-up.json"
 
 # What apt provides, and the commands that show that it, or its like, is there.
@@ -35,14 +32,12 @@ TOOLS = {
     "chromium": ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"),
 }
 
-Say = Callable[[str], None]
+Run = Callable[..., int]  # run(*command, quiet=False) -> exit status
 
 
-class Run(Protocol):
-    """Runs a command to its end and returns its exit status; quietly, nothing of its output is shown."""
-
-    def __call__(self, command: Sequence[str], *, quiet: bool = False) -> int:
-        """Run `command`."""
+def say(line: str) -> None:
+    """Show one line of progress."""
+    print(f"set-up: {line}", flush=True)
 
 
 class SetUpError(Exception):
@@ -51,14 +46,7 @@ class SetUpError(Exception):
 
 @dataclass(frozen=True)
 class Interpreter:
-    """The Python that the virtual environment is made with.
-
-    Attributes:
-        executable: its path, outside any virtual environment.
-        version: major and minor.
-        build: the full version text, which tells two builds of one version apart.
-        suffix: the file name ending of its extension modules.
-    """
+    """The Python that the environment is made with: its path, version, full version text and extension suffix."""
 
     executable: str
     version: tuple[int, int]
@@ -73,12 +61,8 @@ class Interpreter:
 
 
 def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
-    """Refuse a Python or a machine that the pinned packages do not serve.
-
-    Raises:
-        SetUpError: with the sentence to show.
-    """
-    if not OLDEST <= version <= NEWEST:
+    """Refuse, with a `SetUpError`, a Python or a machine that the pinned packages do not serve."""
+    if not (3, 10) <= version <= (3, 13):
         raise SetUpError(
             f"Python {version[0]}.{version[1]} does not serve: ROS 2 Jazzy's wheels are for Python 3.10 to 3.13. "
             "Install one of them (3.12 is Jazzy's own) and run `make PYTHON=python3.12`"
@@ -105,8 +89,8 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
 
     distro = environ.get("ROS_DISTRO", "")
     modules = [path for path in foreign("PYTHONPATH") if (path / "rclpy").is_dir()]
-    sourced = modules or foreign("AMENT_PREFIX_PATH") or foreign("ROS_PACKAGE_PATH")
-    if sourced and (modules or distro) and distro != DISTRO:
+    other = distro and (foreign("AMENT_PREFIX_PATH") or foreign("ROS_PACKAGE_PATH"))
+    if (modules or other) and distro != "jazzy":
         raise SetUpError(
             f"the ROS that is sourced is {distro or 'of no known distribution'} and the course needs Jazzy: open a "
             "shell that does not source it (the wheels are then used), or source /opt/ros/jazzy/setup.bash"
@@ -114,11 +98,11 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
     if not modules:
         return None
     if not (modules[0] / "rclpy" / f"_rclpy_pybind11{interpreter.suffix}").is_file():
-        built = re.search(r"python(3\.\d+)", str(modules[0]))
-        fits = f"python{built[1]}" if built else "the Python it was built for"
+        built = re.search(r"python3\.\d+", str(modules[0]))
         raise SetUpError(
             f"the sourced ROS 2 Jazzy in {modules[0]} is not for Python {'.'.join(map(str, interpreter.version))}: "
-            f"run `make PYTHON={fits}`, or open a shell that does not source it (the wheels are then used)"
+            f"run `make PYTHON={built[0] if built else 'python3.12'}`, or open a shell that does not source it "
+            "(the wheels are then used)"
         )
     return str(modules[0])
 
@@ -149,36 +133,14 @@ def digest(*parts: str | Path) -> str:
     return whole.hexdigest()
 
 
-def wanted_stamp(root: Path, interpreter: Interpreter, sourced: str | None, *, dev: bool) -> dict[str, str]:
-    """Return what a finished set-up of this clone, with this interpreter, would be stamped with."""
-    lock, mend = root / "requirements.lock", root / "autograder" / "ros" / "mend.py"
-    stamp = {
-        # A virtual environment knows its own path: a moved clone needs a new one.
-        "base": digest(Path(__file__), lock, mend, str(root), interpreter.executable, interpreter.build, str(sourced)),
-        "project": digest(root / "pyproject.toml"),
-    }
-    if dev:
-        stamp["dev"] = digest(root / "requirements-dev.lock")
-    return stamp
-
-
 @dataclass(frozen=True)
 class SetUp:
-    """One set-up: where, with what, and by which effects.
-
-    Attributes:
-        root: the clone.
-        interpreter: what the environment is made with.
-        sourced: the sourced ROS's site-packages, or None for the wheels.
-        run: runs a command.
-        say: shows one line.
-    """
+    """One set-up: the clone's root, the interpreter, the sourced ROS's site-packages (None: wheels), the effect."""
 
     root: Path
     interpreter: Interpreter
     sourced: str | None
     run: Run
-    say: Say
 
     @property
     def venv(self) -> Path:
@@ -190,6 +152,14 @@ class SetUp:
         """The virtual environment's Python."""
         return str(self.venv / "bin" / "python")
 
+    def wanted(self, *, dev: bool) -> dict[str, str]:
+        """Return what a finished set-up would be stamped with."""
+        lock, mend = self.root / "requirements.lock", self.root / "autograder" / "ros" / "mend.py"
+        # A virtual environment knows its own path: a moved clone needs a new one.
+        about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
+        base = {"base": digest(Path(__file__), lock, mend, *about), "project": digest(self.root / "pyproject.toml")}
+        return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
+
     def stamp(self) -> dict[str, str]:
         """Return what the last finished set-up was stamped with; empty when there is none or it cannot run."""
         try:
@@ -200,9 +170,7 @@ class SetUp:
 
     def lacks(self, *, dev: bool) -> list[str]:
         """Return which parts have to be made: of `base`, `project` and `dev`."""
-        have = self.stamp()
-        wanted = wanted_stamp(self.root, self.interpreter, self.sourced, dev=dev)
-        return [name for name, key in wanted.items() if have.get(name) != key]
+        return [name for name, key in self.wanted(dev=dev).items() if self.stamp().get(name) != key]
 
     def make(self, *, dev: bool) -> None:
         """Bring the environment to the wanted state, from the start or by what it lacks.
@@ -218,29 +186,27 @@ class SetUp:
         if "base" in lacks:
             have = {}
             ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else "ROS 2 Jazzy from wheels"
-            self.say(f"set-up: making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
+            say(f"making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
             self._new_environment()
         if "base" in lacks or "dev" in lacks:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
-        self._install_project()
-        stamp = {**have, **wanted_stamp(self.root, self.interpreter, self.sourced, dev=dev)}
+        project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
+        self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
+        self._step("the ROS wheels could not be mended", self.python, "-m", "autograder.ros.mend")
         fresh = self.venv / f"{STAMP}.fresh"
-        fresh.write_text(json.dumps(stamp, indent=1))
+        fresh.write_text(json.dumps({**have, **self.wanted(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
-        self.say(f"set-up: done in {time.monotonic() - begun:.0f} s")
+        say(f"done in {time.monotonic() - begun:.0f} s")
 
     def _step(self, failed: str, *command: str) -> None:
-        status = self.run(command)
+        status = self.run(*command)
         if status != 0:
             raise SetUpError(f"{failed} (exit status {status} of `{' '.join(command)}`)")
-
-    def _pip(self, failed: str, *arguments: str) -> None:
-        self._step(failed, self.python, "-m", "pip", "install", "-qq", *arguments)
 
     def _new_environment(self) -> None:
         base = self.interpreter.executable
         shutil.rmtree(self.venv, ignore_errors=True)
-        with_pip = self.run([base, "-c", "import ensurepip"], quiet=True) == 0
+        with_pip = self.run(base, "-c", "import ensurepip", quiet=True) == 0
         bare = [] if with_pip else ["--without-pip"]
         self._step("the virtual environment could not be made", base, "-m", "venv", *bare, str(self.venv))
         if not with_pip:
@@ -253,72 +219,48 @@ class SetUp:
         lock = (self.root / name).read_text()
         chosen = self.venv / name
         chosen.write_text(without_ros(lock) if self.sourced else lock)
-        self.say(f"set-up: installing the pinned packages of {name}, a minute or two")
-        failed = (
-            f"pip could not install {name}: its own lines above say why. Proxies and mirrors are taken from pip's "
-            "usual variables and pip.conf. Run the same command again"
-        )
-        self._pip(failed, "--no-compile", "--require-hashes", "--requirement", str(chosen))
-        self.say("set-up: compiling them")
+        say(f"installing the pinned packages of {name}, a minute or two")
+        failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
+        pinned = ("--no-compile", "--require-hashes", "--requirement", str(chosen))
+        self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
+        say("compiling them")
         # Its exit status is not asked: some packages ship templates and old Python that never compile.
-        self.run([self.python, "-m", "compileall", "-qq", "-j", "0", str(self.venv / "lib")], quiet=True)
-
-    def _install_project(self) -> None:
-        self._pip("the project could not be installed", "--no-build-isolation", "--no-deps", "-e", str(self.root))
-        self._step("the ROS wheels could not be mended", self.python, "-m", "autograder.ros.mend")
+        self.run(self.python, "-m", "compileall", "-qq", "-j", "0", str(self.venv / "lib"), quiet=True)
 
 
 @contextmanager
-def alone(lock: Path, say: Say) -> Iterator[None]:
+def alone(lock: Path) -> Iterator[None]:
     """Hold `lock`, so that two set-ups of one clone never meet; say so when that means to wait."""
     lock.parent.mkdir(exist_ok=True)
     with lock.open("w") as held:
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            say("set-up: another one is at work here, waiting for it")
+            say("another one is at work here, waiting for it")
             fcntl.flock(held, fcntl.LOCK_EX)
         yield
 
 
-def missing_tools(*, browser: bool) -> list[str]:
-    """Return which of the `TOOLS` are missing; Chromium counts only when a browser is asked for."""
-    asked = [name for name in TOOLS if browser or name != "chromium"]
-    return [name for name in asked if not any(shutil.which(command) for command in TOOLS[name])]
+def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> None:
+    """Install packages with apt; where that is not possible say the command and go on.
 
-
-def privilege(uid: int, run: Run) -> list[str] | None:
-    """Return the words before `apt-get` that make it work without a question, or None when it cannot."""
-    if shutil.which("apt-get") is None:
-        return None
-    if uid == 0:
-        return []
-    return ["sudo", "-n"] if shutil.which("sudo") and run(["sudo", "-n", "true"], quiet=True) == 0 else None
-
-
-def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run, say: Say) -> None:
-    """Install `missing` with apt, once; where that is not possible say the command and go on.
-
-    Args:
-        missing: names of packages.
-        tried: the file that remembers what apt was asked for before; asking again takes seconds each time.
-        uid: the user's number.
-        run: runs a command.
-        say: shows one line.
+    `tried` remembers what apt was asked for: each vain attempt takes seconds, so there is one.
     """
     by_hand = f"sudo apt-get install {' '.join(missing)}"
     before = tried.read_text().split() if tried.exists() else []
-    prefix = privilege(uid, run) if set(missing) - set(before) else None
-    if prefix is None:
-        say(f"set-up: {', '.join(missing)} is missing; to install it: {by_hand}")
+    sudo = [] if uid == 0 else ["sudo", "-n"]
+    # `env` turns a missing sudo into an exit status.
+    possible = shutil.which("apt-get") and run("env", *sudo, "true", quiet=True) == 0
+    if not possible or set(missing) <= set(before):
+        say(f"{', '.join(missing)} is missing; to install it: {by_hand}")
         return
-    say(f"set-up: installing {', '.join(missing)} with apt-get")
-    apt = [*prefix, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
-    run([*apt, "update"], quiet=True)
-    status = run([*apt, "install", "-y", "--no-install-recommends", *missing], quiet=True)
+    say(f"installing {', '.join(missing)} with apt-get")
+    apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
+    run(*apt, "update", quiet=True)
+    status = run(*apt, "install", "-y", "--no-install-recommends", *missing, quiet=True)
     tried.write_text(" ".join({*before, *missing}))
     if status != 0:
-        say(f"set-up: apt-get failed, the rest goes on; by hand: {by_hand}")
+        say(f"apt-get failed, the rest goes on; by hand: {by_hand}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -330,26 +272,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     root = Path(__file__).resolve().parent.parent
     environment = child_environment(os.environ)
 
-    def say(line: str) -> None:
-        print(line, flush=True)
-
-    def run(command: Sequence[str], *, quiet: bool = False) -> int:
-        output = subprocess.DEVNULL if quiet else None
-        return subprocess.call(
-            command, env=environment, cwd=root, stdin=subprocess.DEVNULL, stdout=output, stderr=output
-        )
+    def run(*command: str, quiet: bool = False) -> int:
+        out = subprocess.DEVNULL if quiet else None
+        return subprocess.call(command, env=environment, cwd=root, stdin=subprocess.DEVNULL, stdout=out, stderr=out)
 
     try:
         interpreter = Interpreter.running()
         check_machine(interpreter.version, platform.system(), platform.machine())
-        sourced = sourced_ros(os.environ, root / ".venv", interpreter)
-        set_up = SetUp(root, interpreter, sourced, run, say)
+        set_up = SetUp(root, interpreter, sourced_ros(os.environ, root / ".venv", interpreter), run)
         if set_up.lacks(dev=options.dev):
-            with alone(root / ".build" / "set-up.lock", say):
+            with alone(root / ".build" / "set-up.lock"):
                 set_up.make(dev=options.dev)
-        missing = missing_tools(browser=options.browser)
+        asked = [tool for tool in TOOLS if options.browser or tool != "chromium"]
+        missing = [tool for tool in asked if not any(map(shutil.which, TOOLS[tool]))]
         if missing:
-            install_tools(missing, set_up.venv / "apt-tried", os.geteuid(), run, say)
+            install_tools(missing, set_up.venv / "apt-tried", os.geteuid(), run)
     except SetUpError as error:
         print(f"set-up: {error}.", file=sys.stderr)
         return 1
