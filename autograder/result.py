@@ -147,7 +147,7 @@ def _enum_value(value: object) -> object:
 @cache
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of a result."""
-    return json.loads(Path(__file__).with_name("result.schema.json").read_text())  # type: ignore[no-any-return]
+    return json.loads(Path(__file__).with_name("result.schema.json").read_text(encoding="utf-8"))  # type: ignore[no-any-return]
 
 
 def from_json(data: object, *, source: str = "result") -> Result:
@@ -162,22 +162,30 @@ def from_json(data: object, *, source: str = "result") -> Result:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
         raise UsageError(f"{source}: not a grading result: {field}: {error.message}") from None
     assert isinstance(data, dict)
-    known = {field.name for field in dataclasses.fields(Result)}
-    fields = {name: value for name, value in data.items() if name in known}
+    fields = _known(Result, data)
     fields["status"] = Status(fields["status"])
-    diagnosis = fields["diagnosis"]
-    fields["diagnosis"] = Diagnosis(Kind(diagnosis["kind"]), diagnosis["sentence"], diagnosis["detail"])
+    diagnosis = _known(Diagnosis, fields["diagnosis"])
+    try:
+        fields["diagnosis"] = Diagnosis(**{**diagnosis, "kind": Kind(diagnosis["kind"])})
+    except ValueError as error:
+        raise UsageError(f"{source}: not a grading result of this version: diagnosis.kind: {error}") from None
     fields["checks"] = tuple(_check_from_json(item) for item in fields["checks"])
     if fields["build"] is not None:
-        fields["build"] = Build(**{**fields["build"], "packages": tuple(fields["build"]["packages"])})
-    fields["artifacts"] = tuple(Artifact(**item) for item in fields["artifacts"])
+        fields["build"] = Build(**{**_known(Build, fields["build"]), "packages": tuple(fields["build"]["packages"])})
+    fields["artifacts"] = tuple(Artifact(**_known(Artifact, item)) for item in fields["artifacts"])
     return Result(**fields)
+
+
+def _known(kind: type, item: dict[str, Any]) -> dict[str, Any]:
+    """Keep what this version knows; a later one may have added fields."""
+    names = {field.name for field in dataclasses.fields(kind)}
+    return {name: value for name, value in item.items() if name in names}
 
 
 def _check_from_json(item: dict[str, Any]) -> CheckResult:
     return CheckResult(
         **{
-            **item,
+            **_known(CheckResult, item),
             "outcome": Outcome(item["outcome"]),
             "visibility": Visibility(item["visibility"]),
             "hints": tuple(item["hints"]),
@@ -189,5 +197,7 @@ def write_json(path: Path, data: object) -> None:
     """Write JSON whole or not at all: to a file beside `path` first, then renamed over it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    fresh.write_text(json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n")
+    text = json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n"
+    # Half a surrogate pair (a file name that is no UTF-8) becomes the JSON escape that it came from.
+    fresh.write_bytes(text.encode("utf-8", "backslashreplace"))
     fresh.replace(path)

@@ -1,0 +1,155 @@
+"""A result as data, and its published JSON form."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from autograder.checks import Check, Outcome, Visibility
+from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.exceptions import AutograderError, GraderError, IsolationError, StudentError, UsageError
+from autograder.result import Artifact, CheckResult, Result, Status, from_json, schema, write_json
+
+MakeResult = Callable[..., Result]
+
+
+@pytest.fixture
+def turns(make_check: Callable[..., Check]) -> Check:
+    return make_check("turns", "It turns.", 3, "reaction", hints=("look",))
+
+
+@pytest.mark.parametrize(
+    ("outcome", "points", "hints"),
+    [(Outcome.PASSED, 3.0, ()), (Outcome.FAILED, 1.0, ("look",)), (Outcome.NOT_CHECKED, 0.0, ("look",))],
+)
+def test_points_follow_the_outcome(turns: Check, outcome: Outcome, points: float, hints: tuple[str, ...]) -> None:
+    record = CheckResult.of(turns, outcome, fraction=1 / 3)
+    assert (record.points, record.max_points, record.hints) == (points, 3.0, hints)
+
+
+def test_a_result_sums_what_its_checks_earned(make_result: MakeResult) -> None:
+    result = make_result()
+    assert (result.score, result.max_score, result.percent) == (4.0, 10.0, 40.0)
+
+
+def test_the_maximum_comes_from_the_suite_even_when_no_check_was_recorded(make_result: MakeResult) -> None:
+    result = make_result(checks=())
+    assert (result.score, result.max_score, result.percent) == (0.0, 10.0, 0.0)
+
+
+def test_a_group_holds_the_checks_of_one_grade_cell(make_result: MakeResult) -> None:
+    assert [check.id for check in make_result().group("graph")] == ["starts", "listens"]
+    assert make_result().group("nothing") == ()
+
+
+def test_a_result_survives_the_way_to_json_and_back(make_result: MakeResult, broken_result: Result) -> None:
+    artifact = Artifact("tracks/a.png", "track", "ab", "turns", "It hits a wall.")
+    for result in (
+        make_result(artifacts=(artifact,), phases={"build": 1.5}),
+        broken_result,
+        make_result(checks=(), build=None, status=Status.NOT_GRADED),
+    ):
+        plain = json.loads(json.dumps(result.to_json()))
+        jsonschema.validate(plain, schema())
+        assert from_json(plain) == result
+
+
+def test_the_schema_is_itself_a_schema() -> None:
+    jsonschema.Draft202012Validator.check_schema(schema())
+
+
+def test_the_schema_names_every_outcome_and_visibility() -> None:
+    check = schema()["properties"]["checks"]["items"]["properties"]
+    assert set(check["outcome"]["enum"]) == {outcome.value for outcome in Outcome}
+    assert set(check["visibility"]["enum"]) == {visibility.value for visibility in Visibility}
+    assert set(schema()["properties"]["status"]["enum"]) == {status.value for status in Status}
+
+
+def test_every_field_of_a_result_is_published(make_result: MakeResult, broken_result: Result) -> None:
+    plain, properties = broken_result.to_json(), schema()["properties"]
+    assert set(plain) == set(properties) == set(schema()["required"])
+    assert set(plain["checks"][0]) == set(properties["checks"]["items"]["properties"])
+    assert set(plain["build"]) == set(properties["build"]["properties"])
+    assert set(plain["diagnosis"]) == set(properties["diagnosis"]["properties"])
+
+
+def test_fields_that_a_later_version_added_are_read_over(make_result: MakeResult) -> None:
+    result = make_result(artifacts=(Artifact("a.png", "track", "ab", "turns"),))
+    plain = result.to_json()
+    for part in (plain, plain["build"], plain["diagnosis"], plain["checks"][0], plain["artifacts"][0]):
+        part["added_later"] = 1
+    assert from_json(plain) == result
+
+
+def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: MakeResult) -> None:
+    plain = make_result().to_json()
+    plain["diagnosis"]["kind"] = "struck_by_lightning"
+    with pytest.raises(UsageError, match=r"of this version: diagnosis\.kind: 'struck_by_lightning'"):
+        from_json(plain)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"score": "4"}, "r.json: not a grading result: score: '4' is not of type 'number'"),
+        ({"schema": "other/1"}, "schema: 'autograder-result/1' was expected"),
+        ({"checks": [{}]}, "checks.0: 'id' is a required property"),
+        ({"max_score": 0}, "max_score: 0 is less than or equal to the minimum of 0"),
+    ],
+)
+def test_what_is_no_result_is_refused_by_file_and_field(
+    make_result: MakeResult, change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        from_json({**make_result().to_json(), **change}, source="r.json")
+    assert words in str(caught.value)
+
+
+def test_something_else_altogether_is_refused() -> None:
+    with pytest.raises(UsageError, match="result: not a grading result: the top level: 7 is not of type 'object'"):
+        from_json(7)
+
+
+def test_only_enums_and_plain_data_have_a_json_form(make_result: MakeResult) -> None:
+    with pytest.raises(TypeError, match="Path has no JSON form"):
+        make_result(phases={"build": Path("x")}).to_json()
+
+
+def test_json_is_written_whole_and_leaves_nothing_beside_it(tmp_path: Path) -> None:
+    target = tmp_path / "new" / "result.json"
+    write_json(target, {"outcome": Outcome.PASSED, "name": "é"})
+    assert json.loads(target.read_text(encoding="utf-8")) == {"outcome": "passed", "name": "é"}
+    assert "é" in target.read_text(encoding="utf-8")
+    with pytest.raises(TypeError, match="object has no JSON form"):
+        write_json(target, object())
+    assert list(target.parent.iterdir()) == [target]
+    assert json.loads(target.read_text(encoding="utf-8"))["name"] == "é"
+
+
+def test_a_file_name_that_is_no_utf8_can_be_written_and_read_back(make_result: MakeResult, tmp_path: Path) -> None:
+    result = make_result(diagnosis=Diagnosis(Kind.UNREADABLE, "cannot read b\udcffd"))
+    write_json(tmp_path / "result.json", result.to_json())
+    assert from_json(json.loads((tmp_path / "result.json").read_bytes())) == result
+
+
+def test_a_student_error_carries_its_diagnosis() -> None:
+    diagnosis = Diagnosis(Kind.SYNTAX_ERROR, "setup.py, line 3: a bracket is not closed")
+    error = StudentError(diagnosis)
+    assert error.diagnosis is diagnosis
+    assert str(error) == "setup.py, line 3: a bracket is not closed"
+
+
+def test_the_graders_faults_are_not_the_students() -> None:
+    assert issubclass(IsolationError, GraderError)
+    assert not issubclass(GraderError, StudentError)
+    assert not issubclass(StudentError, GraderError)
+    assert all(issubclass(kind, AutograderError) for kind in (UsageError, StudentError, GraderError))
+
+
+def test_a_healthy_submission_has_the_diagnosis_ok() -> None:
+    assert OK.kind is Kind.OK
+    assert OK.sentence
