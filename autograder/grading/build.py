@@ -1,0 +1,115 @@
+"""Building a student's packages: colcon, in a sandbox that has no network."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.lab.workspace import Workspace
+from autograder.lockstep.failures import tail
+from autograder.result import Build
+from autograder.sandbox import Ending, Mount, Sandbox
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import BUILD
+
+MAX_MANIFEST = 64 * 1024
+LOG_LINES = 40
+
+
+def find_packages(source: Path) -> dict[str, Path]:
+    """Return the packages below `source`, by the name in their package.xml.
+
+    Raises:
+        StudentError: a package.xml cannot be read.
+    """
+    found: dict[str, Path] = {}
+    for manifest in sorted(source.rglob("package.xml")):
+        where = manifest.relative_to(source)
+        if manifest.stat().st_size > MAX_MANIFEST:
+            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, f"src/{where} is far larger than a manifest."))
+        try:
+            name = ET.fromstring(manifest.read_bytes()).findtext("name", "").strip()
+        except ET.ParseError as error:
+            sentence = f"src/{where} is no well-formed XML ({error}): mend that line, colcon cannot read the package."
+            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
+        found[name] = manifest.parent
+    return found
+
+
+def require_packages(source: Path, wanted: tuple[str, ...]) -> None:
+    """See that the wanted packages are there and whole enough for colcon to build.
+
+    Raises:
+        StudentError: one is missing, or lacks a file that every Python package of ROS 2 has.
+    """
+    found = find_packages(source) if source.is_dir() else {}
+    for name in wanted:
+        folder = found.get(name)
+        if folder is None:
+            raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, found)))
+        if (folder / "CMakeLists.txt").is_file():
+            continue
+        for part in ("setup.py", "setup.cfg", f"resource/{name}", f"{name}/__init__.py"):
+            if not (folder / part).exists():
+                sentence = f"src/{folder.name} has no {part}: the package is only half written, colcon needs that file."
+                raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
+
+
+def build(workspace: Workspace) -> Build:
+    """Run `colcon build` on a workspace.
+
+    Raises:
+        StudentError: it did not build; the detail holds the end of colcon's output.
+    """
+    started = time.monotonic()
+    colcon = str(Path(sys.executable).with_name("colcon"))
+    command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
+    command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
+    environment = {
+        **workspace.environment(domain=0),
+        "COLCON_HOME": str(workspace.scratch),
+        "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
+    }
+    system = tuple(Mount(prefix) for prefix in workspace.ros.prefixes if workspace.ros.kind == "sourced")
+    spec = Sandbox(
+        workdir=workspace.root,
+        mounts=(
+            *system,
+            *(Mount(space) for space in workspace.underlays),
+            Mount(workspace.root, writable=True),
+            Mount(workspace.scratch, writable=True),
+        ),
+        environment=environment,
+        limits=BUILD,
+    )
+    with launch(command, spec) as process:
+        process.wait(BUILD.wall_seconds + 10)
+        output, ending, status = process.output, process.ending, process.returncode
+    log = tail(output, LOG_LINES)
+    if ending is not Ending.EXITED or status != 0:
+        raise StudentError(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), log))
+    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(find_packages(workspace.root / "src"))), log)
+
+
+def _missing(source: Path, name: str, found: dict[str, Path]) -> str:
+    if not source.is_dir():
+        return f"There is no ws/src folder: create the package {name} in it."
+    if (source / name).is_dir():
+        return f"src/{name} has no package.xml with <name>{name}</name>: without it colcon does not see a package."
+    others = ", ".join(sorted(found)) or "no package at all"
+    return f"The package {name} is missing: src holds {others}."
+
+
+def _build_failure(output: str, ending: Ending | None) -> str:
+    if ending is not Ending.EXITED and ending is not None:
+        return (
+            f"colcon build was stopped ({ending.value.replace('_', ' ')}): a build should end within a minute or two."
+        )
+    errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]
+    first = f" The first error: {errors[0][:300]}" if errors else ""
+    return f"colcon build failed.{first}"

@@ -1,0 +1,221 @@
+"""What both kinds of lab share: the grader's own node, and how its endpoints come to match the student's."""
+
+from __future__ import annotations
+
+import math
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from autograder.exceptions import GraderError
+from autograder.lab.workspace import Workspace
+from autograder.sandbox import Process
+
+MEETING_SECONDS = 30.0  # real time for the two sides to find each other
+DEPTH = 1000
+NAME = "grader"
+
+
+@dataclass(frozen=True)
+class Stamped:
+    """A message that the student's program published.
+
+    `seconds` is when it arrived, in seconds of ROS time since the program started.
+    """
+
+    seconds: float
+    message: Any
+
+
+class Lab(ABC):
+    """One student's program and the grader's node that it meets over DDS; a context manager.
+
+    Name what the grader publishes and listens to, then enter:
+
+        with LockstepLab(workspace, "my_robot_package", "robot_controller",
+                         offers={"/scan": LaserScan}, listens={"/cmd_vel": Twist}) as lab:
+            lab.publish("/scan", scan)
+            lab.run(0.1)
+            lab.messages("/cmd_vel")
+
+    `StudentError` comes out of every method when the program crashes, hangs or goes over a limit.
+
+    Attributes:
+        node: the grader's node; its graph functions tell what the student's program really offers.
+        tick_ns: the step of ROS time that suits the program's timers.
+    """
+
+    tick_ns = 100_000_000
+
+    def __init__(
+        self,
+        workspace: Workspace,
+        package: str,
+        executable: str,
+        *,
+        offers: dict[str, type] | None = None,
+        listens: dict[str, type] | None = None,
+        domain: int = 0,
+    ) -> None:
+        self._program = workspace.executable(package, executable)
+        self._sandbox = workspace.sandbox(domain=domain)
+        self._offers, self._listens = offers or {}, listens or {}
+        self._domain = domain
+        self._publishers: dict[str, Any] = {}
+        self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
+
+    # What a kind of lab has to know.
+
+    @property
+    @abstractmethod
+    def process(self) -> Process:
+        """The sandboxed program."""
+
+    @property
+    @abstractmethod
+    def now_ns(self) -> int:
+        """ROS time in nanoseconds, as the program sees it."""
+
+    @property
+    @abstractmethod
+    def seconds(self) -> float:
+        """Seconds of ROS time since the program started."""
+
+    @abstractmethod
+    def step(self, dt_ns: int) -> None:
+        """Let the program live through the next `dt_ns` nanoseconds of ROS time."""
+
+    @abstractmethod
+    def _start(self) -> None:
+        """Start the program and wait until it is up."""
+
+    @abstractmethod
+    def _topics(self) -> set[str]:
+        """Return which topics of this lab the program has; the grader's endpoints are not made yet."""
+
+    @abstractmethod
+    def _connected(self, topics: set[str]) -> bool:
+        """Return whether the program's endpoints on `topics` see the grader's."""
+
+    # What they share.
+
+    def __enter__(self) -> Lab:
+        self._context = Context()
+        rclpy.init(args=[], context=self._context, domain_id=self._domain)
+        self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        try:
+            self._start()
+            self._meet()
+        except BaseException:
+            self.__exit__(None, None, None)
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+    @property
+    def output(self) -> str:
+        """What the program has printed and logged so far."""
+        return self.process.output
+
+    def takes(self, topic: str) -> bool:
+        """Return whether the program subscribes to a topic that the grader offers, with the right type."""
+        return topic in self._publishers
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Publish a message. Nothing happens if the program does not subscribe to the topic."""
+        if topic in self._publishers:
+            self._publishers[topic].publish(message)
+
+    def run(self, seconds: float) -> None:
+        """Let the program live through `seconds` of ROS time, tick by tick."""
+        left = round(seconds * 1e9)
+        while left > 0:
+            self.step(min(self.tick_ns, left))
+            left -= self.tick_ns
+
+    def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
+        """Return what the program published on `topic` after `since` and up to `until`, in seconds of ROS time."""
+        return [stamped for stamped in self._received[topic] if since < stamped.seconds <= until]
+
+    def _meet(self) -> None:
+        """Make endpoints that match the program's own, and wait until both sides see each other."""
+        topics = self._topics()
+        offered = {topic for topic in topics & set(self._offers) if self._same_type(topic, self._offers[topic])}
+        listened = {topic for topic in topics & set(self._listens) if self._same_type(topic, self._listens[topic])}
+        for topic in sorted(offered):
+            qos = _offered_qos(self._peers(topic))
+            self._publishers[topic] = self.node.create_publisher(self._offers[topic], topic, qos)
+        for topic in sorted(listened):
+            qos = _requested_qos(self._peers(topic))
+            self.node.create_subscription(self._listens[topic], topic, self._receiver(topic), qos)
+        ours = [publisher.get_subscription_count for publisher in self._publishers.values()]
+        self._await(lambda: all(count() for count in ours) and self._connected(offered | listened))
+
+    def _peers(self, topic: str) -> list[Any]:
+        find = (
+            self.node.get_subscriptions_info_by_topic
+            if topic in self._offers
+            else self.node.get_publishers_info_by_topic
+        )
+        return [peer for peer in find(topic) if peer.node_name != NAME]
+
+    def _same_type(self, topic: str, message: type) -> bool:
+        package, kind = message.__module__.split(".")[:2]
+        return all(peer.topic_type == f"{package}/{kind}/{message.__name__}" for peer in self._peers(topic))
+
+    def _receiver(self, topic: str) -> Callable[[Any], None]:
+        received = self._received[topic]
+        return lambda message: received.append(Stamped(self.seconds, message))
+
+    def _await(self, condition: Callable[[], bool], seconds: float = MEETING_SECONDS) -> None:
+        deadline = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > deadline:
+                raise GraderError(f"the grader and the student's node did not find each other within {seconds:.0f} s")
+            self._spin(0.005)
+
+    def _spin(self, timeout: float) -> None:
+        try:
+            task, _, _ = self._executor.wait_for_ready_callbacks(timeout_sec=timeout)
+        except TimeoutException:
+            return
+        task()
+
+
+def _offered_qos(peers: list[Any]) -> QoSProfile:
+    """Return a publisher's profile that serves every subscription, however much it asks for."""
+    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
+    )
+
+
+def _requested_qos(peers: list[Any]) -> QoSProfile:
+    """Return a subscription's profile that each publisher can serve, however little it offers."""
+    reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.VOLATILE,
+    )

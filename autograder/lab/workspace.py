@@ -1,0 +1,102 @@
+"""A built colcon workspace: which packages it has, and how its programs run in a sandbox."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.lockstep.stepper import HOST
+from autograder.ros import RosEnvironment
+from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.sandbox import Limits, Mount, Sandbox
+from autograder.sandbox.limits import NODE
+
+_SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """A colcon workspace after `colcon build`, in its isolated layout (`install/<package>/...`).
+
+    Attributes:
+        root: the workspace's folder, with `src` and `install`.
+        ros: the ROS 2 that it was built with.
+        scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
+        underlays: install folders of workspaces below this one, such as given message packages.
+    """
+
+    root: Path
+    ros: RosEnvironment
+    scratch: Path
+    underlays: tuple[Path, ...] = ()
+
+    @property
+    def install(self) -> Path:
+        """The install space."""
+        return self.root / "install"
+
+    def prefixes(self) -> tuple[Path, ...]:
+        """Return the prefix of each installed package, this workspace's before the underlays'."""
+        spaces = (self.install, *self.underlays)
+        return tuple(
+            prefix for space in spaces if space.is_dir() for prefix in sorted(space.iterdir()) if prefix.is_dir()
+        )
+
+    def executable(self, package: str, name: str) -> Path:
+        """Return the path of an installed executable.
+
+        Raises:
+            StudentError: the package does not install it; the sentence names what it installs instead.
+        """
+        folder = self.install / package / "lib" / package
+        path = folder / name
+        if path.is_file():
+            return path
+        there = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
+        found = f"it installs {', '.join(there)}" if there else "it installs no executable at all"
+        raise StudentError(
+            Diagnosis(
+                Kind.MISSING_EXECUTABLE,
+                f"lib/{package}/{name} was not installed: {found}. Look at console_scripts in setup.py and at "
+                "install_scripts in setup.cfg.",
+            )
+        )
+
+    def environment(self, *, domain: int) -> dict[str, str]:
+        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
+        prefixes = self.prefixes()
+        libraries = [str(prefix / "lib") for prefix in prefixes]
+        modules = [str(prefix / _SITE) for prefix in prefixes if (prefix / _SITE).is_dir()]
+        inherited = {name: os.environ[name] for name in WHEEL_BOOTSTRAP_VARIABLES if name in os.environ}
+        if self.ros.kind == "sourced":
+            modules += [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
+        return {
+            **inherited,
+            **self.ros.variables(overlays=prefixes, domain=domain, log_dir=self.scratch / "ros-log"),
+            "LD_LIBRARY_PATH": os.pathsep.join([*libraries, os.environ.get("LD_LIBRARY_PATH", "")]).strip(os.pathsep),
+            "PYTHONPATH": os.pathsep.join(modules),
+            "PYTHONHASHSEED": "0",
+            "PYTHONUNBUFFERED": "1",
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTHONNOUSERSITE": "1",
+            "PATH": os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"]),
+            "HOME": str(self.scratch),
+            "TMPDIR": str(self.scratch),
+            "LANG": "C.UTF-8",
+        }
+
+    def sandbox(self, *, domain: int, limits: Limits = NODE) -> Sandbox:
+        """Describe the sandbox of a node of this workspace: it reads the install space and meets peers over DDS."""
+        spaces = tuple(Mount(space) for space in (self.install, *self.underlays) if space.is_dir())
+        system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
+        return Sandbox(
+            workdir=self.scratch,
+            mounts=(*system, *spaces, Mount(self.scratch, writable=True), Mount(HOST)),
+            environment=self.environment(domain=domain),
+            network=True,
+            limits=limits,
+        )

@@ -1,0 +1,95 @@
+"""Why a student's program came to an end or to a stop, in a sentence that the student can act on."""
+
+from __future__ import annotations
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.lockstep.protocol import Crash
+from autograder.sandbox import Ending, Process
+
+_LINES = 25
+
+_PHASES = {
+    "import": (Kind.CRASHED_AT_IMPORT, "Your module could not be imported"),
+    "start": (Kind.CRASHED_AT_START, "Your node crashed while it was being set up, before it started to spin"),
+    "spin": (Kind.CRASHED_LATER, "Your node crashed while it was running"),
+}
+
+_LIMITS = {
+    Ending.WALL_TIME: (Kind.TIMED_OUT, "Your program took too long and was stopped: look for a loop that never ends."),
+    Ending.MEMORY: (
+        Kind.OUT_OF_MEMORY,
+        "Your program used more memory than a node needs and was stopped: look for a list that only ever grows.",
+    ),
+    Ending.THREADS: (
+        Kind.OUT_OF_MEMORY,
+        "Your program started far too many threads or processes and was stopped: start them once, not in a callback.",
+    ),
+    Ending.OUTPUT: (
+        Kind.FLOODED_OUTPUT,
+        "Your program printed without end and was stopped: log when something changes, "
+        "or give the logger throttle_duration_sec=1.0.",
+    ),
+}
+
+
+def diagnose_crash(crash: Crash) -> Diagnosis:
+    """Name a reported exception. A syntax error is told apart, with its line."""
+    if crash.type in ("SyntaxError", "IndentationError", "TabError"):
+        return Diagnosis(
+            Kind.SYNTAX_ERROR,
+            f"Python cannot read your file: {crash.message}. Mend that line, then run the file again.",
+            tail(crash.traceback),
+        )
+    kind, what = _PHASES[crash.phase]
+    reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
+    return Diagnosis(
+        kind,
+        f"{what}: {reason}. The last lines of the traceback say where.",
+        tail(crash.traceback),
+    )
+
+
+def diagnose_ending(process: Process) -> Diagnosis:
+    """Name the end of a program that reported no exception."""
+    detail = tail(process.output)
+    if process.ending in _LIMITS:
+        kind, sentence = _LIMITS[process.ending]
+        return Diagnosis(kind, sentence, detail)
+    status = process.returncode
+    how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
+    return Diagnosis(
+        Kind.ENDED_EARLY,
+        f"Your program ended by itself ({how}) while its node should have kept spinning: "
+        "main() has to call rclpy.spin(node), and nothing may call exit().",
+        detail,
+    )
+
+
+def stuck(kind: Kind, seconds: float, output: str) -> Diagnosis:
+    """Name a program that did not come back in time."""
+    if kind is Kind.NEVER_STARTED:
+        sentence = (
+            f"Your node did not start to spin within {seconds:.0f} s: look for a loop, an input() or a sleep in "
+            "__init__ or in main() before rclpy.spin(node)."
+        )
+    else:
+        sentence = (
+            f"Your node did not come back from a callback within {seconds:.0f} s: a callback must return quickly. "
+            "Look for a loop that waits, a time.sleep or a blocking call."
+        )
+    return Diagnosis(kind, sentence, tail(output))
+
+
+def tail(text: str, lines: int = _LINES) -> str:
+    """Return the last lines of a text."""
+    return "\n".join(text.strip().splitlines()[-lines:])
+
+
+def diagnose_output(process: Process) -> Diagnosis | None:
+    """Name a crash by the traceback that a program in real time printed, or None if it printed none."""
+    if "Traceback (most recent call last)" not in process.output:
+        return None
+    trace = process.output.rpartition("Traceback (most recent call last)")[2]
+    last = next((line for line in reversed(trace.strip().splitlines()) if line and not line[0].isspace()), "")
+    kind, _, message = last.partition(": ")
+    return diagnose_crash(Crash("start", kind, message, tail(trace)))

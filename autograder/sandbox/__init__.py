@@ -1,0 +1,16 @@
+"""Running students' code where it can do no harm.
+
+A submission is handled in a *cell* (`cell.py`): a trusted worker process in a user and network namespace that no
+other submission is in, with a scratch file system of limited size. Inside it every piece of student code runs in a
+*sandbox* (`bubblewrap.py`): its own process tree that sees a read-only system, the workspace and nothing else,
+watched while it runs (`process.py`) against `Limits`.
+
+Both exist in two tiers (`tiers.py`): `bubblewrap`, and the weaker `process` for machines that have no namespaces.
+"""
+
+from autograder.sandbox.limits import Limits
+from autograder.sandbox.process import Ending, Process
+from autograder.sandbox.spec import Mount, Sandbox
+from autograder.sandbox.tiers import Tier, best_tier, require
+
+__all__ = ["Ending", "Limits", "Mount", "Process", "Sandbox", "Tier", "best_tier", "require"]

@@ -1,0 +1,32 @@
+"""Starting a sandboxed command in the tier that this process works in."""
+
+from __future__ import annotations
+
+import os
+
+from autograder.sandbox import bubblewrap
+from autograder.sandbox.process import Process
+from autograder.sandbox.spec import Sandbox
+from autograder.sandbox.tiers import Tier
+
+TIER_VARIABLE = "AUTOGRADER_TIER"
+
+
+def current_tier() -> Tier:
+    """Return the tier of the cell that this process is in; `process` outside any cell."""
+    return Tier(os.environ.get(TIER_VARIABLE, Tier.PROCESS.value))
+
+
+def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ()) -> Process:
+    """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can."""
+    if current_tier() is Tier.BUBBLEWRAP:
+        return Process(
+            bubblewrap.sandbox(command, spec), spec.limits, environment={"PATH": os.defpath}, pass_fds=pass_fds
+        )
+    return Process(
+        [*bubblewrap.rlimits(spec.limits), *command],
+        spec.limits,
+        environment={"PATH": os.defpath, **spec.environment},
+        pass_fds=pass_fds,
+        cwd=spec.workdir,
+    )

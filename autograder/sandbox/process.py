@@ -1,0 +1,232 @@
+"""A watched process: its output is bounded, its tree is measured while it runs, and nothing of it survives."""
+
+from __future__ import annotations
+
+import os
+import selectors
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from autograder.sandbox.limits import Limits
+
+_TICK = 0.1  # s between two looks at the clock while the process is silent
+_MEASURE = 0.25  # s between two measurements of the tree
+_PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+class Ending(str, Enum):
+    """Why a process is no more."""
+
+    EXITED = "exited"
+    KILLED = "killed"
+    WALL_TIME = "wall_time"
+    MEMORY = "memory"
+    THREADS = "threads"
+    OUTPUT = "output"
+
+
+@dataclass(frozen=True)
+class Tree:
+    """What a process and its descendants use right now."""
+
+    pids: tuple[int, ...]
+    threads: int
+    memory: int
+
+
+def measure(root: int) -> Tree:
+    """Measure the tree below `root`: process ids, threads, resident bytes. Processes that vanish are left out."""
+    pids: list[int] = []
+    threads = memory = 0
+    pending = [root]
+    while pending:
+        pid = pending.pop()
+        folder = Path("/proc") / str(pid)
+        try:
+            tasks = os.listdir(folder / "task")
+            resident = int((folder / "statm").read_text().split()[1])
+        except (OSError, IndexError, ValueError):
+            continue
+        pids.append(pid)
+        threads += len(tasks)
+        memory += resident * _PAGE
+        for task in tasks:
+            try:
+                pending += [int(child) for child in (folder / "task" / task / "children").read_text().split()]
+            except OSError:
+                continue
+    return Tree(tuple(pids), threads, memory)
+
+
+class Process:
+    """A started command, watched by a thread of its own until it has ended.
+
+    Use it as a context manager: leaving the block kills what is still alive.
+    """
+
+    def __init__(
+        self,
+        command: list[str],
+        limits: Limits,
+        *,
+        environment: Mapping[str, str] | None = None,
+        pass_fds: tuple[int, ...] = (),
+        cwd: Path | None = None,
+    ) -> None:
+        self._limits = limits
+        self._output = bytearray()
+        self._ending: Ending | None = None
+        self._lock = threading.Lock()
+        self._started = time.monotonic()
+        self._popen = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=None if environment is None else dict(environment),
+            pass_fds=pass_fds,
+            cwd=cwd,
+            start_new_session=True,
+        )
+        self._ended = threading.Event()
+        self._watcher = threading.Thread(target=self._watch, name=f"watch-{self._popen.pid}", daemon=True)
+        self._watcher.start()
+
+    @property
+    def pid(self) -> int:
+        """The process id of the outermost process."""
+        return self._popen.pid
+
+    @property
+    def output(self) -> str:
+        """What it has written so far, at most `Limits.output` bytes; bytes that are no UTF-8 are replaced."""
+        with self._lock:
+            return self._output.decode("utf-8", errors="replace")
+
+    @property
+    def ending(self) -> Ending | None:
+        """Why it ended, or None while it runs."""
+        return self._ending if self._ended.is_set() else None
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit status; negative for a signal. None while it runs."""
+        return self._popen.returncode if self._ended.is_set() else None
+
+    def wait(self, timeout: float) -> bool:
+        """Wait until it has ended, at most `timeout` seconds; return whether it has."""
+        return self._ended.wait(timeout)
+
+    def innermost(self) -> int:
+        """Return the process id of the student's own process below the sandbox's helpers."""
+        pid = self.pid
+        while _name(pid) == "bwrap" and (children := _children(pid)):
+            pid = children[0]
+        return pid
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send a signal to the student's own process. Does nothing once it has ended."""
+        if not self._ended.is_set():
+            try:
+                os.kill(self.innermost(), number)
+            except ProcessLookupError:
+                return
+
+    def kill(self) -> None:
+        """End the whole tree now."""
+        self._end(Ending.KILLED)
+        self._ended.wait(10.0)
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
+        self._watcher.join(10.0)
+
+    def _end(self, why: Ending) -> None:
+        if self._ending is None and self._popen.poll() is None:
+            self._ending = why
+        # In the bubblewrap tier the first kill takes the pid namespace with it; the rest serves the weaker tier.
+        for pid in reversed(measure(self._popen.pid).pids):
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                continue
+        try:
+            os.killpg(self._popen.pid, signal.SIGKILL)
+        except (ProcessLookupError, PermissionError):
+            return
+
+    def _watch(self) -> None:
+        assert self._popen.stdout is not None
+        stream = self._popen.stdout.fileno()
+        os.set_blocking(stream, False)
+        measured = 0.0
+        with selectors.DefaultSelector() as selector:
+            selector.register(stream, selectors.EVENT_READ)
+            open_stream = True
+            while self._popen.poll() is None:
+                if open_stream:
+                    if selector.select(_TICK):
+                        open_stream = self._read(stream)
+                else:
+                    self._wait_for_exit(_TICK)
+                now = time.monotonic()
+                if now - self._started > self._limits.wall_seconds:
+                    self._end(Ending.WALL_TIME)
+                if now - measured > _MEASURE:
+                    measured = now
+                    tree = measure(self._popen.pid)
+                    if tree.memory > self._limits.memory:
+                        self._end(Ending.MEMORY)
+                    elif tree.threads > self._limits.threads:
+                        self._end(Ending.THREADS)
+            # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
+            while open_stream and selector.select(0):
+                open_stream = self._read(stream)
+        self._popen.stdout.close()
+        self._popen.wait()
+        self._ending = self._ending or Ending.EXITED
+        self._ended.set()
+
+    def _wait_for_exit(self, timeout: float) -> None:
+        try:
+            self._popen.wait(timeout)
+        except subprocess.TimeoutExpired:
+            return
+
+    def _read(self, stream: int) -> bool:
+        try:
+            chunk = os.read(stream, 65536)
+        except BlockingIOError:
+            return True
+        if not chunk:
+            return False
+        with self._lock:
+            room = self._limits.output - len(self._output)
+            self._output += chunk[: max(room, 0)]
+        if len(chunk) > room:
+            self._end(Ending.OUTPUT)
+            return self._popen.poll() is None
+        return True
+
+
+def _children(pid: int) -> list[int]:
+    try:
+        return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:
+        return []
+
+
+def _name(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/comm").read_text().strip()
+    except OSError:
+        return ""

@@ -1,0 +1,38 @@
+"""What a sandbox shows to the code in it: a description, no effects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from autograder.sandbox.limits import NODE, Limits
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A folder or file of the machine that the sandbox sees at the same path."""
+
+    path: Path
+    writable: bool = False
+
+
+@dataclass(frozen=True)
+class Sandbox:
+    """One sandbox: what is seen, what may be used, with which environment.
+
+    Attributes:
+        mounts: beyond the read-only system and the Python that runs the grader.
+        hidden: folders inside a mount that are covered by an empty one.
+        workdir: the working folder; it must lie in a mount.
+        environment: all environment variables that the code gets, nothing is inherited.
+        network: True shares the cell's loopback (to meet the grader over DDS), False has none at all.
+        limits: what the tree may use.
+    """
+
+    workdir: Path
+    mounts: tuple[Mount, ...] = ()
+    hidden: tuple[Path, ...] = ()
+    environment: Mapping[str, str] = field(default_factory=dict)
+    network: bool = False
+    limits: Limits = NODE
