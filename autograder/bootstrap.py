@@ -217,11 +217,11 @@ class SetUp:
 
     def _install(self, name: str) -> None:
         lock = (self.root / name).read_text()
-        chosen = self.venv / name
-        chosen.write_text(without_ros(lock) if self.sourced else lock)
+        (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
         say(f"installing the pinned packages of {name}, a minute or two")
         failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
-        pinned = ("--no-compile", "--require-hashes", "--requirement", str(chosen))
+        # The lock holds for 3.10 to 3.13; rtamt's own claim to end at 3.12 would stop pip on 3.13.
+        pinned = ("--ignore-requires-python", "--no-compile", "--require-hashes", "--requirement", str(chosen))
         self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
         say("compiling them")
         # Its exit status is not asked: some packages ship templates and old Python that never compile.
