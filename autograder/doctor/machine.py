@@ -1,0 +1,135 @@
+"""Findings about the machine: Python, compilers, tools, the sandbox's namespaces, disk space."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autograder.doctor.finding import Finding, Status
+from autograder.doctor.system import System
+
+ROOMY_BYTES = 2 * 1024**3
+
+_SYSCTL = Path("/proc/sys")
+# Kernel settings that forbid user namespaces: the file, the value that forbids, the command that allows.
+_FORBIDDING = (
+    (
+        "kernel.apparmor_restrict_unprivileged_userns",
+        "1",
+        "AppArmor restricts user namespaces, as Ubuntu does since 24.04",
+        "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
+    ),
+    (
+        "kernel.unprivileged_userns_clone",
+        "0",
+        "the kernel forbids user namespaces to users",
+        "sudo sysctl -w kernel.unprivileged_userns_clone=1",
+    ),
+    (
+        "user.max_user_namespaces",
+        "0",
+        "the kernel allows no user namespaces at all",
+        "sudo sysctl -w user.max_user_namespaces=15000",
+    ),
+)
+_CONTAINER_MARKS = (Path("/.dockerenv"), Path("/run/.containerenv"))
+_CONTAINER_OPTIONS = (
+    "docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined "
+    "--security-opt systempaths=unconfined"
+)
+
+
+def python(system: System) -> Finding:
+    """Look at the interpreter and the platform: ROS 2 Jazzy's wheels serve some only."""
+    version = ".".join(map(str, system.python))
+    name, machine = system.platform
+    if system.platform != ("Linux", "x86_64"):
+        found = f"{name} {machine}: the course runs on Linux x86-64; use a container or a JupyterHub"
+        return Finding("Python", Status.MISSING, found, "devcontainer up --workspace-folder .")
+    if not (3, 10) <= system.python[:2] <= (3, 13):
+        found = f"Python {version}: ROS 2 Jazzy is there for Python 3.10 to 3.13"
+        return Finding("Python", Status.MISSING, found, "make setup PYTHON=python3.12")
+    return Finding("Python", Status.OK, f"Python {version} on {name} {machine}")
+
+
+def environment(system: System) -> Finding:
+    """Look at whether this is a virtual environment: in the system's own Python, versions are not the pinned ones."""
+    if system.in_venv:
+        return Finding("environment", Status.OK, f"the virtual environment {system.prefix}")
+    found = f"not a virtual environment ({system.prefix}): nothing holds the packages at their pinned versions"
+    return Finding("environment", Status.WEAK, found, "make setup")
+
+
+def compiler(system: System) -> Finding:
+    """Look for the C and C++ compilers that turn message definitions into libraries."""
+    missing = [command for command in ("gcc", "g++") if system.run([command, "--version"], {}).status != 0]
+    if missing:
+        found = f"{' and '.join(missing)} not found: message packages cannot be compiled"
+        return Finding("compiler", Status.MISSING, found, "sudo apt-get install g++")
+    return Finding("compiler", Status.OK, system.run(["g++", "--version"], {}).output.splitlines()[0])
+
+
+def build_tools(system: System) -> Finding:
+    """Look for colcon and CMake."""
+    missing = [command for command in ("colcon", "cmake") if system.which(command) is None]
+    if missing:
+        return Finding("build tools", Status.MISSING, f"{' and '.join(missing)} not found", "make setup")
+    return Finding("build tools", Status.OK, f"colcon in {system.which('colcon')}, cmake in {system.which('cmake')}")
+
+
+def notebooks(system: System) -> Finding:
+    """Look for JupyterLab and nbgrader."""
+    versions = {name: system.package(name) for name in ("jupyterlab", "nbgrader", "ipykernel")}
+    missing = [name for name, version in versions.items() if version is None]
+    if missing:
+        return Finding("notebooks", Status.MISSING, f"{', '.join(missing)} not installed", "make setup")
+    return Finding("notebooks", Status.OK, ", ".join(f"{name} {version}" for name, version in versions.items()))
+
+
+def isolation(system: System) -> Finding:
+    """Try the two namespaces that grading nests: one around a submission, one around the student's code."""
+    if system.which("bwrap") is None:
+        found = "bubblewrap is not installed: submissions cannot be graded in isolation"
+        return Finding("isolation", Status.MISSING, found, "sudo apt-get install bubblewrap")
+    outer = ["bwrap", "--unshare-user", "--unshare-net", "--dev-bind", "/", "/"]
+    inner = ["bwrap", "--unshare-user", "--unshare-pid", "--ro-bind", "/", "/", "--proc", "/proc"]
+    single = system.run([*outer, "true"], {})
+    nested = system.run([*outer, *inner, "true"], {}) if single.status == 0 else single
+    if nested.status == 0:
+        return Finding("isolation", Status.OK, "bubblewrap makes namespaces, one inside the other")
+    which = "one namespace inside another" if single.status == 0 else "namespaces"
+    why, mend = _forbidden(system)
+    found = f"bubblewrap cannot make {which} ({nested.last_line}): {why}; grading offers its weaker tier only"
+    return Finding("isolation", Status.WEAK, found, mend)
+
+
+def _forbidden(system: System) -> tuple[str, str]:
+    for setting, value, why, mend in _FORBIDDING:
+        if (system.read(_SYSCTL / setting.replace(".", "/")) or "").strip() == value:
+            return why, mend
+    if any(system.read(mark) is not None for mark in _CONTAINER_MARKS):
+        return "this container's security profile forbids it", _CONTAINER_OPTIONS
+    return "the kernel or a security module forbids it", "sudo dmesg | tail"
+
+
+def space(system: System) -> Finding:
+    """Look at whether there is room for workspaces and builds."""
+    if not system.writable(system.tmp):
+        found = f"{system.tmp} cannot be written to: workspaces and builds go there"
+        return Finding("disk", Status.MISSING, found, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
+    free = system.free(system.tmp)
+    told = f"{free / 1024**3:.1f} GB free in {system.tmp}"
+    if free < ROOMY_BYTES:
+        found = f"{told}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
+        return Finding("disk", Status.WEAK, found, f"df -h {system.tmp}")
+    return Finding("disk", Status.OK, told)
+
+
+def browser(system: System) -> Finding:
+    """Look for a browser that the browser tests can drive; nothing else needs it."""
+    for command in ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"):
+        if system.which(command) is not None:
+            ran = system.run([command, "--version"], {})
+            if ran.status == 0:
+                return Finding("browser", Status.OK, ran.last_line)
+    found = "no Chromium that starts: only the tests that drive a browser need it"
+    return Finding("browser", Status.WEAK, found, "sudo apt-get install chromium")

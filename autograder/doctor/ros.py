@@ -1,0 +1,122 @@
+"""Findings about ROS 2: which one, whole or not, and the variables that quietly break it."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+from autograder.doctor.finding import Finding, Status
+from autograder.doctor.system import System
+from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
+
+JAZZY_RCLPY = "7.1"
+CLEAN_SHELL = 'env -i HOME="$HOME" PATH="$PATH" TERM="$TERM" bash --norc'
+
+_PROBE = """
+import rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("doctor")
+node.create_publisher(String, "doctor", 1)
+rclpy.shutdown()
+"""
+
+# Variables that rclpy or Fast DDS obey without a word, and what they do to the course.
+_STRAY = {
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "keeps nodes from meeting inside the sandbox",
+    "ROS_LOCALHOST_ONLY": "keeps nodes from meeting inside the sandbox",
+    "ROS_STATIC_PEERS": "sends discovery to other machines",
+    "ROS_DISCOVERY_SERVER": "sends discovery to a server",
+    "FASTRTPS_DEFAULT_PROFILES_FILE": "changes the DDS transport",
+    "FASTDDS_DEFAULT_PROFILES_FILE": "changes the DDS transport",
+    "ROS_SECURITY_ENABLE": "asks every node for keys",
+}
+_HARMLESS = {"ROS_AUTOMATIC_DISCOVERY_RANGE": ("SUBNET",), "ROS_LOCALHOST_ONLY": ("0",)}
+
+
+def examine(system: System) -> list[Finding]:
+    """Return the findings about ROS 2; without one only that is told, and the variables."""
+    try:
+        ros = system.find_ros()
+    except WrongDistroError as error:
+        return [Finding("ROS 2", Status.MISSING, str(error), CLEAN_SHELL), log_folder(system, None), variables(system)]
+    except RosNotFoundError as error:
+        return [Finding("ROS 2", Status.MISSING, str(error), "make setup"), log_folder(system, None), variables(system)]
+    return [
+        installation(system, ros),
+        *([cmake_files(system, ros)] if ros.kind == "wheels" else []),
+        log_folder(system, ros),
+        start(system, ros),
+        variables(system),
+    ]
+
+
+def installation(system: System, ros: RosEnvironment) -> Finding:
+    """Look at which ROS 2 this is: Jazzy, and only one of wheels and sourced."""
+    manifests = [system.read(prefix / "share" / "rclpy" / "package.xml") for prefix in ros.prefixes]
+    version = re.search(r"<version>\s*([^<\s]+)", next((text for text in manifests if text), ""))
+    if version is None:
+        return Finding("ROS 2", Status.MISSING, f"{ros.describe()}, but its rclpy has no package.xml", "make setup")
+    told = f"{ros.describe()}, rclpy {version[1]}"
+    if not version[1].startswith(f"{JAZZY_RCLPY}."):
+        other = f"rclpy {version[1]} in {ros.prefixes[0]} is not Jazzy's, which is {JAZZY_RCLPY}"
+        return Finding("ROS 2", Status.MISSING, other, "make setup")
+    if ros.kind == "sourced" and system.package("ros-rclpy") is not None:
+        both = f"{told}; the wheels are installed as well, and the two mix their libraries"
+        return Finding("ROS 2", Status.WEAK, both, "make setup")
+    return Finding("ROS 2", Status.OK, told)
+
+
+def cmake_files(system: System, ros: RosEnvironment) -> Finding:
+    """Look at whether the wheels' CMake files were mended; message packages do not compile before."""
+    count = system.baked(ros.prefixes[0])
+    if count:
+        found = f"{count} CMake files of the wheels name folders of another machine: no message package compiles"
+        return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.mend")
+    return Finding("CMake files", Status.OK, "the wheels' CMake files point at this environment")
+
+
+def log_folder(system: System, ros: RosEnvironment | None) -> Finding:
+    """Look at ROS_LOG_DIR, without which `rclpy.init` raises."""
+    chosen = system.environ.get("ROS_LOG_DIR")
+    folder = Path(chosen or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
+    if system.writable(folder):
+        return Finding("ROS logs", Status.OK, f"written to {folder}")
+    found = f"the folder of ROS's log files, {folder}, cannot be written to"
+    return Finding(
+        "ROS logs", Status.MISSING, found, "unset ROS_LOG_DIR" if chosen else "export ROS_LOG_DIR=~/.ros/log"
+    )
+
+
+def start(system: System, ros: RosEnvironment) -> Finding:
+    """Start a node with a publisher in a child process, as every chapter does."""
+    environment = ros.variables()
+    if "ROS_LOG_DIR" in system.environ:
+        environment["ROS_LOG_DIR"] = system.environ["ROS_LOG_DIR"]
+    ran = system.run([sys.executable, "-c", _PROBE], environment)
+    if ran.status == 0:
+        return Finding("rclpy", Status.OK, "a node starts, publishes and stops")
+    mend = "make setup" if ros.kind == "wheels" else "source /opt/ros/jazzy/setup.bash"
+    return Finding("rclpy", Status.MISSING, f"a node does not start: {ran.last_line}", mend)
+
+
+def variables(system: System) -> Finding:
+    """Look for variables, left by another project's shell, that change how nodes meet."""
+    environ = system.environ
+    stray = {
+        name: effect
+        for name, effect in _STRAY.items()
+        if environ.get(name) and environ[name] not in _HARMLESS.get(name, ())
+    }
+    middleware = environ.get("RMW_IMPLEMENTATION", "")
+    if middleware not in ("", "rmw_fastrtps_cpp"):
+        stray["RMW_IMPLEMENTATION"] = f"asks for {middleware}, the course runs on rmw_fastrtps_cpp"
+    domain = environ.get("ROS_DOMAIN_ID", "")
+    if domain and not (domain.isdecimal() and int(domain) <= 232):
+        stray["ROS_DOMAIN_ID"] = f"is {domain}, a domain is 0 to 232"
+    if not stray:
+        return Finding("ROS variables", Status.OK, "none that changes how nodes meet")
+    stops = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
+    found = "; ".join(f"{name} {effect}" for name, effect in stray.items())
+    return Finding("ROS variables", Status.MISSING if stops else Status.WEAK, found, f"unset {' '.join(stray)}")
