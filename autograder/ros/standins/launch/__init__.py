@@ -1,0 +1,70 @@
+"""Stand-in for `launch`, which cannot be installed by pip: the part of it that this course's launch files use.
+
+It is imported only where the real package is not. Names, signatures, semantics and errors are those of
+`launch` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch/); the code is the course's own. Covered are
+Python launch files: descriptions, arguments, substitutions, conditions, groups, includes, processes, events
+and timers. What is not covered, XML and YAML launch files above all, raises an error that names it. For the
+real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
+"""
+
+from __future__ import annotations
+
+from standin_notice import guard
+
+from . import (
+    actions,
+    conditions,
+    descriptions,
+    event_handlers,
+    events,
+    launch_description_sources,
+    logging,
+    substitutions,
+    utilities,
+)
+from .action import Action
+from .condition import Condition
+from .event import Event
+from .event_handler import EventHandler
+from .exceptions import InvalidLaunchFileError
+from .launch_context import LaunchContext
+from .launch_description import LaunchDescription
+from .launch_description_entity import LaunchDescriptionEntity, SomeEntitiesType
+from .launch_description_source import LaunchDescriptionSource
+from .launch_introspector import LaunchIntrospector
+from .launch_service import LaunchService
+from .substitution import SomeSubstitutionsType, SomeSubstitutionsType_types_tuple, Substitution
+
+SomeActionsType = SomeEntitiesType
+
+__all__ = [
+    "Action",
+    "Condition",
+    "Event",
+    "EventHandler",
+    "InvalidLaunchFileError",
+    "LaunchContext",
+    "LaunchDescription",
+    "LaunchDescriptionEntity",
+    "LaunchDescriptionSource",
+    "LaunchIntrospector",
+    "LaunchService",
+    "SomeActionsType",
+    "SomeEntitiesType",
+    "SomeSubstitutionsType",
+    "SomeSubstitutionsType_types_tuple",
+    "Substitution",
+    "actions",
+    "conditions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "launch_description_sources",
+    "logging",
+    "substitutions",
+    "utilities",
+]
+
+_FRONTENDS = "XML and YAML launch files are read by launch_xml and launch_yaml, which have no stand-in"
+
+__getattr__ = guard(__name__, {"frontend": _FRONTENDS})

@@ -1,0 +1,151 @@
+"""One child process: started in a session of its own, read to the end, and never left behind.
+
+The child leads its own process group, so that Ctrl-C in a terminal reaches the launch alone, which passes
+exactly one SIGINT on to the whole group: a shell, a debugger or a wrapper ends together with what it runs.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+# How long whatever a finished process left running in its group has, before it is killed.
+_LEFTOVER_SECONDS = 2.0
+# How long output may still come after all of the group is gone; only a process that left the group sends any.
+_DRAIN_SECONDS = 1.0
+OutputCallback = Callable[[str, bytes], None]
+
+
+class _Reader(asyncio.Protocol):
+    """Passes what arrives on one pipe to a callback, and knows when the pipe has ended."""
+
+    def __init__(self, source: str, on_output: OutputCallback) -> None:
+        self._source = source
+        self._on_output = on_output
+        self.ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def data_received(self, data: bytes) -> None:
+        self._on_output(self._source, data)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        if not self.ended.done():
+            self.ended.set_result(None)
+
+
+class _Exit(asyncio.SubprocessProtocol):
+    """Knows when the process has exited."""
+
+    def __init__(self) -> None:
+        self.exited: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def process_exited(self) -> None:
+        self.exited.set_result(None)
+
+
+class ChildProcess:
+    """A running child; `start` makes one."""
+
+    def __init__(
+        self, transport: asyncio.SubprocessTransport, exited: asyncio.Future[None], outputs: dict[str, int]
+    ) -> None:
+        self._transport = transport
+        self._outputs = outputs
+        self._readers: list[tuple[asyncio.ReadTransport, _Reader]] = []
+        self.exited = exited
+        self.pid: int = transport.get_pid()
+
+    @classmethod
+    async def start(
+        cls, cmd: Sequence[str], *, cwd: str | None, env: dict[str, str] | None, shell: bool, emulate_tty: bool
+    ) -> ChildProcess:
+        """Start `cmd`, by a shell or not, with pipes or pseudo-terminals for its output.
+
+        Raises OSError if it cannot be started.
+        """
+        loop = asyncio.get_running_loop()
+        pairs = {source: os.openpty() if emulate_tty else os.pipe() for source in ("stdout", "stderr")}
+        ours = {source: pair[0] for source, pair in pairs.items()}
+        theirs = {source: pair[1] for source, pair in pairs.items()}
+        options: dict[str, Any] = {
+            "stdin": asyncio.subprocess.PIPE,
+            **theirs,
+            "cwd": cwd,
+            "env": env,
+            "start_new_session": True,
+        }
+        try:
+            if shell:
+                transport, protocol = await loop.subprocess_shell(_Exit, " ".join(cmd), **options)
+            else:
+                transport, protocol = await loop.subprocess_exec(_Exit, *cmd, **options)
+        except BaseException:
+            for descriptor in ours.values():
+                os.close(descriptor)
+            raise
+        finally:
+            for descriptor in theirs.values():
+                os.close(descriptor)
+        return cls(transport, protocol.exited, ours)
+
+    async def read(self, on_output: OutputCallback) -> None:
+        """Let `on_output` have 'stdout' or 'stderr' and the bytes from there, as they come."""
+        loop = asyncio.get_running_loop()
+        for source in tuple(self._outputs):
+            pipe = os.fdopen(self._outputs.pop(source), "rb", 0)
+            protocol = partial(_Reader, source, on_output)
+            self._readers.append(await loop.connect_read_pipe(protocol, pipe))
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit code, negative for a signal, or None while the process runs."""
+        return self._transport.get_returncode()
+
+    def send_signal(self, number: int) -> bool:
+        """Send a signal to the process and all it started; return whether it still ran."""
+        return self.returncode is None and self._signal_group(number)
+
+    async def finish(self) -> int:
+        """Wait for the exit, end what the process left behind, and return its exit code."""
+        await self.exited
+        await self._end_leftovers()
+        await asyncio.wait([reader.ended for _, reader in self._readers], timeout=_DRAIN_SECONDS)
+        self.close()
+        code = self.returncode
+        assert code is not None
+        return code
+
+    def close(self) -> None:
+        """Kill whatever of the group still lives, and let go of the pipes."""
+        self._signal_group(signal.SIGKILL)
+        for transport, _ in self._readers:
+            transport.close()
+        while self._outputs:
+            os.close(self._outputs.popitem()[1])
+        self._transport.close()
+
+    async def _end_leftovers(self) -> None:
+        loop = asyncio.get_running_loop()
+        deadline = loop.time() + _LEFTOVER_SECONDS
+        alive = self._signal_group(signal.SIGTERM)
+        while alive and loop.time() < deadline:
+            await asyncio.sleep(0.02)
+            alive = self._signal_group(0)
+        self._signal_group(signal.SIGKILL)
+
+    def _signal_group(self, number: int) -> bool:
+        """Send a signal to the group (0 only asks); return whether the group has any member.
+
+        The kernel does not reuse the number of a group that has members, and hands new numbers out in turn.
+        """
+        try:
+            os.killpg(self.pid, number)
+        except ProcessLookupError:
+            return False
+        except PermissionError:
+            # A member that changed its user: there, but not ours to signal.
+            return True
+        return True

@@ -1,0 +1,88 @@
+"""The base of all actions."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from .condition import Condition
+from .launch_context import LaunchContext
+from .launch_description_entity import LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from .launch_description_entity import OptionalEntities
+
+
+class Action(LaunchDescriptionEntity):
+    """Something to do, on condition; when it is done, an ExecutionComplete event tells so."""
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        if condition is not None and not isinstance(condition, Condition):
+            raise TypeError(
+                f"{type(self).__name__}: condition must be a launch.Condition such as IfCondition(...), "
+                f"got {type(condition).__name__}"
+            )
+        self.__condition = condition
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition under which the action is executed."""
+        return self.__condition
+
+    def describe(self) -> str:
+        """Return a description of the action."""
+        return f"{type(self).__name__}('{hex(id(self))}')"
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities that this action yields."""
+        return []
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the sub-entities, unless a condition makes them uncertain."""
+        return self.get_sub_entities() if self.__condition is None else []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """Return the sub-entities that a condition makes uncertain."""
+        if self.__condition is None:
+            return []
+        return [(f"Conditionally included by {self.describe()}", self.get_sub_entities())]
+
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
+        """Execute the action if its condition holds."""
+        if self.__condition is not None and not self.__condition.evaluate(context):
+            return None
+        try:
+            return as_list(self.execute(context))
+        finally:
+            self.__announce_completion(context)
+
+    def __announce_completion(self, context: LaunchContext) -> None:
+        from .events import ExecutionComplete
+
+        event = ExecutionComplete(action=self)
+        if not context.would_handle_event(event):
+            return
+        future = self.get_asyncio_future()
+        if future is None:
+            context.emit_event_sync(event)
+        else:
+            future.add_done_callback(lambda _: context.emit_event_sync(event))
+
+    def execute(self, context: LaunchContext) -> OptionalEntities:
+        """Do it; return entities to visit next."""
+        return None
+
+
+def as_list(entities: OptionalEntities) -> list[LaunchDescriptionEntity] | None:
+    """Return one entity, several or none of them as a list or None."""
+    if entities is None:
+        return None
+    return [entities] if isinstance(entities, LaunchDescriptionEntity) else list(entities)
+
+
+def the_loop(context: LaunchContext) -> asyncio.AbstractEventLoop:
+    """Return the loop of the running launch; RuntimeError if none runs."""
+    if context.asyncio_loop is None:
+        raise RuntimeError("the launch context has no event loop: it is used outside of a running LaunchService")
+    return context.asyncio_loop

@@ -1,0 +1,183 @@
+"""Actions on launch configurations: declare, set, save, restore and scope them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ..action import Action
+from ..launch_context import LaunchContext
+from ..launch_description_entity import LaunchDescriptionEntity
+from ..logging import get_logger
+from ..substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from .environment import PopEnvironment, PushEnvironment, ResetEnvironment
+
+
+class DeclareLaunchArgument(Action):
+    """Declares an argument, whose value is the launch configuration of the same name.
+
+    The default, if there is one, is performed when the declaration is executed and nobody has set a value.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: SomeSubstitutionsType | None = None,
+        description: str | None = None,
+        choices: Iterable[str] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.name = name
+        self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        self.choices = None if choices is None else list(choices)
+        if self.choices is not None:
+            if not self.choices:
+                self._refuse("Provided choices arg is empty. Use None to ignore the choice list.")
+            if isinstance(default_value, str) and default_value not in self.choices:
+                self._refuse(f'Provided default_value "{default_value}" is not in provided choices "{self.choices}".')
+        self.description = self._described(description)
+        # Set while the arguments of a launch description are collected.
+        self._conditionally_included = False
+
+    def _described(self, description: str | None) -> str:
+        if self.choices is None:
+            return "no description given" if description is None else description
+        if description is None:
+            return f"One of: {self.choices}"
+        return f"{description}{'' if description.endswith('.') else '.'} Valid choices are: {self.choices}"
+
+    @staticmethod
+    def _refuse(message: str, *, logged: str | None = None) -> None:
+        get_logger("launch.actions.declare_launch_argument").error(logged or message)
+        raise RuntimeError(message)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set the default if there is no value; RuntimeError for a missing or an invalid value."""
+        if self.name not in context.launch_configurations:
+            if self.default_value is None:
+                self._refuse(
+                    f'Required launch argument "{self.name}" was not provided.',
+                    logged=f'Required launch argument "{self.name}" (description: "{self.description}") '
+                    "was not provided",
+                )
+            else:
+                context.launch_configurations[self.name] = perform_substitutions(context, self.default_value)
+        value = context.launch_configurations[self.name]
+        if self.choices is not None and value not in self.choices:
+            self._refuse(
+                f'Argument "{self.name}" provided value "{value}" is not valid. Valid options are: {self.choices}'
+            )
+
+
+class SetLaunchConfiguration(Action):
+    """Sets a launch configuration."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name = normalize_to_list_of_substitutions(name)
+        self.value = normalize_to_list_of_substitutions(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it."""
+        name = perform_substitutions(context, self.name)
+        context.launch_configurations[name] = perform_substitutions(context, self.value)
+
+
+class UnsetLaunchConfiguration(Action):
+    """Removes a launch configuration, if it is there."""
+
+    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove it."""
+        context.launch_configurations.pop(perform_substitutions(context, self.name), None)
+
+
+class PushLaunchConfigurations(Action):
+    """Saves the launch configurations."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Save them."""
+        context._push_launch_configurations()
+
+
+class PopLaunchConfigurations(Action):
+    """Restores the launch configurations that were saved last."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Restore them."""
+        context._pop_launch_configurations()
+
+
+class ResetLaunchConfigurations(Action):
+    """Removes all launch configurations but those given, whose values are performed before."""
+
+    def __init__(
+        self,
+        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._kept = [
+            (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
+            for name, value in (launch_configurations or {}).items()
+        ]
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove them."""
+        kept: dict[str, str] = {
+            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in self._kept
+        }
+        context.launch_configurations.clear()
+        context.launch_configurations.update(kept)
+
+
+class GroupAction(Action):
+    """Executes actions together, by default in a scope of their own.
+
+    What they change of launch configurations and environment ends with the scope. Without `forwarding` they
+    see none of those from outside, except the `launch_configurations` given here.
+    """
+
+    def __init__(
+        self,
+        actions: Iterable[LaunchDescriptionEntity],
+        *,
+        scoped: bool = True,
+        forwarding: bool = True,
+        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        configurations = launch_configurations or {}
+        sets = [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
+        inside: list[LaunchDescriptionEntity] = [*sets, *actions]
+        if scoped and forwarding:
+            inside = [PushLaunchConfigurations(), PushEnvironment(), *inside]
+        elif scoped:
+            inside = [
+                PushLaunchConfigurations(),
+                PushEnvironment(),
+                ResetEnvironment(),
+                ResetLaunchConfigurations(configurations),
+                *inside[len(sets) :],
+            ]
+        if scoped:
+            inside += [PopEnvironment(), PopLaunchConfigurations()]
+        self._entities = inside
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the actions, with those that make the scope around them."""
+        return self._entities
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """Return the actions, to be executed next."""
+        return self._entities

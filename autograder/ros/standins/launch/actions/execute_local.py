@@ -1,0 +1,287 @@
+"""The action that runs a process and looks after it until it has ended."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import traceback
+from collections.abc import Mapping
+from typing import Any, cast
+
+from .._output import OutputText
+from .._process import ChildProcess
+from ..action import Action, the_loop
+from ..conditions import evaluate_condition_expression
+from ..descriptions import Executable
+from ..event import Event
+from ..event_handler import EventCallback, EventHandler
+from ..event_handlers import OnProcessExit, OnShutdown
+from ..events import Shutdown
+from ..events.process import (
+    ProcessExited,
+    ProcessStarted,
+    ProcessStderr,
+    ProcessStdout,
+    ProcessTargetedEvent,
+    ShutdownProcess,
+    SignalProcess,
+)
+from ..launch_context import LaunchContext
+from ..launch_description_entity import LaunchDescriptionEntity, OptionalEntities, SomeEntitiesType
+from ..logging import get_logger, get_output_loggers
+from ..substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from ..substitutions import LaunchConfiguration
+from ..utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
+from .opaque_function import OpaqueFunction
+
+
+class ExecuteLocal(Action):
+    """Runs an executable; emits events when it starts, writes and exits.
+
+    At the end of the launch the process gets SIGINT; if it then still runs, SIGTERM after `sigterm_timeout`
+    seconds and SIGKILL after further `sigkill_timeout` seconds.
+    """
+
+    def __init__(
+        self,
+        *,
+        process_description: Executable,
+        shell: bool = False,
+        sigterm_timeout: SomeSubstitutionsType | None = None,
+        sigkill_timeout: SomeSubstitutionsType | None = None,
+        emulate_tty: bool = False,
+        output: SomeSubstitutionsType | Mapping[str, Any] = "log",
+        output_format: str = "[{this.process_description.final_name}] {line}",
+        cached_output: bool = False,
+        log_cmd: bool = False,
+        on_exit: SomeEntitiesType | EventCallback | None = None,
+        respawn: bool | SomeSubstitutionsType = False,
+        respawn_delay: float | None = None,
+        respawn_max_retries: int = -1,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.process_description = process_description
+        self.shell = shell
+        self.sigterm_timeout = normalize_to_list_of_substitutions(
+            LaunchConfiguration("sigterm_timeout", default=5) if sigterm_timeout is None else sigterm_timeout
+        )
+        self.sigkill_timeout = normalize_to_list_of_substitutions(
+            LaunchConfiguration("sigkill_timeout", default=5) if sigkill_timeout is None else sigkill_timeout
+        )
+        self.emulate_tty = emulate_tty
+        output = os.environ.get("OVERRIDE_LAUNCH_PROCESS_OUTPUT", output)
+        self.output = output if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
+        self._output_format = output_format
+        self._cached_output = cached_output
+        self._log_cmd = log_cmd
+        self._on_exit = on_exit
+        self._respawn = normalize_typed_substitution(respawn, bool)
+        self._respawn_delay = respawn_delay or 0.0
+        self._respawns_left = respawn_max_retries
+        self._streams = {source: OutputText(keep=cached_output) for source in ("stdout", "stderr")}
+        self._loggers: dict[str, logging.Logger] = {}
+        self._details: dict[str, Any] | None = None
+        self._child: ChildProcess | None = None
+        self._shutdown_asked: asyncio.Future[bool] | None = None
+        self._completed: asyncio.Future[None] | None = None
+
+    @property
+    def process_details(self) -> dict[str, Any] | None:
+        """The action, name, pid, cmd, cwd and env of the process, or None before it is prepared."""
+        return self._details
+
+    @property
+    def return_code(self) -> int | None:
+        """The exit code of the last process, or None if none has ended."""
+        return None if self._child is None else self._child.returncode
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities of `on_exit`."""
+        return list(self._on_exit) if isinstance(self._on_exit, (list, tuple)) else []
+
+    def get_asyncio_future(self) -> asyncio.Future[None] | None:
+        """Return the future that is done when the process has ended for good."""
+        return self._completed
+
+    def get_stdout(self) -> str:
+        """Return all standard output so far; RuntimeError unless `cached_output` is set."""
+        return self._cached("stdout")
+
+    def get_stderr(self) -> str:
+        """Return all standard error so far; RuntimeError unless `cached_output` is set."""
+        return self._cached("stderr")
+
+    def _cached(self, source: str) -> str:
+        if not self._cached_output:
+            raise RuntimeError(
+                f"cached output must be true to be able to get {source}, proc '{self.process_description.final_name}'"
+            )
+        return self._streams[source].text
+
+    def prepare(self, context: LaunchContext) -> None:
+        """Perform the substitutions of the process."""
+        description = self.process_description
+        description.prepare(context, self)
+        self._details = {
+            "action": self,
+            "name": description.final_name,
+            "cmd": description.final_cmd,
+            "cwd": description.final_cwd,
+            "env": description.final_env,
+        }
+        self._respawn = perform_typed_substitution(context, self._respawn, bool)
+
+    def execute(self, context: LaunchContext) -> OptionalEntities:
+        """Start the process, unless the launch is ending already."""
+        self.prepare(context)
+        name = self.process_description.final_name
+        if self._completed is not None:
+            raise RuntimeError(f"ExecuteLocal action '{name}': executed more than once: {self.describe()}")
+        if context.is_shutdown:
+            return None
+        output = self.output if isinstance(self.output, Mapping) else perform_substitutions(context, self.output)
+        self._logger = get_logger(name)
+        self._loggers = dict(zip(("stdout", "stderr"), get_output_loggers(name, output), strict=True))
+        loop = the_loop(context)
+        self._completed = loop.create_future()
+        self._shutdown_asked = loop.create_future()
+        context.register_event_handler(
+            EventHandler(matcher=self._is_for_me, entities=OpaqueFunction(function=self._on_targeted_event))
+        )
+        context.register_event_handler(OnShutdown(on_shutdown=self._on_shutdown))
+        if self._on_exit is not None:
+            context.register_event_handler(OnProcessExit(target_action=self, on_exit=self._on_exit))
+        context.start_task(self._run(context))
+        return None
+
+    def _is_for_me(self, event: Event) -> bool:
+        return isinstance(event, ProcessTargetedEvent) and event.process_matcher(self)
+
+    def _on_targeted_event(self, context: LaunchContext) -> None:
+        event = context.locals.event
+        if isinstance(event, ShutdownProcess):
+            self._ask_to_end(quietly=False)
+        elif isinstance(event, SignalProcess):
+            if self._child is None:
+                raise RuntimeError("Signal event received before execution.")
+            self._send(event.signal)
+
+    def _on_shutdown(self, event: Event, context: LaunchContext) -> None:
+        self._ask_to_end(quietly=cast(Shutdown, event).due_to_sigint)
+
+    def _ask_to_end(self, *, quietly: bool) -> None:
+        if self._shutdown_asked is not None and not self._shutdown_asked.done():
+            self._shutdown_asked.set_result(quietly)
+
+    def _send(self, number: signal.Signals, *, quietly: bool = False) -> None:
+        assert self._child is not None
+        if self._child.returncode is None and not quietly:
+            self._logger.info("sending signal '%s' to process[%s]", number.name, self.process_description.final_name)
+        self._child.send_signal(number)
+
+    async def _run(self, context: LaunchContext) -> None:
+        """Run the process, and again as long as it is to be respawned."""
+        assert self._completed is not None
+        try:
+            while await self._run_once(context) and await self._wants_respawn(context):
+                pass
+        except Exception as error:
+            self._completed.set_exception(error)
+        finally:
+            if not self._completed.done():
+                self._completed.set_result(None)
+
+    async def _wants_respawn(self, context: LaunchContext) -> bool:
+        assert self._shutdown_asked is not None
+        if not self._respawn or self._respawns_left == 0 or context.is_shutdown:
+            return False
+        self._respawns_left -= 1
+        await asyncio.wait([self._shutdown_asked], timeout=self._respawn_delay)
+        return not self._shutdown_asked.done()
+
+    async def _run_once(self, context: LaunchContext) -> bool:
+        """Run the process once; return whether it could be started."""
+        description, details = self.process_description, self._details
+        assert details is not None
+        command = " ".join(part for part in description.final_cmd if part.strip())
+        if self._log_cmd:
+            self._logger.info("process details: cmd='%s', cwd='%s', custom_env?=True", command, description.final_cwd)
+
+        def on_output(source: str, data: bytes) -> None:
+            self._log(source, self._streams[source].lines(data))
+            event = ProcessStdout if source == "stdout" else ProcessStderr
+            context.emit_event_sync(event(text=data, **details))
+
+        try:
+            child = await ChildProcess.start(
+                description.final_cmd,
+                cwd=description.final_cwd,
+                env=description.final_env,
+                shell=self.shell,
+                emulate_tty=self._wants_tty(context),
+            )
+        except (OSError, ValueError) as error:
+            what = "".join(traceback.format_exception_only(error)).rstrip()
+            self._logger.error("exception occurred while executing process:\n%s", what)
+            return False
+        try:
+            self._child = child
+            details["pid"] = child.pid
+            self._logger.info("process started with pid [%d]", child.pid)
+            context.emit_event_sync(ProcessStarted(**details))
+            await child.read(on_output)
+            await self._wait_or_end(context, child)
+            returncode = await child.finish()
+        finally:
+            child.close()
+        for source, stream in self._streams.items():
+            self._log(source, stream.last_line())
+        if returncode == 0:
+            self._logger.info("process has finished cleanly [pid %d]", child.pid)
+        else:
+            self._logger.error("process has died [pid %d, exit code %d, cmd '%s'].", child.pid, returncode, command)
+        context.emit_event_sync(ProcessExited(returncode=returncode, **details))
+        return True
+
+    async def _wait_or_end(self, context: LaunchContext, child: ChildProcess) -> None:
+        """Wait until the process has exited; when it is asked to end, see to it."""
+        assert self._shutdown_asked is not None
+        either: list[asyncio.Future[Any]] = [child.exited, self._shutdown_asked]
+        await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+        if child.exited.done():
+            return
+        first = float(perform_substitutions(context, self.sigterm_timeout))
+        second = float(perform_substitutions(context, self.sigkill_timeout))
+        self._send(signal.SIGINT, quietly=self._shutdown_asked.result())
+        for seconds, shown, previous, number in (
+            (first, first, signal.SIGINT, signal.SIGTERM),
+            (second, first + second, signal.SIGTERM, signal.SIGKILL),
+        ):
+            await asyncio.wait([child.exited], timeout=seconds)
+            if child.exited.done():
+                return
+            self._logger.error(
+                "process[%s] failed to terminate '%g' seconds after receiving '%s', escalating to '%s'",
+                self.process_description.final_name,
+                shown,
+                previous.name,
+                number.name,
+            )
+            self._send(number)
+
+    def _wants_tty(self, context: LaunchContext) -> bool:
+        if "emulate_tty" not in context.launch_configurations:
+            return self.emulate_tty
+        value = context.launch_configurations["emulate_tty"]
+        return evaluate_condition_expression(context, normalize_to_list_of_substitutions(value))
+
+    def _log(self, source: str, lines: list[str]) -> None:
+        for line in lines:
+            self._loggers[source].info("%s", self._output_format.format(line=line, this=self))

@@ -1,0 +1,20 @@
+"""The base of conditions, which decide whether an action is executed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .launch_context import LaunchContext
+
+
+class Condition:
+    """A predicate over the launch context."""
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool]) -> None:
+        self._predicate = predicate
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether the condition holds in `context`."""
+        return self._predicate(context)

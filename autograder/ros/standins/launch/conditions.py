@@ -1,0 +1,84 @@
+"""Conditions on substitutions and launch configurations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from standin_notice import guard
+
+from .condition import Condition
+from .exceptions import InvalidConditionExpressionError
+from .launch_context import LaunchContext
+from .substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+__all__ = [
+    "IfCondition",
+    "InvalidConditionExpressionError",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+    "UnlessCondition",
+    "evaluate_condition_expression",
+]
+
+_TRUE = ("true", "1")
+_FALSE = ("false", "0")
+
+
+def evaluate_condition_expression(context: LaunchContext, expression: Iterable[Substitution]) -> bool:
+    """Return whether `expression` comes out as true or 1 (True), or as false or 0 (False).
+
+    Raises InvalidConditionExpressionError for any other text.
+    """
+    text = perform_substitutions(context, expression).strip().lower()
+    if text not in _TRUE + _FALSE:
+        raise InvalidConditionExpressionError(
+            f"invalid condition expression, expected one of {list(_TRUE + _FALSE)}, but got '{text}'"
+        )
+    return text in _TRUE
+
+
+class IfCondition(Condition):
+    """True when the expression is true or 1, false when it is false or 0."""
+
+    def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
+        self._expression = normalize_to_list_of_substitutions(predicate_expression)
+        super().__init__(predicate=lambda context: evaluate_condition_expression(context, self._expression))
+
+
+class UnlessCondition(Condition):
+    """The opposite of IfCondition."""
+
+    def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
+        self._expression = normalize_to_list_of_substitutions(predicate_expression)
+        super().__init__(predicate=lambda context: not evaluate_condition_expression(context, self._expression))
+
+
+def _equals(context: LaunchContext, name: str, expected: list[Substitution] | None) -> bool:
+    value = context.launch_configurations.get(name)
+    if expected is None or value is None:
+        return expected is None and value is None
+    return bool(value == perform_substitutions(context, expected))
+
+
+class LaunchConfigurationEquals(Condition):
+    """True when a launch configuration has the given text, or when it is not set and None is expected."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
+        super().__init__(predicate=lambda context: _equals(context, launch_configuration_name, expected))
+
+
+class LaunchConfigurationNotEquals(Condition):
+    """The opposite of LaunchConfigurationEquals."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
+        super().__init__(predicate=lambda context: not _equals(context, launch_configuration_name, expected))
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,151 @@
+"""Event handlers: which events they match, and which entities they yield."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from .event import Event
+from .launch_context import LaunchContext
+from .launch_description_entity import LaunchDescriptionEntity, OptionalEntities, SomeEntitiesType
+
+if TYPE_CHECKING:
+    from .action import Action
+
+EventCallback = Callable[[Event, LaunchContext], OptionalEntities]
+ActionMatcher = Callable[["Action"], bool]
+
+
+class BaseEventHandler:
+    """What all event handlers share: a matcher, and the wish to be called once or always."""
+
+    def __init__(self, *, matcher: Callable[[Event], bool], handle_once: bool = False) -> None:
+        self._matcher = matcher
+        self.handle_once = handle_once
+
+    @property
+    def handler_description(self) -> str | None:
+        """What the handler does, in words."""
+        return None
+
+    @property
+    def matcher_description(self) -> str | None:
+        """Which events it handles, in words."""
+        return None
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return a description, and the entities that are known beforehand."""
+        return (
+            f"{type(self).__name__}(matcher='{self.matcher_description}', "
+            f"handler='{self.handler_description}', handle_once={self.handle_once})",
+            [],
+        )
+
+    def matches(self, event: Event) -> bool:
+        """Whether `event` is for this handler."""
+        return self._matcher(event)
+
+    def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
+        """Handle `event`, which entities find as ``context.locals.event``."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return None
+
+
+class EventHandler(BaseEventHandler):
+    """A handler that yields the same entities at each event."""
+
+    def __init__(
+        self,
+        *,
+        matcher: Callable[[Event], bool],
+        entities: SomeEntitiesType | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self.entities = entities
+
+    def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
+        """Return the entities."""
+        super().handle(event, context)
+        return self.entities
+
+
+class OnActionEventBase(BaseEventHandler):
+    """A handler of events that come from an action: one action, those that a callable accepts, or all.
+
+    What to do is given as entities, or as a callable that gets the event and the context and may return
+    entities.
+    """
+
+    def __init__(
+        self,
+        *,
+        action_matcher: Action | ActionMatcher | None,
+        on_event: SomeEntitiesType | EventCallback,
+        target_event_cls: type[Event],
+        target_action_cls: type[Action],
+        handle_once: bool = False,
+    ) -> None:
+        if not (action_matcher is None or isinstance(action_matcher, target_action_cls) or callable(action_matcher)):
+            raise TypeError(
+                f"action_matcher must be an '{target_action_cls.__name__}' instance or a callable, "
+                f"got {type(action_matcher).__name__}"
+            )
+
+        def matcher(event: Event) -> bool:
+            if not isinstance(event, target_event_cls):
+                return False
+            source: Action = event.action  # type: ignore[attr-defined]  # all of these events have one
+            if callable(action_matcher):
+                return action_matcher(source)
+            return action_matcher is None or action_matcher is source
+
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._description = f"event == {target_event_cls.__name__}"
+        if action_matcher is not None:
+            self._description += f" and {target_action_cls.__name__}(event.action)"
+        self._callback, self._entities = split_callback(on_event)
+
+    @property
+    def handler_description(self) -> str:
+        """What the handler does, in words."""
+        return f"{self._callback}" if self._callback else "<actions>"
+
+    @property
+    def matcher_description(self) -> str:
+        """Which events it handles, in words."""
+        return self._description
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return a description, and the entities that are known beforehand."""
+        return super().describe()[0], list(self._entities)
+
+    def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
+        """Return the entities, or what the callable returns."""
+        super().handle(event, context)
+        return self._callback(event, context) if self._callback else self._entities
+
+
+def split_callback(
+    on_event: SomeEntitiesType | EventCallback,
+) -> tuple[EventCallback | None, list[LaunchDescriptionEntity]]:
+    """Return `on_event` as a callable and no entities, or as None and a list of entities.
+
+    Raises TypeError if it is neither.
+    """
+    if isinstance(on_event, LaunchDescriptionEntity):
+        return None, [on_event]
+    if isinstance(on_event, Iterable):
+        entities = list(on_event)
+        for entity in entities:
+            if not isinstance(entity, LaunchDescriptionEntity):
+                raise TypeError(
+                    "expected all items in 'on_event' iterable to be of type 'LaunchDescriptionEntity' "
+                    f"but got '{type(entity)}'"
+                )
+        return None, entities
+    if not callable(on_event):
+        raise TypeError(f"expected entities or a callable to handle an event with, got '{type(on_event)}'")
+    return on_event, []

@@ -1,0 +1,65 @@
+"""The events of the launch system itself; those of processes are in `launch.events.process`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from standin_notice import guard
+
+from ..event import Event
+from . import matchers, process
+from .matchers import matches_action
+
+if TYPE_CHECKING:
+    from ..action import Action
+    from ..launch_description import LaunchDescription
+
+__all__ = [
+    "ExecutionComplete",
+    "IncludeLaunchDescription",
+    "Shutdown",
+    "TimerEvent",
+    "matchers",
+    "matches_action",
+    "process",
+]
+
+
+class Shutdown(Event):
+    """The launch is to end, with everything it started."""
+
+    name = "launch.events.Shutdown"
+
+    def __init__(self, *, reason: str = "reason not given", due_to_sigint: bool = False) -> None:
+        self.reason = reason
+        self.due_to_sigint = due_to_sigint
+
+
+class ExecutionComplete(Event):
+    """An action has been executed, and what it waits for is done."""
+
+    name = "launch.events.ExecutionComplete"
+
+    def __init__(self, *, action: Action) -> None:
+        self.action = action
+
+
+class IncludeLaunchDescription(Event):
+    """A launch description is to be executed."""
+
+    name = "launch.events.IncludeLaunchDescription"
+
+    def __init__(self, launch_description: LaunchDescription) -> None:
+        self.launch_description = launch_description
+
+
+class TimerEvent(Event):
+    """The time of a timer action is up."""
+
+    name = "launch.events.TimerEvent"
+
+    def __init__(self, *, timer_action: Action) -> None:
+        self.timer_action = timer_action
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,139 @@
+"""The events of processes: what happened to one, and what is to be done with one."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from standin_notice import guard
+
+from ..event import Event
+
+if TYPE_CHECKING:
+    from ..actions.execute_local import ExecuteLocal
+
+ProcessMatcher = Callable[["ExecuteLocal"], bool]
+
+
+class RunningProcessEvent(Event):
+    """Something that happened to a process; it carries the process's details."""
+
+    name = "launch.events.process.RunningProcessEvent"
+
+    def __init__(
+        self,
+        *,
+        action: ExecuteLocal,
+        name: str,
+        cmd: list[str],
+        cwd: str | None,
+        env: dict[str, str] | None,
+        pid: int,
+    ) -> None:
+        self.action = action
+        self.process_name = name
+        self.cmd = cmd
+        self.cwd = cwd
+        self.env = env
+        self.pid = pid
+
+    @property
+    def execute_process_action(self) -> ExecuteLocal:
+        """The action that runs the process (an older name of `action`)."""
+        return self.action
+
+
+class ProcessStarted(RunningProcessEvent):
+    """The process has started."""
+
+    name = "launch.events.process.ProcessStarted"
+
+
+class ProcessExited(RunningProcessEvent):
+    """The process has ended with `returncode`."""
+
+    name = "launch.events.process.ProcessExited"
+
+    def __init__(self, *, returncode: int, **details: Any) -> None:
+        super().__init__(**details)
+        self.returncode = returncode
+
+
+class ProcessIO(RunningProcessEvent):
+    """Bytes that went into or came out of the process."""
+
+    name = "launch.events.process.ProcessIO"
+    from_stdin = False
+    from_stdout = False
+    from_stderr = False
+
+    def __init__(self, *, text: bytes, fd: int = -1, **details: Any) -> None:
+        super().__init__(**details)
+        self.text = text
+        self.fd = fd
+
+
+class ProcessStdin(ProcessIO):
+    """Bytes for the process's standard input."""
+
+    name = "launch.events.process.ProcessStdin"
+    from_stdin = True
+
+
+class ProcessStdout(ProcessIO):
+    """Bytes from the process's standard output."""
+
+    name = "launch.events.process.ProcessStdout"
+    from_stdout = True
+
+
+class ProcessStderr(ProcessIO):
+    """Bytes from the process's standard error."""
+
+    name = "launch.events.process.ProcessStderr"
+    from_stderr = True
+
+
+class ProcessTargetedEvent(Event):
+    """Something to be done with the processes that `process_matcher` is true of."""
+
+    name = "launch.events.process.ProcessTargetedEvent"
+
+    def __init__(self, *, process_matcher: ProcessMatcher) -> None:
+        self.process_matcher = process_matcher
+
+
+class ShutdownProcess(ProcessTargetedEvent):
+    """Such a process is to be shut down: SIGINT, then SIGTERM, then SIGKILL."""
+
+    name = "launch.events.process.ShutdownProcess"
+
+
+class SignalProcess(ProcessTargetedEvent):
+    """Such a process is to get a signal, given by number or by name."""
+
+    name = "launch.events.process.SignalProcess"
+
+    def __init__(self, *, signal_number: str | int | signal.Signals, process_matcher: ProcessMatcher) -> None:
+        super().__init__(process_matcher=process_matcher)
+        self.signal = signal.Signals[signal_number] if isinstance(signal_number, str) else signal.Signals(signal_number)
+        self.signal_name = self.signal.name
+
+
+def matches_pid(pid: int) -> ProcessMatcher:
+    """Return a matcher for the process with that process id."""
+    return lambda action: (action.process_details or {}).get("pid") == pid
+
+
+def matches_name(name: str) -> ProcessMatcher:
+    """Return a matcher for processes with that name, e.g. ``talker-1``."""
+    return lambda action: (action.process_details or {}).get("name") == name
+
+
+def matches_executable(executable: str) -> ProcessMatcher:
+    """Return a matcher for processes whose command starts with that executable."""
+    return lambda action: (action.process_details or {}).get("cmd", [None])[0] == executable
+
+
+__getattr__ = guard(__name__)

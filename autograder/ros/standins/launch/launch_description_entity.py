@@ -1,0 +1,38 @@
+"""The base of everything that a launch description may contain."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .launch_context import LaunchContext
+
+
+class LaunchDescriptionEntity:
+    """Something that can be visited, described and waited for."""
+
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
+        """Do what the entity is for; return further entities to visit."""
+        return None
+
+    def describe(self) -> str:
+        """Return a description of the entity."""
+        return self.__repr__()
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities that will be visited with this one."""
+        return []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """Return the entities that may be visited, each group with its condition in words."""
+        return []
+
+    def get_asyncio_future(self) -> asyncio.Future[None] | None:
+        """Return a future that is done when the entity is, or None if it is at once."""
+        return None
+
+
+SomeEntitiesType = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
+OptionalEntities = SomeEntitiesType | None

@@ -1,0 +1,44 @@
+"""The text of `ros2 launch --print-description`: a launch description as a tree, without running it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler
+from .launch_description import LaunchDescription
+from .launch_description_entity import LaunchDescriptionEntity
+from .substitution import describe_substitutions
+
+
+def _line(entity: LaunchDescriptionEntity) -> str:
+    if isinstance(entity, LogInfo):
+        return f"LogInfo({describe_substitutions(entity.msg)})"
+    if isinstance(entity, EmitEvent):
+        return f"EmitEvent(event='{entity.event.name}')"
+    if isinstance(entity, ExecuteProcess):
+        return entity.describe()
+    if isinstance(entity, RegisterEventHandler):
+        return f"RegisterEventHandler('{entity.event_handler}'):"
+    return f"Action('{entity}')"
+
+
+def _tree(entities: Iterable[LaunchDescriptionEntity], indent: str) -> list[str]:
+    remaining = list(entities)
+    lines = []
+    while remaining:
+        entity = remaining.pop(0)
+        lines.append(f"{indent}{'├' if remaining else '└'}── {_line(entity)}")
+        if isinstance(entity, RegisterEventHandler):
+            deeper = indent + ("│   " if remaining else "    ")
+            description, yielded = entity.event_handler.describe()
+            lines.append(f"{deeper}└── {description}")
+            lines += _tree(yielded, deeper + "    ")
+    return lines
+
+
+class LaunchIntrospector:
+    """Describes launch descriptions."""
+
+    def format_launch_description(self, launch_description: LaunchDescription) -> str:
+        """Return the launch description as text, one line an entity."""
+        return "\n".join([f"{launch_description}", *_tree(launch_description.entities, "")])

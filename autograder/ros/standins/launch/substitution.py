@@ -1,0 +1,73 @@
+"""Substitutions: text that is only known when the launch description is executed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .launch_context import LaunchContext
+
+
+class Substitution:
+    """Something that a launch context turns into a string."""
+
+    def describe(self) -> str:
+        """Return how the substitution is shown before its value is known."""
+        return self.__repr__()
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the string that this substitution stands for in `context`."""
+        return ""
+
+
+SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
+SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
+
+
+class TextSubstitution(Substitution):
+    """A fixed piece of text."""
+
+    def __init__(self, *, text: str) -> None:
+        if not isinstance(text, str):
+            raise TypeError(f"TextSubstitution expected Text object got '{type(text)}' instead.")
+        self.text = text
+
+    def describe(self) -> str:
+        """Return the text in quotes."""
+        return f"'{self.text}'"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text."""
+        return self.text
+
+
+def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Substitution]:
+    """Return `subs`, which may be one string, one substitution or several of them, as a list.
+
+    Raises TypeError for anything else.
+    """
+
+    def one(item: object) -> Substitution:
+        if isinstance(item, str):
+            return TextSubstitution(text=item)
+        if isinstance(item, Substitution):
+            return item
+        raise TypeError(
+            f"Failed to normalize given item of type '{type(item)}', when only 'str' or "
+            "'launch.Substitution' were expected."
+        )
+
+    if isinstance(subs, (str, Substitution)) or not isinstance(subs, Iterable):
+        return [one(subs)]
+    return [one(item) for item in subs]
+
+
+def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:
+    """Return the texts of `subs`, joined."""
+    return "".join(context.perform_substitution(sub) for sub in subs)
+
+
+def describe_substitutions(subs: SomeSubstitutionsType) -> str:
+    """Return how `subs` are shown before their values are known."""
+    return " + ".join(sub.describe() for sub in normalize_to_list_of_substitutions(subs))

@@ -1,0 +1,55 @@
+"""The substitutions that launch files use."""
+
+from __future__ import annotations
+
+from standin_notice import guard
+
+from ..exceptions import SubstitutionFailure
+from ..substitution import TextSubstitution
+from .evaluate import Command, FileContent, FindExecutable, PathJoinSubstitution, PythonExpression
+from .logic import (
+    AllSubstitution,
+    AndSubstitution,
+    AnySubstitution,
+    EqualsSubstitution,
+    IfElseSubstitution,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+)
+from .lookup import (
+    AnonName,
+    EnvironmentVariable,
+    LaunchConfiguration,
+    LaunchLogDir,
+    LocalSubstitution,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
+
+__all__ = [
+    "AllSubstitution",
+    "AndSubstitution",
+    "AnonName",
+    "AnySubstitution",
+    "Command",
+    "EnvironmentVariable",
+    "EqualsSubstitution",
+    "FileContent",
+    "FindExecutable",
+    "IfElseSubstitution",
+    "LaunchConfiguration",
+    "LaunchLogDir",
+    "LocalSubstitution",
+    "NotEqualsSubstitution",
+    "NotSubstitution",
+    "OrSubstitution",
+    "PathJoinSubstitution",
+    "PythonExpression",
+    "SubstitutionFailure",
+    "TextSubstitution",
+    "ThisLaunchFile",
+    "ThisLaunchFileDir",
+]
+
+__getattr__ = guard(__name__)

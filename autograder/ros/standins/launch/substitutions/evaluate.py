@@ -1,0 +1,139 @@
+"""Substitutions that work something out: expressions, commands, paths, files."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import shlex
+import shutil
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ..exceptions import SubstitutionFailure
+from ..launch_context import LaunchContext
+from ..substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe_substitutions,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+
+class PythonExpression(Substitution):
+    """The value of a Python expression, whose parts may be substitutions.
+
+    The names of `math` are there, and further modules by their own names.
+    """
+
+    def __init__(self, expression: SomeSubstitutionsType, python_modules: SomeSubstitutionsType = ("math",)) -> None:
+        self.expression = normalize_to_list_of_substitutions(expression)
+        self.python_modules = normalize_to_list_of_substitutions(python_modules)
+
+    def describe(self) -> str:
+        """Return a description with expression and modules."""
+        modules = ", ".join(module.describe() for module in self.python_modules)
+        return f"PythonExpr({describe_substitutions(self.expression)}, [{modules}])"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value as text; the expression's own errors pass through."""
+        names: dict[str, Any] = {}
+        for substitution in self.python_modules:
+            module = importlib.import_module(context.perform_substitution(substitution))
+            if module.__name__ == "math":
+                names.update(vars(module))
+            names[module.__name__] = module
+        return str(eval(perform_substitutions(context, self.expression), {}, names))
+
+
+class Command(Substitution):
+    """What a command prints; by default anything on its standard error is a failure."""
+
+    def __init__(self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
+        self.command = normalize_to_list_of_substitutions(command)
+        self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
+
+    def describe(self) -> str:
+        """Return a description with the command."""
+        return f"Command({describe_substitutions(self.command)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the standard output; SubstitutionFailure if the command is missing or fails."""
+        command = perform_substitutions(context, self.command)
+        on_stderr = perform_substitutions(context, self.on_stderr)
+        if on_stderr not in ("fail", "ignore", "warn", "capture"):
+            raise SubstitutionFailure("expected 'on_stderr' to be one of: 'fail', 'ignore', 'warn' or 'capture'")
+        stderr = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
+        try:
+            result = subprocess.run(shlex.split(command), stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
+        except FileNotFoundError as error:
+            raise SubstitutionFailure(f"file not found: {error}") from error
+        if result.returncode != 0:
+            shown = f"\nCaptured stderr output: {result.stderr}" if result.stderr else ""
+            raise SubstitutionFailure(f"executed command failed. Command: {command}{shown}")
+        if result.stderr and on_stderr in ("fail", "warn"):
+            message = (
+                f"executed command showed stderr output. Command: {command}\nCaptured stderr output:\n{result.stderr}"
+            )
+            if on_stderr == "fail":
+                raise SubstitutionFailure(message)
+            from ..logging import get_logger
+
+            get_logger("launch").warning(message)
+        return result.stdout
+
+
+class FindExecutable(Substitution):
+    """The path of an executable that is on the PATH."""
+
+    def __init__(self, *, name: SomeSubstitutionsType) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def describe(self) -> str:
+        """Return a description with the name."""
+        return f"FindExec({describe_substitutions(self.name)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path; SubstitutionFailure if there is none."""
+        name = perform_substitutions(context, self.name)
+        found = shutil.which(name)
+        if found is None:
+            raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
+        return found
+
+
+class PathJoinSubstitution(Substitution):
+    """A path from its components, each of which may be one substitution or several."""
+
+    def __init__(self, substitutions: Iterable[SomeSubstitutionsType]) -> None:
+        self.substitutions = [normalize_to_list_of_substitutions(component) for component in substitutions]
+
+    def describe(self) -> str:
+        """Return a description with the components."""
+        return f"PathJoin({', '.join(describe_substitutions(part) for part in self.substitutions)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the joined path."""
+        parts = [perform_substitutions(context, part) for part in self.substitutions]
+        return os.path.join(*parts)  # noqa: PTH118  # a Path would drop slashes and dots that belong
+
+
+class FileContent(Substitution):
+    """What is in a text file."""
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        self.path = normalize_to_list_of_substitutions(path)
+
+    def describe(self) -> str:
+        """Return a description with the path."""
+        return f"FileContent({describe_substitutions(self.path)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the content; SubstitutionFailure if the file cannot be read."""
+        path = perform_substitutions(context, self.path)
+        try:
+            return Path(path).read_text(encoding="utf-8")
+        except OSError as error:
+            raise SubstitutionFailure(f"Failed to open file '{path}': {error.strerror}") from error

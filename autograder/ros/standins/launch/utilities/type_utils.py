@@ -1,0 +1,119 @@
+"""Values with a type: plain ones as they are, substitutions performed and read as YAML would."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, get_args, get_origin
+
+import yaml
+
+from ..launch_context import LaunchContext
+from ..substitution import Substitution, normalize_to_list_of_substitutions, perform_substitutions
+
+SCALARS = (bool, int, float, str)
+
+
+def is_substitution(value: object) -> bool:
+    """Whether `value` is a substitution, or strings and at least one substitution in a row."""
+    if isinstance(value, Substitution):
+        return True
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        return False
+    items = list(value)
+    return all(isinstance(item, (str, Substitution)) for item in items) and any(
+        isinstance(item, Substitution) for item in items
+    )
+
+
+def _split_type(data_type: Any) -> tuple[type, bool]:
+    """Return the scalar type of `data_type` and whether a list of it is meant; ValueError for other types."""
+    is_list = get_origin(data_type) is list
+    scalar = get_args(data_type)[0] if is_list else data_type
+    if scalar not in SCALARS:
+        raise ValueError(
+            "data_type is invalid. Expected one of: int, float, str, bool, List[int], List[float], "
+            f"List[str], List[bool]. Got {data_type}"
+        )
+    return scalar, is_list
+
+
+def is_uniform_list(value: object) -> bool:
+    """Whether `value` is a list whose items are all truth values, all integers, all floats or all strings."""
+    if not isinstance(value, (list, tuple)):
+        return False
+    types = {type(item) for item in value}
+    return not types or (len(types) == 1 and types <= set(SCALARS))
+
+
+def coerce_to_type(text: str, data_type: Any = None) -> Any:
+    """Return `text` read as `data_type`, or by YAML's rules without one.
+
+    Raises ValueError if it cannot be read so.
+    """
+
+    def as_yaml() -> Any:
+        try:
+            return yaml.safe_load(text)
+        except yaml.YAMLError as error:
+            raise ValueError(f"Failed to convert '{text}' using yaml rules: {error}") from error
+
+    if data_type is None:
+        value = as_yaml()
+        if not isinstance(value, SCALARS) and not is_uniform_list(value):
+            raise ValueError(
+                f"Failed to convert '{text}' using yaml rules: output type is not allowed, got {type(value)}"
+            )
+        return value
+    scalar, is_list = _split_type(data_type)
+    if is_list:
+        value = as_yaml()
+        if not isinstance(value, list) or not all(type(item) is scalar for item in value):
+            raise ValueError(f"Cannot convert value '{text}' to a list of '{scalar}'")
+        return value
+    if scalar is str:
+        return text
+    if scalar is bool:
+        value = as_yaml()
+        if not isinstance(value, bool):
+            raise ValueError(f"Cannot convert value '{text}' to '{bool}'")
+        return value
+    return scalar(text)
+
+
+def normalize_typed_substitution(value: Any, data_type: Any = None) -> Any:
+    """Return `value` ready to be performed: plain as it is, substitutions as lists of substitutions.
+
+    Raises TypeError if a plain value is not of `data_type`.
+    """
+    if data_type is not None:
+        scalar, is_list = _split_type(data_type)
+    if isinstance(value, SCALARS):
+        if data_type is not None and (is_list or not isinstance(value, scalar)):
+            raise TypeError(f"value='{value}' is not an instance of {data_type}")
+        return value
+    if is_substitution(value):
+        return normalize_to_list_of_substitutions(value)
+    if not isinstance(value, Sequence):
+        raise TypeError(
+            "value should be either a scalar, a substitutions, or a mixed list of scalars and substitutions. "
+            f"Got `value={value}` of type `{type(value)}`. "
+        )
+    if data_type is not None and not is_list:
+        raise TypeError(f"value='{value}' is not an instance of {data_type}")
+    return [normalize_typed_substitution(item, None if data_type is None else scalar) for item in value]
+
+
+def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any = None) -> Any:
+    """Return the value that a normalised `value` has in `context`.
+
+    Raises ValueError if a substitution's text cannot be read as `data_type`.
+    """
+    if isinstance(value, SCALARS):
+        return value
+    if value and all(isinstance(item, Substitution) for item in value):
+        return coerce_to_type(perform_substitutions(context, value), data_type)
+    scalar = None if data_type is None else _split_type(data_type)[0]
+    items = [perform_typed_substitution(context, item, scalar) for item in value]
+    if not is_uniform_list(items):
+        raise ValueError(f"a list must hold items of one type, got {items}")
+    return items

@@ -1,0 +1,18 @@
+"""Stand-in for `launch_ros`, which cannot be installed by pip: the part that this course's launch files use.
+
+It is imported only where the real package is not. Names, signatures, semantics and errors are those of
+`launch_ros` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch_ros/); the code is the course's own.
+Covered are nodes with their parameters, remappings and namespaces. Lifecycle nodes and composable nodes are
+not: they raise an error that says so. For the real package run `make real-launch`, or source an installation
+of ROS 2 Jazzy.
+"""
+
+from __future__ import annotations
+
+from standin_notice import guard
+
+from . import actions, descriptions, parameter_descriptions, substitutions, utilities
+
+__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions", "utilities"]
+
+__getattr__ = guard(__name__)

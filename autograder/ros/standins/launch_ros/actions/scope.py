@@ -1,0 +1,97 @@
+"""Actions on all nodes that follow in the same scope: namespace, remappings, parameters."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from launch import Action, LaunchContext, SomeSubstitutionsType
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from rclpy.validate_namespace import validate_namespace
+
+from ..parameter_descriptions import ParameterFile
+from ..utilities import make_namespace_absolute, prefix_namespace
+from ..utilities._parameters import evaluate_value
+
+
+class PushRosNamespace(Action):
+    """Puts the nodes that follow below a namespace."""
+
+    def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.namespace = normalize_to_list_of_substitutions(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it, below the one that is set already."""
+        pushed = perform_substitutions(context, self.namespace)
+        previous = context.launch_configurations.get("ros_namespace")
+        namespace = make_namespace_absolute(prefix_namespace(previous, pushed))
+        validate_namespace(namespace)
+        context.launch_configurations["ros_namespace"] = namespace
+
+
+class SetRemap(Action):
+    """Remaps a name for the nodes that follow."""
+
+    def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.src = normalize_to_list_of_substitutions(src)
+        self.dst = normalize_to_list_of_substitutions(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add the rule."""
+        rule = (perform_substitutions(context, self.src), perform_substitutions(context, self.dst))
+        _add(context, "ros_remaps", rule)
+
+
+class SetParameter(Action):
+    """Sets a parameter for the nodes that follow; their own parameters win."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name = normalize_to_list_of_substitutions(name)
+        if isinstance(value, Mapping):
+            raise TypeError("SetParameter: the value must be a scalar or a list, got a dictionary")
+        self.value = value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add the parameter, in place of an earlier value."""
+        name = perform_substitutions(context, self.name)
+        others = [
+            item
+            for item in context.launch_configurations.get("global_params", ())
+            if not (isinstance(item, tuple) and item[0] == name)
+        ]
+        value = evaluate_value(context, name, self.value)
+        context.launch_configurations["global_params"] = (*others, (name, value))
+
+
+class SetUseSimTime(SetParameter):
+    """Sets the parameter ``use_sim_time`` for the nodes that follow."""
+
+    def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(name="use_sim_time", value=value, **kwargs)
+
+
+class SetParametersFromFile(Action):
+    """Gives a parameter file to the nodes that follow; their own parameters win.
+
+    Raises FileNotFoundError when it is executed and there is no such file.
+    """
+
+    def __init__(self, filename: str | os.PathLike[str] | SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._file = ParameterFile(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add the file."""
+        path = self._file.evaluate(context).absolute()
+        if not path.is_file():
+            raise FileNotFoundError(f"SetParametersFromFile: there is no parameter file '{path}'")
+        _add(context, "global_params", path)
+
+
+def _add(context: LaunchContext, key: str, item: Any) -> None:
+    # A new tuple each time: a scope that was saved must not see what is added inside of it.
+    context.launch_configurations[key] = (*context.launch_configurations.get(key, ()), item)

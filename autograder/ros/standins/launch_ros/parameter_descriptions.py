@@ -1,0 +1,94 @@
+"""Parameters with a type of their own, and parameter files in which substitutions may be."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import yaml
+from launch import LaunchContext, SomeSubstitutionsType, Substitution
+from launch.substitutions import SubstitutionFailure
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
+from standin_notice import guard
+
+from ._substitute_text import substitute_text
+from ._temporary import temporary_parameter_file
+
+__all__ = ["Parameter", "ParameterFile", "ParameterValue"]
+
+
+class ParameterValue:
+    """A value, or substitutions that give one; `value_type` is what their text is read as.
+
+    Without a type YAML's rules hold, so that a text such as ``1e3`` or ``yes`` does not stay a string; with
+    ``value_type=str`` it does.
+    """
+
+    def __init__(self, value: Any, *, value_type: Any = None) -> None:
+        self.value = normalize_typed_substitution(value, value_type)
+        self.value_type = value_type
+
+    def evaluate(self, context: LaunchContext) -> Any:
+        """Return the value in `context`; ValueError if it is not of the type."""
+        return perform_typed_substitution(context, self.value, self.value_type)
+
+
+class Parameter:
+    """One parameter: name, and value as `ParameterValue` has it."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+        self._value = ParameterValue(value, value_type=value_type)
+
+    @property
+    def value(self) -> Any:
+        """The value, before it is evaluated."""
+        return self._value.value
+
+    def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
+        """Return name and value in `context`."""
+        return perform_substitutions(context, self.name), self._value.evaluate(context)
+
+
+class ParameterFile:
+    """A parameter file; with `allow_substs` substitutions such as ``$(var name)`` in it are performed."""
+
+    def __init__(
+        self,
+        param_file: str | os.PathLike[str] | SomeSubstitutionsType,
+        *,
+        allow_substs: bool | SomeSubstitutionsType = False,
+    ) -> None:
+        self.param_file: list[Substitution] = normalize_to_list_of_substitutions(
+            os.fspath(param_file) if isinstance(param_file, os.PathLike) else param_file
+        )
+        self.allow_substs = normalize_typed_substitution(allow_substs, bool)
+
+    def evaluate(self, context: LaunchContext) -> Path:
+        """Return the path of the file, or of a temporary one in which the substitutions are performed.
+
+        Raises SubstitutionFailure if one of them fails or the file is not YAML.
+        """
+        path = Path(perform_substitutions(context, self.param_file))
+        if not perform_typed_substitution(context, self.allow_substs, bool):
+            return path
+        try:
+            # Once through YAML, so that comments are gone before anything is substituted.
+            text = yaml.safe_dump(yaml.safe_load(path.read_text(encoding="utf-8")))
+        except yaml.YAMLError as error:
+            raise SubstitutionFailure(
+                f"The parameter file '{path}' is not a valid yaml file, before applying substitutions: {error}"
+            ) from error
+        substituted = substitute_text(context, text)
+        try:
+            yaml.safe_load(substituted)
+        except yaml.YAMLError as error:
+            raise SubstitutionFailure(
+                f"The substituted parameter file '{path}' is not a valid yaml file: {error}"
+            ) from error
+        return temporary_parameter_file(substituted)
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,12 @@
+"""Helpers for names and parameters of nodes."""
+
+from __future__ import annotations
+
+from standin_notice import guard
+
+from ._namespaces import is_namespace_absolute, make_namespace_absolute, prefix_namespace
+from ._parameters import evaluate_parameters
+
+__all__ = ["evaluate_parameters", "is_namespace_absolute", "make_namespace_absolute", "prefix_namespace"]
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,35 @@
+"""A stand-in for `rosidl_runtime_py`, which has no wheel: ROS messages to and from dictionaries, YAML and CSV.
+
+It is found only where the real package is not importable, has its import names, and covers `convert`,
+`set_message`, `import_message`, `get_interfaces` and `utilities`. Get the real one with `make real-launch`, or by
+sourcing a ROS 2 Jazzy installation.
+"""
+
+from .convert import get_message_slot_types, message_to_csv, message_to_ordereddict, message_to_yaml
+from .get_interfaces import (
+    get_action_interfaces,
+    get_all_interface_packages,
+    get_interface_packages,
+    get_interface_path,
+    get_interfaces,
+    get_message_interfaces,
+    get_service_interfaces,
+)
+from .import_message import import_message_from_namespaced_type
+from .set_message import set_message_fields
+
+__all__ = [
+    "get_action_interfaces",
+    "get_all_interface_packages",
+    "get_interface_packages",
+    "get_interface_path",
+    "get_interfaces",
+    "get_message_interfaces",
+    "get_message_slot_types",
+    "get_service_interfaces",
+    "import_message_from_namespaced_type",
+    "message_to_csv",
+    "message_to_ordereddict",
+    "message_to_yaml",
+    "set_message_fields",
+]
