@@ -1,0 +1,238 @@
+"""The static pictures: `show` a world, `plot` a recording. They need no kernel, no widget and no backend."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from sim.pose import Pose
+from sim.recording import Recording
+from sim.robot import RobotState
+from sim.simulation import Clearance, Simulation, State, clearance, observe
+from sim.view import artists
+from sim.view.picture import Picture
+from sim.view.stage import add_scale, new_axes, prepare, write_names
+from sim.view.theme import STYLE, Theme, theme_named
+from sim.world import World
+
+CLEARANCE_SCALE = 0.6
+"""Metres of clearance from which on a track counts as free: the far end of its colours."""
+
+
+def show(
+    subject: World | Simulation,
+    state: State | None = None,
+    *,
+    ax: Axes | None = None,
+    theme: str | Theme = "light",
+    names: bool = True,
+    title: str | None = None,
+) -> Picture:
+    """Draw a world; with a simulation and a state also its robots and what their lidars see.
+
+    `ax` is drawn into where given, else a new figure is made. `names` writes the names of walls and goals.
+    """
+    simulation = subject if isinstance(subject, Simulation) else Simulation(subject)
+    world, colours = simulation.world, theme_named(theme)
+    with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
+        ax = ax or new_axes(world, colours)
+        prepare(ax, world, colours, title or _heading(world), _size(world))
+        _draw_world(ax, simulation, 0 if state is None else state.time_ns, colours, names, state is None)
+        if state is not None:
+            for index, robot in enumerate(state.robots):
+                spec = simulation.robots[index]
+                scan = observe(simulation, state, spec.name) if spec.lidar is not None else None
+                if scan is not None and spec.lidar is not None:
+                    artists.draw_scan(ax, scan.ranges, spec.lidar, robot.pose, colours)
+                artists.draw_robot(ax, spec, robot.pose, colours, colours.robot_colour(index))
+    return Picture(_figure(ax), _world_alt(world, state))
+
+
+def plot(
+    recording: Recording,
+    *,
+    robot: str | None = None,
+    colour: Literal["time", "clearance"] = "time",
+    mark: float | None = None,
+    note: str = "",
+    ax: Axes | None = None,
+    theme: str | Theme = "light",
+    names: bool = False,
+    title: str | None = None,
+) -> Picture:
+    """Draw the tracks of a recording, its collisions and, if wanted, one marked instant.
+
+    `robot` picks one robot (all if None). `colour` says what the colour of the first drawn track means. `mark` is a
+    time in seconds: the robot is drawn as it was then, with its scan, a line to the nearest obstacle, and `note`.
+
+    Raises:
+        ValueError: for a robot that the recording does not have, or a colour or mark that makes no sense.
+    """
+    simulation, world, scheme = recording.simulation, recording.simulation.world, theme_named(theme)
+    if colour not in ("time", "clearance"):
+        raise ValueError(f"a track has no colour {colour!r}: choose time or clearance")
+    indices = _robots(simulation, robot)
+    row = None if mark is None else row_at(recording, mark)
+    now = len(recording) - 1 if row is None else row
+    with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
+        ax = ax or new_axes(world, scheme)
+        prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices))
+        _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
+        for place in reversed(indices):
+            _draw_one(ax, recording, place, colour if place == indices[0] else None, scheme, now, row is not None)
+        if row is not None:
+            _draw_mark(ax, recording, indices[0], row, note, scheme)
+    return Picture(_figure(ax), _track_alt(recording, indices, mark, note))
+
+
+def row_at(recording: Recording, time: float) -> int:
+    """Return the row of the recording whose time is nearest to `time`, in seconds."""
+    if not math.isfinite(time):
+        raise ValueError(f"there is no instant t = {time} s in a recording")
+    return int(np.argmin(np.abs(recording.times - time)))
+
+
+def state_at(recording: Recording, row: int) -> State:
+    """Return what row `row` says of where everything was; the memory of motors and watchdogs is not in it."""
+    simulation, time_ns = recording.simulation, int(recording.times_ns[row])
+    robots = tuple(
+        RobotState(name=spec.name, pose=Pose(*recording.poses[row, index].tolist()))
+        for index, spec in enumerate(simulation.robots)
+    )
+    return State(tick=round(time_ns / (simulation.tick * 1e9)), time_ns=time_ns, robots=robots)
+
+
+def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, names: bool, starts: bool = True) -> None:
+    world = simulation.world
+    artists.draw_walls(ax, world, theme)
+    artists.draw_places(ax, world, theme, radius=simulation.robots[0].radius, starts=starts)
+    for mover, (x, y) in zip(world.movers, artists.movers_at(simulation, time_ns), strict=True):
+        ax.add_patch(artists.mover_patch(x, y, mover.radius, theme))
+    if names:
+        write_names(ax, world, theme)
+
+
+def _draw_one(
+    ax: Axes, recording: Recording, index: int, colour: str | None, theme: Theme, now: int, marked: bool
+) -> None:
+    points, times = recording.poses[:, index, :2], recording.times
+    own = theme.robot_colour(index)
+    if colour is None:
+        ax.plot(*points.T, color=own, linewidth=2.0, alpha=0.8, zorder=5)
+    elif colour == "time":
+        limits = (float(times[0]), float(max(times[-1], times[0] + 1e-9)))
+        artists.draw_track(ax, points, times, theme.time_colours, limits)
+        add_scale(ax, theme.time_colours, limits, "s", "time", theme)
+    else:
+        limits = (0.0, CLEARANCE_SCALE)
+        artists.draw_track(ax, points, recording.clearances[:, index], theme.clearance_colours, limits)
+        add_scale(ax, theme.clearance_colours, limits, "m", "clearance", theme)
+    spec = recording.simulation.robots[index]
+    events = [event for event in recording.events if event.kind == "collision" and event.robot == spec.name]
+    if not marked:
+        _draw_last_scan(ax, recording, index, now, theme)
+    artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
+    artists.draw_robot(ax, spec, Pose(*recording.poses[now, index].tolist()), theme, own)
+
+
+def _draw_last_scan(ax: Axes, recording: Recording, index: int, row: int, theme: Theme) -> None:
+    lidar, log = recording.simulation.robots[index].lidar, recording.scans[index]
+    seen = np.flatnonzero(log.rows <= row)
+    if lidar is not None and len(seen):
+        taken = int(log.rows[seen[-1]])
+        pose = Pose(*recording.poses[taken, index].tolist())
+        artists.draw_scan(ax, log.ranges[seen[-1]], lidar, pose, theme)
+
+
+def _draw_mark(ax: Axes, recording: Recording, index: int, row: int, note: str, theme: Theme) -> None:
+    spec = recording.simulation.robots[index]
+    x, y, _ = recording.poses[row, index].tolist()
+    _draw_last_scan(ax, recording, index, row, theme)
+    near = clearance(recording.simulation, state_at(recording, row), spec.name)
+    _draw_gap(ax, (x, y), near, theme)
+    left, low, right, high = recording.simulation.world.bounds
+    side = -1.0 if x > (left + right) / 2 else 1.0
+    rise = -1.0 if y > (low + high) / 2 else 1.0
+    ax.annotate(
+        f"t = {recording.times[row]:.1f} s" + (f"\n{note}" if note else ""),
+        (x, y),
+        (side * 30, rise * 34),
+        textcoords="offset points",
+        ha="left" if side > 0 else "right",
+        va="bottom" if rise > 0 else "top",
+        fontsize=9.5,
+        linespacing=1.45,
+        color=theme.ink,
+        zorder=14,
+        bbox={"boxstyle": "round,pad=0.45", "facecolor": theme.paper, "edgecolor": theme.alarm, "linewidth": 1.0},
+        arrowprops={"arrowstyle": "-", "color": theme.alarm, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 7},
+    )
+
+
+def _draw_gap(ax: Axes, centre: tuple[float, float], near: Clearance, theme: Theme) -> None:
+    """Ring the robot and draw the line to the obstacle nearest to it."""
+    ax.plot(*centre, marker="o", markersize=22, mfc="none", mec=theme.alarm, mew=1.3, linestyle="none", zorder=10)
+    if math.isfinite(near.x) and math.isfinite(near.y):
+        ax.plot((centre[0], near.x), (centre[1], near.y), color=theme.alarm, linewidth=1.4, zorder=7)
+        ax.plot(near.x, near.y, marker="o", markersize=4.5, color=theme.alarm, linestyle="none", zorder=12)
+
+
+def _robots(simulation: Simulation, robot: str | None) -> list[int]:
+    every = [spec.name for spec in simulation.robots]
+    if robot is None:
+        return list(range(len(every)))
+    if robot not in every:
+        raise ValueError(f"the recording has no robot {robot!r}: it has {', '.join(every)}")
+    return [every.index(robot)]
+
+
+def _figure(ax: Axes) -> Figure:
+    figure: Any = ax.get_figure(root=True)
+    return figure  # type: ignore[no-any-return]
+
+
+def _heading(world: World) -> str:
+    return world.name[:1].upper() + world.name[1:]
+
+
+def _size(world: World) -> str:
+    left, low, right, high = world.bounds
+    return f"{right - left:.1f} × {high - low:.1f} m"  # noqa: RUF001 (a true multiplication sign)
+
+
+def _summary(recording: Recording, indices: list[int]) -> str:
+    points = recording.poses[:, indices[0], :2]
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    parts = [f"{recording.times[-1] - recording.times[0]:.1f} s", f"{length:.1f} m driven"]
+    if np.isfinite(recording.clearances[:, indices]).any():
+        parts.append(f"never nearer than {max(0.0, float(np.nanmin(recording.clearances[:, indices]))):.2f} m")
+    names = {recording.simulation.robots[index].name for index in indices}
+    hits = sum(event.kind == "collision" and event.robot in names for event in recording.events)
+    if hits:
+        parts[-1] = f"{hits} collision{'s' if hits > 1 else ''}"
+    return " · ".join(parts)
+
+
+def _world_alt(world: World, state: State | None) -> str:
+    text = f"Map of the world “{world.name}”, {_size(world)}, with {len(world.segments)} walls"
+    if len(world.circles):
+        text += f", {len(world.circles)} pillars"
+    if world.movers:
+        text += f", {len(world.movers)} moving obstacles"
+    for robot in state.robots if state is not None else ():
+        text += f"; {robot.name} at ({robot.pose.x:.2f} m, {robot.pose.y:.2f} m)"
+    return text + "."
+
+
+def _track_alt(recording: Recording, indices: list[int], mark: float | None, note: str) -> str:
+    x, y, _ = recording.poses[-1, indices[0]].tolist()
+    text = f"Track of {recording.simulation.robots[indices[0]].name} through “{recording.simulation.world.name}”: "
+    text += f"{_summary(recording, indices)}; it ends at ({x:.2f} m, {y:.2f} m)"
+    if mark is not None:
+        text += f". Marked: t = {mark:.1f} s" + (f", {note}" if note else "")
+    return text + "."

@@ -1,0 +1,120 @@
+"""Colours and type for every picture: one frozen `Theme` light, one dark.
+
+The hues are those of Okabe and Ito (2008), told apart by all common kinds of colour blindness; no meaning rests on
+colour alone (a goal is a ring, a collision a cross, the robot has a nose). Lines and letters are sized for a projector.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from matplotlib.colors import LinearSegmentedColormap
+
+
+@dataclass(frozen=True)
+class Theme:
+    """The colours of a picture, as hexadecimal strings."""
+
+    name: str
+    paper: str
+    outside: str
+    floor: str
+    solid: str
+    grid: str
+    wall: str
+    ink: str
+    muted: str
+    robot: str
+    beam: str
+    hit: str
+    start: str
+    goal: str
+    alarm: str
+    mover: str
+    track: tuple[str, str]
+    near_far: tuple[str, str, str]
+
+    @cached_property
+    def time_colours(self) -> LinearSegmentedColormap:
+        """Early to late: one hue, its lightness carrying the meaning."""
+        return LinearSegmentedColormap.from_list(f"{self.name}-time", list(self.track))
+
+    @cached_property
+    def clearance_colours(self) -> LinearSegmentedColormap:
+        """Near to far: vermilion to blue."""
+        return LinearSegmentedColormap.from_list(f"{self.name}-clearance", list(self.near_far))
+
+    @cached_property
+    def others(self) -> tuple[str, ...]:
+        """Colours of the second and further robots."""
+        return ("#CC79A7", "#009E73", "#E69F00", "#56B4E9")
+
+    def robot_colour(self, index: int) -> str:
+        """Return the colour of the robot with that place in the simulation."""
+        return self.robot if index == 0 else self.others[(index - 1) % len(self.others)]
+
+
+LIGHT = Theme(
+    name="light",
+    paper="#FFFFFF",
+    outside="#F5F6F4",
+    floor="#FFFFFF",
+    solid="#E7E9E7",
+    grid="#EAEBE9",
+    wall="#26313B",
+    ink="#26313B",
+    muted="#6B7780",
+    robot="#0072B2",
+    beam="#E69F00",
+    hit="#D55E00",
+    start="#6B7780",
+    goal="#00805E",
+    alarm="#C8401A",
+    mover="#8C5A86",
+    track=("#A9D0E8", "#00395C"),
+    near_far=("#D55E00", "#C9B79C", "#0072B2"),
+)
+
+DARK = Theme(
+    name="dark",
+    paper="#11161B",
+    outside="#161C22",
+    floor="#11161B",
+    solid="#2A333C",
+    grid="#212931",
+    wall="#DDE3E8",
+    ink="#DDE3E8",
+    muted="#93A0AB",
+    robot="#56B4E9",
+    beam="#E69F00",
+    hit="#FFB25A",
+    start="#93A0AB",
+    goal="#2CC99B",
+    alarm="#FF7A4D",
+    mover="#D79BCF",
+    track=("#24506B", "#CDEBFB"),
+    near_far=("#FF7A4D", "#8C8373", "#56B4E9"),
+)
+
+THEMES: Mapping[str, Theme] = {"light": LIGHT, "dark": DARK}
+
+STYLE: Mapping[str, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
+    "font.size": 10.0,
+    "svg.hashsalt": "sim",
+    "svg.fonttype": "path",
+    "path.simplify": True,
+    "lines.solid_capstyle": "round",
+}
+
+
+def theme_named(name: str | Theme) -> Theme:
+    """Return the theme called `name`, "light" or "dark"; a Theme comes back as it is."""
+    if isinstance(name, Theme):
+        return name
+    if name not in THEMES:
+        raise ValueError(f"there is no theme {name!r}: choose one of {', '.join(THEMES)}")
+    return THEMES[name]
