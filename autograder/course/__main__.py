@@ -1,0 +1,73 @@
+"""`python -m autograder.course sync|check`: bring the notebooks up to date, or say what is wrong with them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.course.cells import is_graded
+from autograder.course.exceptions import CourseError
+from autograder.course.findings import Finding
+from autograder.course.hygiene import hygiene
+from autograder.course.points import set_points, wrong_points
+from autograder.course.sync import Chapter, chapters, stale
+from autograder.course.sync import sync as bring_in
+from autograder.layout import CHAPTERS, SOLUTIONS
+from autograder.suites import manifest
+
+_folders = click.option("--chapters", "root", type=click.Path(path_type=Path), default=CHAPTERS, show_default=True)
+_solutions = click.option("--solutions", type=click.Path(path_type=Path), default=SOLUTIONS, show_default=True)
+
+
+@click.group()
+def main() -> None:
+    """Keep the notebooks and the reference solutions one text."""
+
+
+@main.command()
+@_folders
+@_solutions
+def sync(root: Path, solutions: Path) -> None:
+    """Write the reference's text into cells and given files, and the suites' points into grade cells."""
+    for chapter in chapters(root):
+        try:
+            changed = bring_in(chapter, solutions)
+            notebook = chapter.read()
+            if any(map(is_graded, notebook.cells)) and set_points(
+                chapter.path.name, notebook, manifest(chapter.assignment)
+            ):
+                chapter.write(notebook)
+                changed.append(Finding(chapter.path.name, None, "points"))
+        except CourseError as error:
+            raise click.ClickException(str(error)) from error
+        click.echo(
+            f"{chapter.assignment}: {len(changed)} brought up to date"
+            if changed
+            else f"{chapter.assignment}: as it was"
+        )
+
+
+@main.command()
+@_folders
+@_solutions
+def check(root: Path, solutions: Path) -> None:
+    """Say what is stale, or not as a notebook of the course must be; exit 1 then."""
+    found = [finding for chapter in chapters(root) for finding in findings(chapter, solutions)]
+    for finding in found:
+        click.echo(str(finding))
+    sys.exit(1 if found else 0)
+
+
+def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
+    """Return everything that is wrong with a chapter."""
+    notebook, name = chapter.read(), chapter.path.name
+    found = [*stale(chapter, solutions), *hygiene(name, notebook)]
+    if any(map(is_graded, notebook.cells)):
+        found += wrong_points(name, notebook, manifest(chapter.assignment))
+    return found
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+"""Executes a chapter's notebook in a fresh kernel, on a copy of the chapter's folder, with warnings as errors."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell
+
+from autograder.course.exceptions import CourseError
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter, write_notebook
+
+NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
+
+# Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
+# (colcon, CMake) are not the notebook's to answer for.
+STRICT = "import warnings\nwarnings.simplefilter('error')"
+
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How a notebook ran.
+
+    Attributes:
+        chapter: the assignment's name.
+        form: which form of it ran.
+        notebook: the executed notebook, as far as it came.
+        seconds: wall time, kernel start included.
+        failure: the id of the cell that failed and what it said, or None.
+    """
+
+    chapter: str
+    form: Form
+    notebook: NotebookNode
+    seconds: float
+    failure: str | None
+
+    @property
+    def ok(self) -> bool:
+        """Say whether it ran to its end."""
+        return self.failure is None
+
+
+def run_notebook(
+    path: Path, form: Form = Form.SOURCE, *, timeout: float = 120.0, report: Path | None = None
+) -> Execution:
+    """Execute a notebook in the given form; the chapter's folder is left as it is.
+
+    Args:
+        path: the notebook, `chapters/ID/ID.ipynb`.
+        form: `source`, `solved` or `released`.
+        timeout: seconds that one cell may take.
+        report: where to keep the executed notebook.
+
+    Raises:
+        CourseError: the notebook is missing or is not one.
+    """
+    chapter = Chapter(path.parent)
+    if chapter.path != path:
+        raise CourseError(f"{path.name}: a chapter's notebook has its folder's name, {chapter.path.name}")
+    notebook = in_form(chapter.read(), form)
+    started = time.monotonic()
+    with _copy_of(chapter.folder) as folder:
+        failure = _execute(notebook, folder, timeout)
+    seconds = time.monotonic() - started
+    if report is not None:
+        report.parent.mkdir(parents=True, exist_ok=True)
+        write_notebook(report, notebook)
+    return Execution(chapter.assignment, form, notebook, seconds, failure)
+
+
+@contextmanager
+def _copy_of(folder: Path) -> Iterator[Path]:
+    with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
+        copy = Path(scratch) / folder.name
+        shutil.copytree(folder, copy, ignore=NOT_COPIED)
+        yield copy
+
+
+def _execute(notebook: NotebookNode, folder: Path, timeout: float) -> str | None:
+    """Execute in place; return what went wrong, or None."""
+    client = NotebookClient(
+        notebook, timeout=timeout, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+    )
+    notebook.cells.insert(0, new_code_cell(STRICT))
+    try:
+        client.execute()
+    except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
+        return f"cell {_failed(notebook)}: {_COLOUR.sub('', str(error))}"
+    finally:
+        del notebook.cells[0]
+    return None
+
+
+def _failed(notebook: NotebookNode) -> str:
+    """Return the id of the first code cell that did not end well."""
+    for cell in notebook.cells:
+        if cell.cell_type != "code" or not cell.source.strip():
+            continue
+        if cell.execution_count is None or any(output.output_type == "error" for output in cell.outputs):
+            return repr(cell.id)
+    return "(unknown)"

@@ -1,0 +1,24 @@
+"""One thing that is wrong with a notebook, told so that its author finds it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something to mend.
+
+    Attributes:
+        notebook: the notebook's file name.
+        cell: the id of the cell, or None when it is not about one cell.
+        message: what is wrong and what to do.
+    """
+
+    notebook: str
+    cell: str | None
+    message: str
+
+    def __str__(self) -> str:
+        where = self.notebook if self.cell is None else f"{self.notebook}, cell {self.cell!r}"
+        return f"{where}: {self.message}"

@@ -1,0 +1,57 @@
+"""The three forms of a notebook: as its author has it, as a student who solved it has it, and as it is released."""
+
+from __future__ import annotations
+
+import copy
+from enum import Enum
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder.course.holes import without_marks
+
+# What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
+# the node that runs into it ends, and what it ended with is this sentence.
+CODE_STUB = "# YOUR CODE HERE\nraise NotImplementedError('this part of the exercise is still to be written')"
+
+
+class Form(str, Enum):
+    """Whose notebook it is."""
+
+    SOURCE = "source"
+    SOLVED = "solved"
+    RELEASED = "released"
+
+
+def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
+    """Return a copy of a source notebook in the given form, without outputs.
+
+    The released form is made by nbgrader's own preprocessors, so it is the text that students get.
+    """
+    made: NotebookNode = copy.deepcopy(notebook)
+    if form is Form.SOLVED:
+        for cell in made.cells:
+            cell.source = without_marks(cell.source)
+    elif form is Form.RELEASED:
+        made = _released(made)
+    nbformat.validate(made)
+    return made
+
+
+def _released(notebook: NotebookNode) -> NotebookNode:
+    # Here because nbgrader takes a second to import, and only this form needs it.
+    from nbgrader import preprocessors
+    from traitlets.config import Config
+
+    config = Config({"ClearSolutions": {"code_stub": {"python": CODE_STUB}}})
+    steps = (
+        preprocessors.LockCells,
+        preprocessors.ClearSolutions,
+        preprocessors.ClearOutput,
+        preprocessors.CheckCellMetadata,
+        preprocessors.ClearHiddenTests,
+        preprocessors.ClearMarkScheme,
+    )
+    for step in steps:
+        notebook, _ = step(config=config).preprocess(notebook, {})
+    return notebook

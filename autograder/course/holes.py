@@ -1,0 +1,95 @@
+"""Marks the bodies of named functions as nbgrader solution regions: a release keeps contracts and loses answers.
+
+Functions are found by `ast`, so renaming one without telling the notebook is an error rather than a leaked answer.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from autograder.course.exceptions import CourseError
+
+BEGIN = "### BEGIN SOLUTION"
+END = "### END SOLUTION"
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def with_holes(text: str, hide: Sequence[str]) -> str:
+    """Return Python source with the bodies of the functions in `hide` between solution marks.
+
+    Signature, decorators and docstring stay outside: they are the contract that the student sees.
+
+    Args:
+        text: the module's source.
+        hide: qualified names: `main`, `RobotController.control_loop`, ...
+
+    Raises:
+        CourseError: the source does not parse or already has marks, or a name is not there, is there twice, or has no
+            docstring or no body on lines of its own, or two of them overlap.
+    """
+    if BEGIN in text or END in text:
+        raise CourseError("the source already holds solution marks; they belong in notebooks only")
+    try:
+        functions = list(_functions(ast.parse(text)))
+    except SyntaxError as error:
+        raise CourseError(f"the source does not parse: {error}") from error
+    regions: list[tuple[int, int, int]] = []
+    for name in hide:
+        found = [function for qualified, function in functions if qualified == name]
+        if len(found) != 1:
+            known = ", ".join(sorted({qualified for qualified, _ in functions})) or "none"
+            raise CourseError(f"function {name!r} occurs {len(found)} times in the source; its functions: {known}")
+        regions.append(_region(name, found[0]))
+    regions.sort()
+    if any(before[1] >= after[0] for before, after in pairwise(regions)):
+        raise CourseError(f"functions inside each other cannot both be hidden: {', '.join(hide)}")
+    lines = text.splitlines()
+    for first, last, indent in reversed(regions):
+        lines[last:last] = [" " * indent + END]
+        lines[first - 1 : first - 1] = [" " * indent + BEGIN]
+    return "\n".join(lines) + "\n"
+
+
+def without_marks(text: str) -> str:
+    """Return the text without the lines that mark solutions: what a student who solved it would have."""
+    return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
+
+
+def without_licence(text: str) -> str:
+    """Return Python source without the comment block that it starts with; the repository's copy keeps it."""
+    lines = text.splitlines(keepends=True)
+    if not (lines and lines[0].startswith("# Copyright")):
+        return text
+    body = next((i for i, line in enumerate(lines) if not line.startswith("#")), len(lines))
+    return "".join(lines[body:]).lstrip("\n")
+
+
+def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            qualified = prefix + child.name
+            if not isinstance(child, ast.ClassDef):
+                yield qualified, child
+            yield from _functions(child, qualified + ".")
+        else:
+            yield from _functions(child, prefix)
+
+
+def _region(name: str, function: Function) -> tuple[int, int, int]:
+    """Return the first and last line of a function's body after its docstring (from 1), and its indentation."""
+    if ast.get_docstring(function, clean=False) is None:
+        raise CourseError(f"function {name!r} has no docstring; a hidden function needs one, it is the contract")
+    # A comment above the first statement may give the answer away: the region starts right after the contract.
+    first = _end(function.body[0]) + 1
+    last = max(_end(statement) for statement in function.body)
+    if last < first:
+        raise CourseError(f"function {name!r} has nothing to hide on lines of its own after its docstring")
+    return first, last, function.body[0].col_offset
+
+
+def _end(node: ast.stmt) -> int:
+    assert node.end_lineno is not None, "ast.parse sets it on every statement"
+    return node.end_lineno

@@ -1,0 +1,72 @@
+"""Holds the points of a notebook's grade cells and those of its hidden suite together."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+from nbformat import NotebookNode
+
+from autograder.checks import Check
+from autograder.course.cells import group, is_graded
+from autograder.course.exceptions import CourseError
+from autograder.course.findings import Finding
+
+
+def points_by_group(checks: Sequence[Check]) -> dict[str, float]:
+    """Return the sum of the checks' points by group, in the suite's order."""
+    points: defaultdict[str, float] = defaultdict(float)
+    for check in checks:
+        points[check.group] += check.points
+    return dict(points)
+
+
+def wrong_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
+    """Find grade cells whose points or group differ from the suite's, and groups without a cell.
+
+    Args:
+        name: the notebook's file name, for the findings.
+        notebook: the notebook.
+        checks: its suite's manifest.
+    """
+    return [finding for finding, _ in _wrong(name, notebook, points_by_group(checks))]
+
+
+def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bool:
+    """Give each grade cell its group's points; say whether one changed.
+
+    Raises:
+        CourseError: a cell names no group of the suite, two name one group, or a group has no cell.
+    """
+    points = points_by_group(checks)
+    wrong = _wrong(name, notebook, points)
+    for finding, cell in wrong:
+        if cell is None:
+            raise CourseError(str(finding))
+    for _, cell in wrong:
+        if cell is not None:
+            cell.metadata.nbgrader["points"] = points[str(group(cell))]
+    return bool(wrong)
+
+
+def _wrong(name: str, notebook: NotebookNode, points: dict[str, float]) -> list[tuple[Finding, NotebookNode | None]]:
+    """Return findings, each with its cell where setting that cell's points mends it."""
+    wrong: list[tuple[Finding, NotebookNode | None]] = []
+    seen: set[str] = set()
+    for cell in notebook.cells:
+        if not is_graded(cell):
+            continue
+        named, cell_id = group(cell), cell.get("id", "without id")
+        if named is None or named not in points:
+            message = f"stands for no group of the suite ({named!r}); its groups: {', '.join(points) or 'none'}"
+            wrong.append((Finding(name, cell_id, message), None))
+        elif named in seen:
+            wrong.append((Finding(name, cell_id, f"is the second cell of group {named!r}"), None))
+        elif cell.metadata.nbgrader.get("points") != points[named]:
+            has = cell.metadata.nbgrader.get("points")
+            message = f"has {has} points, but the checks of {named!r} have {points[named]:g}"
+            wrong.append((Finding(name, cell_id, message), cell))
+        seen.add(str(named))
+    missing = [named for named in points if named not in seen]
+    wrong += [(Finding(name, None, f"no grade cell stands for group {named!r}"), None) for named in missing]
+    return wrong

@@ -1,0 +1,74 @@
+"""A notebook runs as its author, a student who solved it, and a student who just got it have it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.course import CourseError, Form, in_form, run_notebook
+
+from .notebooks import chapter, code, grade, notebook, prose, solution
+
+SOLVED = "### BEGIN SOLUTION\nanswer = 42\n### END SOLUTION"
+
+
+def test_the_released_form_has_the_stub_in_the_answers_place() -> None:
+    released = in_form(notebook(code(SOLVED, "s", nbgrader=solution("s"))), Form.RELEASED)
+    assert "42" not in released.cells[0].source
+    assert "still to be written" in released.cells[0].source
+
+
+def test_the_released_form_has_no_hidden_test() -> None:
+    source = "### BEGIN HIDDEN TESTS\nassert answer == 42\n### END HIDDEN TESTS"
+    released = in_form(notebook(code(source, "g", nbgrader=grade("g", 1))), Form.RELEASED)
+    assert "42" not in released.cells[0].source
+
+
+def test_the_solved_form_is_the_answer_without_marks() -> None:
+    assert in_form(notebook(code(SOLVED, "s", nbgrader=solution("s"))), Form.SOLVED).cells[0].source == "answer = 42"
+
+
+def test_making_a_form_leaves_the_source_alone() -> None:
+    source = notebook(code(SOLVED, "s", nbgrader=solution("s")))
+    in_form(source, Form.RELEASED)
+    assert source.cells[0].source == SOLVED
+
+
+def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
+    made = chapter(
+        tmp_path,
+        notebook(
+            prose("# T", "t"),
+            code("from pathlib import Path\nprint(Path('given.txt').read_text())", "read"),
+            code("Path('made').touch()", "w"),
+        ),
+    )
+    (made.folder / "given.txt").write_text("hello")
+    (made.folder / "build").mkdir()
+    result = run_notebook(made.path, report=tmp_path / "out/report.ipynb")
+    assert result.ok, result.failure
+    assert result.notebook.cells[1].outputs[0].text == "hello\n"
+    assert not (made.folder / "made").exists()
+    assert "hello" in (tmp_path / "out/report.ipynb").read_text()
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("1 / 0", "ZeroDivisionError"),
+        ("import warnings\nwarnings.warn('old', DeprecationWarning)", "DeprecationWarning: old"),
+    ],
+)
+def test_an_error_and_a_warning_both_fail_and_name_their_cell(tmp_path: Path, source: str, message: str) -> None:
+    made = chapter(tmp_path, notebook(code("1", "fine"), code(source, "bad"), code("2", "never")))
+    result = run_notebook(made.path)
+    assert not result.ok
+    assert result.failure is not None
+    assert result.failure.startswith("cell 'bad'")
+    assert message in result.failure
+
+
+def test_a_notebook_of_another_name_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CourseError, match=r"has its folder's name"):
+        run_notebook(tmp_path / "01_small" / "other.ipynb")

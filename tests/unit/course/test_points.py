@@ -1,0 +1,57 @@
+"""Grade cells, groups and points hold together."""
+
+from __future__ import annotations
+
+import pytest
+from nbformat import NotebookNode
+
+from autograder.checks import Check, Visibility
+from autograder.course import CourseError, set_points, wrong_points
+
+from .notebooks import code, grade, notebook
+
+
+def one(check_id: str, group: str, points: float) -> Check:
+    return Check(check_id, f"{check_id}.", points, group, Visibility.HIDDEN, (), None, ())
+
+
+CHECKS = (one("turns", "reaction", 2.0), one("drives", "reaction", 1.5), one("named", "graph", 1.0))
+
+
+def graded(**groups: float) -> NotebookNode:
+    return notebook(
+        *(code("", name, nbgrader=grade(name, points), course={"group": name}) for name, points in groups.items())
+    )
+
+
+def test_each_cell_gets_the_sum_of_its_groups_checks() -> None:
+    made = graded(reaction=0, graph=0)
+    assert set_points("n.ipynb", made, CHECKS)
+    assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0]
+    assert wrong_points("n.ipynb", made, CHECKS) == []
+    assert not set_points("n.ipynb", made, CHECKS)
+
+
+def test_wrong_points_are_named() -> None:
+    (found,) = wrong_points("n.ipynb", graded(reaction=3, graph=1), CHECKS)
+    assert str(found) == "n.ipynb, cell 'reaction': has 3 points, but the checks of 'reaction' have 3.5"
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (graded(reaction=3.5), "no grade cell stands for group 'graph'"),
+        (graded(reaction=3.5, graph=1, magic=1), r"stands for no group of the suite \('magic'\); its groups: reaction"),
+        (notebook(code("", "bare", nbgrader=grade("bare", 1))), r"stands for no group of the suite \(None\)"),
+        (
+            notebook(
+                *(code("", f"c{i}", nbgrader=grade(f"c{i}", 3.5), course={"group": "reaction"}) for i in range(2)),
+                code("", "graph", nbgrader=grade("graph", 1), course={"group": "graph"}),
+            ),
+            "is the second cell of group 'reaction'",
+        ),
+    ],
+)
+def test_a_suite_and_a_notebook_that_do_not_fit_are_an_error(made: NotebookNode, message: str) -> None:
+    with pytest.raises(CourseError, match=message):
+        set_points("n.ipynb", made, CHECKS)

@@ -1,0 +1,136 @@
+"""What a solution cell holds and what solutions/ holds is one text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.course import Chapter, CourseError, chapters, stale, sync
+
+from .notebooks import chapter, code, notebook, prose, solution
+
+NODE = 'def main():\n    """Run."""\n    return 0\n'
+CELL: dict[str, Any] = {"source": "pkg/node.py", "target": "ws/src/pkg/node.py", "hide": ["main"]}
+
+
+@pytest.fixture
+def solutions(tmp_path: Path) -> Path:
+    folder = tmp_path / "solutions"
+    (folder / "pkg").mkdir(parents=True)
+    (folder / "pkg/node.py").write_text("# Copyright 2026 Us\n\n" + NODE)
+    (folder / "pkg/setup.cfg").write_text("[develop]\n")
+    return folder
+
+
+def small(tmp_path: Path, **course: Any) -> Chapter:
+    cell = code("", "node", course={**CELL, **course}, nbgrader=solution("node"))
+    return chapter(tmp_path, notebook(prose("# A title", "title"), cell))
+
+
+def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: Path) -> None:
+    made = small(tmp_path)
+    assert [finding.cell for finding in sync(made, solutions)] == ["node"]
+    assert made.read().cells[1].source == (
+        "%%writefile ws/src/pkg/node.py\n"
+        'def main():\n    """Run."""\n    ### BEGIN SOLUTION\n    return 0\n    ### END SOLUTION'
+    )
+
+
+def test_sync_twice_changes_nothing(tmp_path: Path, solutions: Path) -> None:
+    made = small(tmp_path)
+    sync(made, solutions)
+    before = made.path.read_bytes()
+    assert sync(made, solutions) == []
+    assert made.path.read_bytes() == before
+
+
+def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path) -> None:
+    made = small(tmp_path)
+    sync(made, solutions)
+    (solutions / "pkg/node.py").write_text(NODE.replace("return 0", "return 1"))
+    (found,) = stale(made, solutions)
+    assert str(found).startswith("01_small.ipynb, cell 'node': differs from solutions/pkg/node.py; run `python -m")
+    assert "-    return 0" in str(found)
+    assert "+    return 1" in str(found)
+
+
+def test_a_cell_that_hides_nothing_shows_the_file(tmp_path: Path, solutions: Path) -> None:
+    made = small(tmp_path, hide=[])
+    sync(made, solutions)
+    assert made.read().cells[1].source == f"%%writefile ws/src/pkg/node.py\n{NODE}".rstrip()
+
+
+def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> None:
+    made = chapter(tmp_path, notebook(prose("# A title", "title"), given={"ws/src/pkg/setup.cfg": "pkg/setup.cfg"}))
+    (missing,) = stale(made, solutions)
+    assert "the given file ws/src/pkg/setup.cfg is missing" in str(missing)
+    sync(made, solutions)
+    assert (made.folder / "ws/src/pkg/setup.cfg").read_text() == "[develop]\n"
+    assert stale(made, solutions) == []
+    (made.folder / "ws/src/pkg/setup.cfg").write_text("[install]\n")
+    (differs,) = stale(made, solutions)
+    assert "the given file ws/src/pkg/setup.cfg differs" in str(differs)
+
+
+@pytest.mark.parametrize(
+    ("course", "message"),
+    [
+        ({"source": "pkg/gone.py"}, "the reference has no file pkg/gone.py"),
+        ({"source": "../secret"}, "must stay inside its folder"),
+        ({"target": "/etc/passwd"}, "must stay inside its folder"),
+        ({"target": None}, "must be paths, not None"),
+        ({"hide": "main"}, '"hide" must be a list of function names'),
+        ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
+    ],
+)
+def test_metadata_that_copying_cannot_mend_is_an_error_and_writes_nothing(
+    tmp_path: Path, solutions: Path, course: dict[str, Any], message: str
+) -> None:
+    made = small(tmp_path, **course)
+    before = made.path.read_bytes()
+    (found,) = stale(made, solutions)
+    assert message in str(found)
+    with pytest.raises(CourseError, match=r"01_small\.ipynb, cell 'node'"):
+        sync(made, solutions)
+    assert made.path.read_bytes() == before
+
+
+def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
+    made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
+    (found,) = stale(made, solutions)
+    assert '"given" must map' in found.message
+
+
+def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
+    made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
+    (found,) = stale(made, solutions)
+    assert 'metadata\'s "course" must be a mapping' in found.message
+
+
+def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
+    with pytest.raises(CourseError, match="01_small: a chapter's folder holds a notebook of its own name"):
+        Chapter(tmp_path / "01_small").read()
+
+
+@pytest.mark.parametrize("text", ["no json", "{}", '{"cells": 3}'])
+def test_a_file_that_is_no_notebook_is_named(tmp_path: Path, text: str) -> None:
+    made = chapter(tmp_path, notebook())
+    made.path.write_text(text)
+    with pytest.raises(CourseError, match=r"01_small\.ipynb is not a notebook"):
+        made.read()
+
+
+def test_two_cells_with_one_id_are_named_before_nbformat_repairs_them(tmp_path: Path) -> None:
+    made = chapter(tmp_path, notebook(prose("# T", "same"), prose("text", "other")))
+    made.path.write_text(made.path.read_text().replace('"other"', '"same"'))
+    with pytest.raises(CourseError, match=r"each cell needs an id of its own: .*'same'"):
+        made.read()
+
+
+def test_chapters_come_in_their_order_and_scratch_notebooks_do_not(tmp_path: Path) -> None:
+    for name in ("02_b", "01_a"):
+        chapter(tmp_path, notebook(), name)
+    (tmp_path / "chapters/01_a/Untitled.ipynb").write_text("{}")
+    assert [made.assignment for made in chapters(tmp_path / "chapters")] == ["01_a", "02_b"]
