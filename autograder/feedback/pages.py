@@ -42,18 +42,19 @@ def environment() -> jinja2.Environment:
     return found
 
 
-def write(result: Result, folder: Path, *, after_due: bool = False) -> Path:
+def write(result: Result, folder: Path, *, artifacts: Path | None = None, after_due: bool = False) -> Path:
     """Write the feedback page of one submission and return its path.
 
     Args:
         result: the graded submission.
-        folder: the result's folder: pictures are read from it, `feedback.html` goes into it.
+        folder: where `feedback.html` goes.
+        artifacts: the result's folder, from which its pictures are read; by default the same.
         after_due: also show the checks that stay closed until the due date.
 
     Raises:
-        UsageError: an artifact's name leads out of `folder`.
+        UsageError: an artifact's name leads out of its folder.
     """
-    page = view(result, from_folder(folder), after_due=after_due)
+    page = view(result, from_folder(artifacts or folder), after_due=after_due)
     return _put(folder / PAGE, environment().get_template("feedback.html.j2").render(page=page))
 
 

@@ -1,0 +1,66 @@
+"""Gradescope: a `results.json` a submission, by its autograder specification.
+
+The format: https://gradescope-autograders.readthedocs.io/en/latest/specs/ (output format, test cases, visibility).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from autograder.checks import Outcome, Visibility
+from autograder.diagnosis import Kind
+from autograder.export.folders import per_student
+from autograder.export.stored import Stored
+from autograder.feedback.text import clean
+from autograder.result import CheckResult, Result, Status, write_json
+
+# A hidden check cannot be tried by the student, but its verdict is part of the feedback: so, once marks are published.
+VISIBILITY = {
+    Visibility.VISIBLE: "visible",
+    Visibility.HIDDEN: "after_published",
+    Visibility.AFTER_DUE: "after_due_date",
+}
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write `out/<student>/results.json` for each submission and return `out`."""
+    for item, folder in per_student(stored, out):
+        write_json(folder / "results.json", report(item.result))
+    return out
+
+
+def report(result: Result) -> dict[str, Any]:
+    """Return what Gradescope reads of one submission.
+
+    One that was not graded has neither score nor tests: Gradescope then reports a failed autograder, not a zero.
+    """
+    if result.status is Status.NOT_GRADED:
+        return {"output": "Not graded: the grader itself failed. This is not a zero."}
+    return {
+        "score": result.score,
+        "execution_time": round(result.seconds),
+        "output": "" if result.diagnosis.kind is Kind.OK else clean(result.diagnosis.sentence),
+        "output_format": "text",
+        "stdout_visibility": "hidden",
+        "tests": [_test(check, index) for index, check in enumerate(result.checks, start=1)],
+        "extra_data": {"seed": result.seed, "suite_version": result.suite_version, "isolation": result.isolation},
+    }
+
+
+def _test(check: CheckResult, index: int) -> dict[str, Any]:
+    hints = [f"Hint: {hint}" for hint in check.hints if check.outcome is Outcome.FAILED]
+    message = check.message if check.outcome is not Outcome.PASSED else ""
+    return {
+        "number": str(index),
+        "name": clean(check.title),
+        "name_format": "text",
+        "score": check.points,
+        "max_score": check.max_points,
+        "status": "passed" if check.outcome is Outcome.PASSED else "failed",
+        "output": clean("\n".join(line for line in (message, *hints, check.doc or "") if line)),
+        "output_format": "text",
+        "tags": [check.group, check.outcome.value],
+        "visibility": VISIBILITY[check.visibility],
+    }

@@ -1,0 +1,17 @@
+"""HTML: the students' feedback pages and a table that leads to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder import feedback
+from autograder.export.folders import per_student
+from autograder.export.stored import Stored
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write `out/<student>/feedback.html` for each submission and `out/index.html`; return the latter."""
+    for item, folder in per_student(stored, out):
+        feedback.write(item.result, folder, artifacts=item.folder)
+    return feedback.write_summary([item.result for item in stored], out)

@@ -1,0 +1,62 @@
+"""JUnit XML: a test suite a submission, a test case a check, as CI servers show them."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder.checks import Outcome
+from autograder.export.stored import Stored
+from autograder.feedback.text import clean, number, one_line
+from autograder.result import CheckResult, Result, Status
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write the report. Failed is a failure, not checked is skipped, not graded is an error."""
+    suites = [_suite(item.result) for item in stored]
+    root = ET.Element("testsuites", _totals(suites))
+    root.extend(suites)
+    ET.indent(root)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    ET.ElementTree(root).write(out, encoding="utf-8", xml_declaration=True)
+    return out
+
+
+def _suite(result: Result) -> ET.Element:
+    cases = [_case(check, result) for check in result.checks]
+    if result.status is Status.NOT_GRADED:
+        case = ET.Element("testcase", {"classname": one_line(result.assignment), "name": "graded", "time": "0"})
+        ET.SubElement(case, "error", {"message": "not graded: the grader itself failed; this is not a zero"})
+        cases = [case]
+    suite = ET.Element("testsuite", {"name": one_line(f"{result.assignment}: {result.student}")})
+    suite.attrib |= {
+        "tests": str(len(cases)),
+        "failures": str(sum(case.find("failure") is not None for case in cases)),
+        "errors": str(sum(case.find("error") is not None for case in cases)),
+        "skipped": str(sum(case.find("skipped") is not None for case in cases)),
+        "time": f"{result.seconds:.3f}",
+        "timestamp": one_line(result.started),
+    }
+    properties = ET.SubElement(suite, "properties")
+    for name, value in (("seed", result.seed), ("suite_version", result.suite_version), ("score", result.score)):
+        ET.SubElement(properties, "property", {"name": name, "value": one_line(str(value))})
+    suite.extend(cases)
+    return suite
+
+
+def _case(check: CheckResult, result: Result) -> ET.Element:
+    name = f"{result.assignment}.{check.group}"
+    case = ET.Element("testcase", {"classname": one_line(name), "name": check.id, "time": f"{check.seconds:.3f}"})
+    if check.outcome is Outcome.FAILED:
+        points = f"{number(check.points)} of {number(check.max_points)} points"
+        failure = ET.SubElement(case, "failure", {"message": one_line(check.message) or "failed"})
+        failure.text = clean("\n".join((check.title, check.message, points)))
+    elif check.outcome is Outcome.NOT_CHECKED:
+        ET.SubElement(case, "skipped", {"message": one_line(check.message) or "not checked"})
+    return case
+
+
+def _totals(suites: Sequence[ET.Element]) -> dict[str, str]:
+    names = ("tests", "failures", "errors", "skipped")
+    return {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in names}

@@ -1,0 +1,61 @@
+"""Markdown: a table of the submissions, then each one's checks; for a chat, a wiki or a job's summary in CI."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder.checks import Outcome
+from autograder.diagnosis import Kind
+from autograder.export.stored import Stored
+from autograder.feedback.text import number, one_line
+from autograder.result import CheckResult, Result, Status
+
+MARKS = {Outcome.PASSED: "✓", Outcome.FAILED: "✗", Outcome.NOT_CHECKED: "-"}
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write the report."""
+    results = [item.result for item in stored]
+    lines = ["| Submission | Assignment | Score | Diagnosis |", "|---|---|--:|---|"]
+    lines += [
+        f"| {_plain(r.student)} | {_plain(r.assignment)} | {_score(r)} | {_plain(_diagnosis(r))} |" for r in results
+    ]
+    for result in results:
+        lines += ["", *_submission(result)]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return out
+
+
+def _submission(result: Result) -> list[str]:
+    lines = [f"## {_plain(result.student)}: {_score(result)}"]
+    if _diagnosis(result):
+        lines += ["", _plain(_diagnosis(result))]
+    if result.status is Status.GRADED and result.checks:
+        lines += ["", "| | Check | Points | Why |", "|---|---|--:|---|", *map(_row, result.checks)]
+    return lines
+
+
+def _row(check: CheckResult) -> str:
+    why = "" if check.outcome is Outcome.PASSED else check.message
+    points = f"{number(check.points)} / {number(check.max_points)}"
+    return f"| {MARKS[check.outcome]} | {_plain(check.title)} | {points} | {_plain(why)} |"
+
+
+def _score(result: Result) -> str:
+    if result.status is Status.NOT_GRADED:
+        return "not graded"
+    return f"{number(result.score)} / {number(result.max_score)}"
+
+
+def _diagnosis(result: Result) -> str:
+    if result.status is Status.NOT_GRADED:
+        return "The grader itself failed. This is not a zero."
+    return "" if result.diagnosis.kind is Kind.OK else result.diagnosis.sentence
+
+
+def _plain(text: str) -> str:
+    """Escape each character that Markdown, or HTML in it, could take for markup within a line (CommonMark 2.4)."""
+    return re.sub(r"([\\`*_\[\]<>|~&])", r"\\\1", one_line(text))

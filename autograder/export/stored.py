@@ -1,0 +1,57 @@
+"""Results as grading stored them: a JSON file of one or of a list, or a folder that holds such files."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+from autograder.result import Result, from_json
+
+ONE = "result.json"
+MANY = "results.json"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A result and the folder that its artifacts are in."""
+
+    result: Result
+    folder: Path
+
+
+def load(path: Path) -> tuple[Stored, ...]:
+    """Read the results at `path`.
+
+    Args:
+        path: a result, a list of results (the artifacts of each in the folder beside it that is named after the
+            student), or a folder with a `result.json` in it or below it; one that has none may hold a `results.json`.
+
+    Raises:
+        UsageError: there is nothing to read, or a file is no result; names the file.
+    """
+    if not path.exists():
+        raise UsageError(f"{path}: no such file or folder; give the folder that `autograder grade --out` wrote")
+    if path.is_file():
+        return _read(path)
+    files = sorted(path.rglob(ONE)) or sorted(path.glob(MANY))
+    if not files:
+        raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
+    return tuple(stored for file in files for stored in _read(file))
+
+
+def _read(file: Path) -> tuple[Stored, ...]:
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{file}: cannot be read as JSON: {error}") from None
+    if not isinstance(data, list):
+        return (Stored(from_json(data, source=str(file)), file.parent),)
+    found = (from_json(item, source=f"{file}, entry {index}") for index, item in enumerate(data))
+    return tuple(Stored(result, _folder(result, file.parent)) for result in found)
+
+
+def _folder(result: Result, beside: Path) -> Path:
+    own = beside / result.student
+    return own if own.is_dir() else beside

@@ -1,0 +1,69 @@
+"""CSV: a row a submission, for a spreadsheet or a learning management system."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder.export.stored import Stored
+from autograder.feedback.text import one_line
+from autograder.result import Result, Status
+
+COLUMNS = (
+    "assignment",
+    "student",
+    "status",
+    "score",
+    "max_score",
+    "percent",
+    "diagnosis",
+    "reason",
+    "seed",
+    "suite_version",
+    "isolation",
+    "submission_sha256",
+    "started",
+    "seconds",
+)
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write the table: the columns above, then one a check with the points that it earned.
+
+    A submission that was not graded has no score, rather than 0. UTF-8, comma, quoted where needed (RFC 4180).
+    """
+    checks = list(dict.fromkeys(check.id for item in stored for check in item.result.checks))
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with out.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, [*COLUMNS, *(f"check {id}" for id in checks)], restval="")
+        writer.writeheader()
+        writer.writerows(_row(item.result) for item in stored)
+    return out
+
+
+def _row(result: Result) -> dict[str, str | float]:
+    graded = result.status is Status.GRADED
+    return {
+        "assignment": _text(result.assignment),
+        "student": _text(result.student),
+        "status": result.status.value,
+        "score": result.score if graded else "",
+        "max_score": result.max_score,
+        "percent": round(result.percent, 2) if graded else "",
+        "diagnosis": result.diagnosis.kind.value,
+        "reason": _text(result.diagnosis.sentence),
+        "seed": result.seed,
+        "suite_version": _text(result.suite_version),
+        "isolation": _text(result.isolation),
+        "submission_sha256": result.submission_sha256,
+        "started": _text(result.started),
+        "seconds": result.seconds,
+        **({f"check {check.id}": check.points for check in result.checks} if graded else {}),
+    }
+
+
+def _text(value: str) -> str:
+    """Keep a spreadsheet from taking a student's text for a formula."""
+    line = one_line(value)
+    return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line

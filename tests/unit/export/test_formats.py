@@ -1,0 +1,172 @@
+"""The formats that results are exported to, read back with each format's own reader."""
+
+from __future__ import annotations
+
+import csv
+import json
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from nbconvert.filters.markdown import markdown2html
+
+from autograder.checks import Check, Outcome
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import UsageError
+from autograder.export import FORMATS, Stored, write
+from autograder.result import Artifact, CheckResult, Result
+
+MakeResult = Callable[..., Result]
+Class = list[Stored]
+
+
+@pytest.fixture
+def a_class(make_result: MakeResult, broken_result: Result, ungraded_result: Result, tmp_path: Path) -> Class:
+    return [Stored(result, tmp_path) for result in (make_result(), broken_result, ungraded_result)]
+
+
+@pytest.fixture
+def hostile(make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path) -> Class:
+    text = "=1+1|<script>`x`[a](b)\x00\udcff\n# head"
+    check = CheckResult.of(make_check("c", text, 1, "g"), Outcome.FAILED, text)
+    diagnosis = Diagnosis(Kind.CRASHED_LATER, text, text)
+    return [Stored(make_result("=cmd", checks=(check,), diagnosis=diagnosis), tmp_path)]
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_csv_holds_a_row_a_submission_and_a_column_a_check(a_class: Class, tmp_path: Path) -> None:
+    alice, bob, carol = rows(write(a_class, "csv", tmp_path / "new" / "marks.csv"))
+    assert (alice["student"], alice["score"], alice["max_score"], alice["percent"]) == ("alice", "4.0", "10.0", "40.0")
+    assert (alice["check turns"], alice["check starts"]) == ("1.0", "1.0")
+    assert (bob["diagnosis"], bob["check listens"]) == ("build_failed", "")
+    assert (carol["status"], carol["score"], carol["percent"]) == ("not_graded", "", "")
+
+
+def test_csv_holds_no_formula(hostile: Class, tmp_path: Path) -> None:
+    (row,) = rows(write(hostile, "csv", tmp_path / "marks.csv"))
+    assert row["student"] == "'=cmd"
+    assert row["reason"] == "'=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
+
+
+def test_junit_counts_and_names_what_happened(a_class: Class, tmp_path: Path) -> None:
+    root = ET.parse(write(a_class, "junit", tmp_path / "junit.xml")).getroot()
+    assert dict(root.attrib) == {"tests": "8", "failures": "2", "errors": "1", "skipped": "3"}
+    alice, _, carol = root.findall("testsuite")
+    assert alice.get("name") == "02_nodes: alice"
+    failure = alice.find("testcase[@name='turns']/failure")
+    assert failure is not None
+    assert failure.get("message") == "it kept driving: 0.08 m from the north wall"
+    assert failure.text is not None
+    assert failure.text.endswith("1 of 4 points")
+    assert alice.find("testcase[@name='stops']/skipped") is not None
+    assert alice.find("testcase[@name='starts']/*") is None
+    error = carol.find("testcase/error")
+    assert error is not None
+    assert "not a zero" in error.get("message", "")
+
+
+def test_junit_stays_well_formed_whatever_a_student_wrote(hostile: Class, tmp_path: Path) -> None:
+    root = ET.parse(write(hostile, "junit", tmp_path / "junit.xml")).getroot()
+    failure = root.find("testsuite/testcase/failure")
+    assert failure is not None
+    assert failure.get("message") == "=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
+
+
+def gradescope(stored: Class, out: Path) -> list[dict[str, Any]]:
+    assert write(stored, "gradescope", out) == out
+    return [json.loads((out / item.result.student / "results.json").read_text(encoding="utf-8")) for item in stored]
+
+
+def test_gradescope_gets_the_score_and_a_test_a_check(a_class: Class, tmp_path: Path) -> None:
+    alice, bob, _ = gradescope(a_class, tmp_path / "out")
+    assert (alice["score"], alice["execution_time"], alice["output"]) == (4.0, 12, "")
+    assert sum(test["score"] for test in alice["tests"]) == alice["score"]
+    turns = alice["tests"][2]
+    assert (turns["status"], turns["score"], turns["max_score"]) == ("failed", 1.0, 4)
+    assert turns["output"].splitlines() == [
+        "it kept driving: 0.08 m from the north wall",
+        "Hint: Where is 0 rad in a scan?",
+        "Hint: Compare the smallest forward range with 1.0.",
+        "https://docs.ros.org/en/jazzy/p/sensor_msgs/",
+    ]
+    assert alice["tests"][3]["tags"] == ["safety", "not_checked"]
+    assert bob["output"] == "The package does not build: setup.py line 3."
+
+
+def test_gradescope_shows_hidden_checks_with_the_marks_and_late_ones_after_the_due_date(
+    a_class: Class, tmp_path: Path
+) -> None:
+    tests = gradescope(a_class, tmp_path / "out")[0]["tests"]
+    assert {test["visibility"] for test in tests[:4]} == {"after_published"}
+    assert tests[4]["visibility"] == "after_due_date"
+
+
+def test_gradescope_is_not_told_a_zero_for_what_was_not_graded(a_class: Class, tmp_path: Path) -> None:
+    carol = gradescope(a_class, tmp_path / "out")[2]
+    assert set(carol) == {"output"}
+    assert "not a zero" in carol["output"]
+
+
+def test_html_is_a_page_each_and_a_table_with_the_pictures_inside(
+    make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
+) -> None:
+    stored = [Stored(make_result(artifacts=(track(tmp_path / "in"),)), tmp_path / "in")]
+    index = write(stored, "html", tmp_path / "out")
+    assert index == tmp_path / "out" / "index.html"
+    assert 'href="alice/feedback.html"' in index.read_text(encoding="utf-8")
+    assert "data:image/png;base64," in (tmp_path / "out" / "alice" / "feedback.html").read_text(encoding="utf-8")
+
+
+def test_markdown_is_a_table_and_a_section_each(a_class: Class, tmp_path: Path) -> None:
+    text = write(a_class, "markdown", tmp_path / "report.md").read_text(encoding="utf-8")
+    for line in (
+        "| alice | 02\\_nodes | 4 / 10 |  |",
+        "| bob | 02\\_nodes | 0 / 10 | The package does not build: setup.py line 3. |",
+        "## carol: not graded",
+        "| ✗ | The robot turns when something stands within 1 m in front of it. | 1 / 4 "
+        "| it kept driving: 0.08 m from the north wall |",
+    ):
+        assert line in text.splitlines()
+
+
+def test_markdown_shows_a_students_text_as_text(hostile: Class, tmp_path: Path) -> None:
+    html = markdown2html(write(hostile, "markdown", tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert "<script>" not in html
+    assert '<a href="b"' not in html
+    assert html.count("<tr>") == 4  # two tables of a head and a row: no line of the student's broke one
+    assert "&lt;script&gt;`x`[a](b)" in html
+
+
+def test_a_format_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no format 'pdf'; the formats are csv, gradescope, html, junit, markdown"):
+        write([], "pdf", tmp_path / "x")
+
+
+@pytest.mark.parametrize("format", sorted(FORMATS))
+def test_a_file_and_a_folder_are_not_mixed_up(format: str, tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    wrong, kind = (file, "folder") if format in ("html", "gradescope") else (tmp_path, "file")
+    with pytest.raises(UsageError, match=f"{format} is written to a {kind}, and this is none"):
+        write([], format, wrong)
+
+
+@pytest.mark.parametrize("format", ["html", "gradescope"])
+def test_two_results_of_one_student_do_not_overwrite_each_other(
+    format: str, make_result: MakeResult, tmp_path: Path
+) -> None:
+    twice = [Stored(make_result(), tmp_path)] * 2
+    with pytest.raises(UsageError, match="two results are of the student 'alice'; export one assignment at a time"):
+        write(twice, format, tmp_path / "out")
+
+
+@pytest.mark.parametrize("student", ["..", "a/b", "", "."])
+def test_a_student_whose_name_is_a_path_gets_no_folder(student: str, make_result: MakeResult, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot name a folder"):
+        write([Stored(make_result(student), tmp_path)], "html", tmp_path / "out")
