@@ -15,6 +15,7 @@
 """What the status says, and that a late watcher still gets it."""
 
 import math
+from pathlib import Path
 
 from my_robot_interfaces.msg import RobotStatus
 from my_robot_package.nodes.status_publisher import (
@@ -23,6 +24,7 @@ import pytest
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import BatteryState, JointState
+import yaml
 
 
 @pytest.mark.parametrize(('percentage', 'expected'), [
@@ -60,6 +62,16 @@ def test_a_late_watcher_gets_what_the_sensors_said(world):
     assert heard[0].is_charging
     assert list(heard[0].joint_positions) == pytest.approx([0.1, 0.2])
     assert heard[0].header.stamp.sec > 0
+
+
+def test_the_configuration_names_only_declared_parameters(world):
+    """A name that no node declares would be ignored without a word."""
+    path = Path(__file__).parents[1] / 'config' / 'robot_params.yaml'
+    config = yaml.safe_load(path.read_text())
+    node = world.add(StatusPublisher(context=world.context))
+    assert list(config) == [node.get_name()]
+    for name, value in config[node.get_name()]['ros__parameters'].items():
+        assert node.get_parameter(name).value == value
 
 
 def test_a_period_outside_its_range_is_refused(world):
