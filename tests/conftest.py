@@ -1,8 +1,10 @@
-"""Results to report on, shared by the tests of everything that reads one."""
+"""What all tests share: ROS switched on, a ROS domain of its own for each test, and results to report on."""
 
 from __future__ import annotations
 
 import hashlib
+import itertools
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,26 @@ from matplotlib.figure import Figure
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result import Artifact, Build, CheckResult, Result, Status
+from autograder.ros import activate
+
+# Domains 1 to 101 have no port in the range that Linux hands out to others. Runs start at different ones, and the
+# workers of a run take turns, so that no two tests at work at the same time hear each other.
+_WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+_WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+_RUN = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid()))
+_DOMAINS = itertools.count(int(hashlib.sha256(_RUN.encode()).hexdigest(), 16) % 101 + _WORKER, _WORKERS)
+
+# Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
+activate(domain=next(_DOMAINS) % 101 + 1)
+
+
+@pytest.fixture(autouse=True)
+def ros_domain(monkeypatch: pytest.MonkeyPatch) -> int:
+    """Give the test, and the processes it starts, a ROS domain of its own; return its number."""
+    domain = next(_DOMAINS) % 101 + 1
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    return domain
+
 
 MakeCheck = Callable[..., Check]
 MakeResult = Callable[..., Result]
