@@ -5,8 +5,23 @@
 Nothing here touches pyplot or chooses a backend; `import sim` does not import it.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from sim.view.figures import plot, show
 from sim.view.picture import Picture
 from sim.view.theme import DARK, LIGHT, Theme
 
-__all__ = ["DARK", "LIGHT", "Picture", "Theme", "plot", "show"]
+__all__ = ["DARK", "LIGHT", "LiveView", "Picture", "Theme", "live", "plot", "show"]
+
+if TYPE_CHECKING:
+    from sim.view.live import LiveView, live
+
+
+def __getattr__(name: str) -> Any:
+    """Import the live view, and ipywidgets with it, only for those who ask for it."""
+    if name in ("live", "LiveView"):
+        from importlib import import_module
+
+        module = import_module("sim.view.live")
+        return getattr(module, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

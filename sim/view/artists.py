@@ -205,13 +205,17 @@ def beam_ends(ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose) -> tuple[F
     return mount, ends, hit
 
 
+def is_full_turn(lidar: LidarSpec) -> bool:
+    """Say whether the beams go all the way round."""
+    return math.isclose(lidar.beams * lidar.angle_increment, math.tau, rel_tol=0.02)
+
+
 def draw_scan(
     ax: Axes, ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose, theme: Theme, *, beams: int = 90
 ) -> list[Artist]:
     """Draw about `beams` thin beams, the area that the scan has seen to be free, and a point for each hit."""
     mount, ends, hit = beam_ends(ranges, lidar, pose)
-    full = math.isclose(lidar.beams * lidar.angle_increment, math.tau, rel_tol=0.02)
-    outline = ends if full else np.vstack([mount, ends])
+    outline = ends if is_full_turn(lidar) else np.vstack([mount, ends])
     seen = Polygon(outline, closed=True, facecolor=theme.beam, alpha=0.10, linewidth=0, zorder=1.5)
     ax.add_patch(seen)
     shown = np.zeros(len(ends), dtype=bool)

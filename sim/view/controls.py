@@ -1,0 +1,122 @@
+"""The widgets of the live view: what the buttons look like and which method of the view each one calls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import ipywidgets as widgets
+
+from sim.pose import Command
+
+if TYPE_CHECKING:
+    from sim.view.live import LiveView
+
+LINEAR, ANGULAR = 0.22, 0.9
+"""What an arrow of the pad asks for, in m/s and rad/s."""
+
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
+
+_ALT = (
+    "The world seen from above with the robot, its track and its lidar beams; beside it the scan in the robot's frame"
+)
+
+
+class Controls:
+    """One image, a row to play with time, a pad to drive, and a place for errors."""
+
+    def __init__(self, view: LiveView, *, growing: bool, has_callback: bool, speed: float) -> None:
+        self._view = view
+        self._quiet = False
+        self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"}, tooltip=_ALT)
+        self._play = widgets.ToggleButton(value=False, icon="play", tooltip="Play", layout={"width": "44px"})
+        self._play.add_class("sim-play")
+        self._slider = widgets.FloatSlider(
+            min=0.0,
+            max=0.1,
+            step=0.02,
+            readout_format=".2f",
+            description="t [s]",
+            style={"description_width": "36px"},
+            layout={"flex": "1 1 auto"},
+        )
+        choices = sorted({*SPEEDS, speed})
+        self._speed = widgets.Dropdown(
+            options=[(f"{factor:g}×", factor) for factor in choices],  # noqa: RUF001 (a multiplication sign)
+            value=speed,
+            tooltip="Simulated seconds a second",
+            layout={"width": "78px"},
+        )
+        self._output = widgets.Output()
+        self._play.observe(self._on_play, "value")
+        self._slider.observe(self._on_slider, "value")
+        self._speed.observe(lambda change: view.set_speed(change["new"]), "value")
+        step = self._button("step-forward", "One step of 0.1 s", lambda: view.step())
+        reset = self._button("undo", "Back to the start", view.reset)
+        time_row = [self._play, step, *([reset] if growing else []), self._slider, self._speed]
+        rows: list[Any] = [widgets.HBox(time_row, layout={"max_width": "980px", "align_items": "center"}), self._image]
+        if growing:
+            rows.append(self._pad(has_callback))
+        self.box = widgets.VBox([*rows, self._output])
+
+    def show(self, jpeg: bytes, now: float, end: float) -> None:
+        """Put a frame on show and move the slider, without taking that for a hand on the slider."""
+        self._quiet = True
+        self._image.value = jpeg
+        if end > self._slider.max:
+            self._slider.max = max(end, 1.5 * self._slider.max)
+        self._slider.value = min(now, self._slider.max)
+        self._quiet = False
+
+    def set_playing(self, playing: bool) -> None:
+        """Make the button say what pressing it would do."""
+        self._quiet = True
+        self._play.value = playing
+        self._play.icon = "pause" if playing else "play"
+        self._play.tooltip = "Pause" if playing else "Play"
+        self._quiet = False
+
+    def set_command(self, command: Command | None) -> None:
+        """Say who drives: a command given by hand, or None for the callback."""
+        if command is None:
+            self._who.value = "your callback drives"
+        else:
+            self._who.value = f"{command.linear:+.2f} m/s  {command.angular:+.2f} rad/s"
+
+    def show_error(self, text: str) -> None:
+        """Print what the callback raised below the picture, where cells show errors."""
+        self._output.outputs = ({"output_type": "stream", "name": "stderr", "text": text},)
+
+    def clear_error(self) -> None:
+        """Take the error away."""
+        self._output.outputs = ()
+
+    def _pad(self, has_callback: bool) -> widgets.Widget:
+        self._who = widgets.Label(value="your callback drives" if has_callback else "drive with the arrows")
+        drive = self._view.drive
+        buttons = [
+            self._button("rotate-left", "Turn left", lambda: drive(Command(0.0, ANGULAR))),
+            self._button("arrow-up", "Forward", lambda: drive(Command(LINEAR, 0.0))),
+            self._button("arrow-down", "Backward", lambda: drive(Command(-LINEAR, 0.0))),
+            self._button("rotate-right", "Turn right", lambda: drive(Command(0.0, -ANGULAR))),
+            self._button("stop", "Stop the robot", lambda: drive(Command())),
+        ]
+        if has_callback:
+            buttons.append(self._button("magic", "Let the callback drive", self._view.automatic))
+        return widgets.HBox([*buttons, self._who], layout={"align_items": "center"})
+
+    def _button(self, icon: str, tooltip: str, action: Any) -> widgets.Button:
+        button = widgets.Button(icon=icon, tooltip=tooltip, layout={"width": "44px"})
+        button.on_click(lambda _: action())
+        return button
+
+    def _on_play(self, change: Any) -> None:
+        if not self._quiet:
+            if change["new"]:
+                self._view.play()
+            else:
+                self._view.pause()
+
+    def _on_slider(self, change: Any) -> None:
+        if not self._quiet:
+            self._view.pause()
+            self._view.seek(change["new"])

@@ -1,0 +1,186 @@
+"""What a live view plays: a run that grows as it is watched, or a recording; the past of both can be visited.
+
+No widget and no clock: `advance` is told how much simulated time to add, so a test plays a minute in a moment.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.lidar import Scan
+from sim.pose import Command, Pose
+from sim.recording import Recorder, Recording
+from sim.simulation import Simulation, State, observe, start, step
+from sim.view.figures import state_at
+
+Controller = Callable[[Scan], Command | None]
+"""A student's callback: it gets each new scan and returns the next command; None keeps the last one."""
+
+
+LONGEST_NS = 1_800_000_000_000
+"""A live run ends after half an hour of simulated time."""
+
+TRAIL = 1500
+"""At most about so many points of a track are drawn in a frame."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One instant to be shown: a state, and the newest scan of each robot with the pose it was taken from."""
+
+    state: State
+    scans: tuple[tuple[Scan, Pose] | None, ...]
+
+
+class Session:
+    """A run in progress. `frames` is its past, one a physics tick, never empty."""
+
+    def __init__(self, simulation: Simulation, controller: Controller | None = None) -> None:
+        self.simulation = simulation
+        self.controller = controller
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to the start and forget the past."""
+        state = start(self.simulation)
+        self._recorder = Recorder(self.simulation, state)
+        self._times: list[int] = []
+        self._track: list[tuple[float, float]] = []
+        self.frames: list[Frame] = []
+        self.automatic = self.controller is not None
+        self.command = Command()
+        self._append(state, (None,) * len(self.simulation.robots))
+
+    @property
+    def end_ns(self) -> int:
+        """How far the run has got, in nanoseconds of simulated time."""
+        return self._times[-1]
+
+    @property
+    def growing(self) -> bool:
+        """Whether `advance` can add to the run; a forgotten view must not fill the memory."""
+        return self.end_ns < LONGEST_NS
+
+    def at(self, time_ns: int) -> Frame:
+        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+        return self.frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
+
+    def trail(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
+        count = bisect.bisect_right(self._times, time_ns)
+        return np.array(self._track[: count : 1 + count // TRAIL], dtype=np.float64).reshape(-1, 2)
+
+    def drive(self, command: Command) -> None:
+        """Take the first robot over by hand, from the next tick on."""
+        self.automatic = False
+        self.command = command
+
+    def advance(self, until_ns: int) -> None:
+        """Step the run until it has reached `until_ns`; what the controller raises is raised here."""
+        tick = self.simulation.tick
+        while self.growing and self._times[-1] + round(tick * 1e9) <= until_ns:
+            frame = self.frames[-1]
+            if self.automatic and self.controller is not None and _is_new(frame):
+                newest = frame.scans[0]
+                wanted = self.controller(newest[0]) if newest is not None else None
+                if wanted is not None and not isinstance(wanted, Command):
+                    raise TypeError(f"the callback must return a Command or None, not {type(wanted).__name__}")
+                self.command = self.command if wanted is None else wanted
+            state = step(self.simulation, frame.state, {self.simulation.robots[0].name: self.command}, tick)
+            self._append(state, frame.scans)
+
+    def recording(self) -> Recording:
+        """Return the run so far as a recording, to be plotted, saved or replayed."""
+        return self._recorder.recording()
+
+    def _append(self, state: State, scans: tuple[tuple[Scan, Pose] | None, ...]) -> None:
+        if self._times:
+            self._recorder.append(state, {self.simulation.robots[0].name: self.command})
+        fresh = list(scans)
+        for index, spec in enumerate(self.simulation.robots):
+            if spec.lidar is not None and _due(state, spec.lidar.rate, self.simulation.tick):
+                scan = observe(self.simulation, state, spec.name)
+                self._recorder.scan(scan, spec.name)
+                if scan is not None:
+                    fresh[index] = (scan, state.robots[index].pose)
+        self.frames.append(Frame(state, tuple(fresh)))
+        self._times.append(state.time_ns)
+        self._track.append((state.robots[0].pose.x, state.robots[0].pose.y))
+
+
+class Replay:
+    """A finished recording, played frame by frame."""
+
+    growing = False
+
+    def __init__(self, recording: Recording) -> None:
+        self.simulation = recording.simulation
+        self.automatic = False
+        self._recording = recording
+        self._times = recording.times_ns.tolist()
+
+    @property
+    def end_ns(self) -> int:
+        """The time of the last row, in nanoseconds."""
+        return int(self._times[-1])
+
+    def at(self, time_ns: int) -> Frame:
+        """Return the last row that is not later than `time_ns`."""
+        row = max(0, bisect.bisect_right(self._times, time_ns) - 1)
+        scans = tuple(self._scan(index, row) for index in range(len(self.simulation.robots)))
+        return Frame(state_at(self._recording, row), scans)
+
+    def trail(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
+        count = bisect.bisect_right(self._times, time_ns)
+        return self._recording.poses[: count : 1 + count // TRAIL, 0, :2]
+
+    def reset(self) -> None:
+        """Do nothing: the past of a recording is fixed."""
+
+    def drive(self, command: Command) -> None:
+        """Do nothing: what has happened can't be steered."""
+
+    def advance(self, until_ns: int) -> None:
+        """Do nothing: there is no more to come."""
+
+    def recording(self) -> Recording:
+        """Return the recording."""
+        return self._recording
+
+    def _scan(self, index: int, row: int) -> tuple[Scan, Pose] | None:
+        spec, log = self.simulation.robots[index], self._recording.scans[index]
+        number = int(np.searchsorted(log.rows, row, side="right")) - 1
+        if number < 0 or spec.lidar is None:
+            return None
+        lidar = spec.lidar
+        scan = Scan(
+            stamp_ns=int(log.stamps_ns[number]),
+            ranges=log.ranges[number],
+            intensities=log.intensities[number],
+            angle_min=lidar.angle_min,
+            angle_max=lidar.angle_max,
+            angle_increment=lidar.angle_increment,
+            time_increment=0.0,
+            scan_time=1.0 / lidar.rate,
+            range_min=lidar.range_min,
+            range_max=lidar.range_max,
+        )
+        return scan, Pose(*self._recording.poses[int(log.rows[number]), index].tolist())
+
+
+def _due(state: State, rate: float, tick: float) -> bool:
+    """Say whether a lidar of `rate` scans a second finishes a turn in the tick that ends at `state`."""
+    turns = state.time_ns * 1e-9 * rate
+    before = (state.time_ns * 1e-9 - tick) * rate
+    return state.time_ns == 0 or int(turns + 1e-9) > int(before + 1e-9)
+
+
+def _is_new(frame: Frame) -> bool:
+    newest = frame.scans[0]
+    return newest is not None and newest[0].stamp_ns == frame.state.time_ns
