@@ -14,7 +14,7 @@ from sim.view.theme import DARK, LIGHT, Theme
 __all__ = ["DARK", "LIGHT", "LiveView", "Picture", "Theme", "live", "plot", "show"]
 
 if TYPE_CHECKING:
-    from sim.view.live import LiveView, live
+    from sim.view.player import LiveView, live
 
 
 def __getattr__(name: str) -> Any:
@@ -22,6 +22,6 @@ def __getattr__(name: str) -> Any:
     if name in ("live", "LiveView"):
         from importlib import import_module
 
-        module = import_module("sim.view.live")
+        module = import_module("sim.view.player")
         return getattr(module, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

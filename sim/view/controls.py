@@ -9,7 +9,7 @@ import ipywidgets as widgets
 from sim.pose import Command
 
 if TYPE_CHECKING:
-    from sim.view.live import LiveView
+    from sim.view.player import LiveView
 
 LINEAR, ANGULAR = 0.22, 0.9
 """What an arrow of the pad asks for, in m/s and rad/s."""
