@@ -1,0 +1,149 @@
+"""ROS 2 is found, described and switched on in one place, for wheels and for a sourced installation."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.ros import RosEnvironment, find
+
+ROOT = Path(__file__).parents[3]
+ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
+ROS_VARIABLES = ("ROS_", "AMENT_", "CMAKE_PREFIX", "FASTDDS_", "RCUTILS_", "RMW_", "PYTHONPATH")
+
+
+def python(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run code in a new Python that knows nothing of ROS but `variables`."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(ROS_VARIABLES)}
+    return subprocess.run(
+        [sys.executable, "-c", code], env={**clean, **variables}, capture_output=True, text=True, timeout=120
+    )
+
+
+def test_the_wheels_of_this_virtual_environment_are_found() -> None:
+    done = python(
+        "from autograder.ros import find; ros = find(); print(ros.kind, *ros.prefixes); print(ros.describe())"
+    )
+    assert done.stdout.splitlines() == [f"wheels {sys.prefix}", f"ROS 2 Jazzy, wheels in {sys.prefix}"], done.stderr
+
+
+def test_activating_is_enough_to_start_a_node() -> None:
+    code = """
+from autograder.ros import activate
+activate(domain=17); activate(domain=17)
+import os, rclpy
+rclpy.init()
+node = rclpy.create_node("lonely")
+print(node.get_fully_qualified_name(), rclpy.utilities.get_rmw_implementation_identifier(), os.environ["ROS_DOMAIN_ID"])
+rclpy.shutdown()
+"""
+    done = python(code)
+    assert done.stdout.split() == ["/lonely", "rmw_fastrtps_cpp", "17"], done.stderr
+
+
+def test_activating_keeps_the_log_folder_and_the_transport_that_the_user_chose() -> None:
+    code = """
+import os
+from autograder.ros import activate
+activate()
+print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.environ["ROS_DISTRO"])
+"""
+    done = python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
+    assert done.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], done.stderr
+
+
+FIND = """
+from autograder.ros import RosError, find
+try:
+    ros = find()
+    print(ros.kind, ros.describe(), *ros.prefixes)
+except RosError as error:
+    print(type(error).__name__, error)
+"""
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path) -> Path:
+    """A folder outside the virtual environment from which rclpy would be imported, as when a ROS is sourced."""
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").touch()
+    return tmp_path
+
+
+def test_a_sourced_jazzy_wins_over_the_wheels(elsewhere: Path) -> None:
+    prefixes = f"/home/me/ws/install{os.pathsep}/opt/ros/jazzy"
+    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
+    told = "sourced ROS 2 Jazzy, sourced from /home/me/ws/install /home/me/ws/install /opt/ros/jazzy"
+    assert done.stdout.strip() == told, done.stderr
+
+
+@pytest.mark.parametrize(("distro", "named"), [("humble", "is humble"), ("", "of no known distribution")])
+def test_another_distribution_is_refused_by_name(elsewhere: Path, distro: str, named: str) -> None:
+    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
+    assert done.stdout.startswith("WrongDistroError the sourced ROS 2 "), done.stderr
+    assert named in done.stdout
+    assert "source /opt/ros/jazzy/setup.bash" in done.stdout
+
+
+def test_a_half_sourced_jazzy_is_told_what_is_missing(elsewhere: Path) -> None:
+    done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
+    assert done.stdout.startswith(f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but AMENT_PREFIX_PATH is empty")
+
+
+def test_without_any_ros_the_message_says_what_to_do() -> None:
+    hide = "import sys, autograder.ros; sys.path = [entry for entry in sys.path if 'site-packages' not in entry]\n"
+    done = python(hide + FIND)
+    assert done.stdout.startswith("RosNotFoundError rclpy cannot be imported: run `make setup`"), done.stderr
+
+
+def test_children_get_overlays_first_and_only_what_was_asked_for() -> None:
+    variables = ROS.variables(overlays=(Path("/near"), Path("/far")), domain=232, log_dir=Path("/logs"))
+    assert variables["AMENT_PREFIX_PATH"] == variables["CMAKE_PREFIX_PATH"] == "/near:/far:/venv"
+    assert (variables["ROS_DOMAIN_ID"], variables["ROS_LOG_DIR"]) == ("232", "/logs")
+    assert "ROS_DOMAIN_ID" not in ROS.variables()
+
+
+@pytest.mark.parametrize("domain", [-1, 233])
+def test_a_domain_without_ports_is_refused(domain: int) -> None:
+    with pytest.raises(ValueError, match=f"ROS_DOMAIN_ID must be 0 to 232, not {domain}"):
+        ROS.variables(domain=domain)
+
+
+def test_each_test_has_a_domain_whose_ports_linux_gives_to_nobody_else(ros_domain: int) -> None:
+    assert 1 <= ros_domain <= 101
+    assert os.environ["ROS_DOMAIN_ID"] == str(ros_domain)
+
+
+def with_ros(*command: str) -> subprocess.CompletedProcess[str]:
+    """Run a command by `python -m autograder.ros`."""
+    whole = [sys.executable, "-m", "autograder.ros", *command]
+    return subprocess.run(whole, capture_output=True, text=True, timeout=120, cwd=ROOT)
+
+
+def test_a_command_runs_with_ros_on_and_its_exit_status_comes_back() -> None:
+    done = with_ros("sh", "-c", 'echo "$AMENT_PREFIX_PATH"; command -v colcon; exit 7')
+    prefix = find().prefixes[0]
+    assert (done.returncode, done.stdout.split()) == (7, [str(prefix), str(Path(sys.prefix) / "bin" / "colcon")])
+
+
+def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
+    script = f'eval "$({sys.executable} -m autograder.ros)" && python -c "import os; print(os.environ[\'ROS_DISTRO\'])"'
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=120, cwd=ROOT)
+    assert done.stdout.split() == ["jazzy"], done.stderr
+
+
+def test_a_command_that_is_not_there_is_named() -> None:
+    done = with_ros("no-such-command")
+    assert (done.returncode, done.stderr) == (127, "no-such-command: No such file or directory\n")
+
+
+def test_a_command_is_not_run_without_a_usable_ros(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(elsewhere))
+    monkeypatch.setenv("ROS_DISTRO", "rolling")
+    done = with_ros("echo", "ran")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("ROS 2: the sourced ROS 2 is rolling, the course needs Jazzy")

@@ -1,0 +1,76 @@
+"""The wheels' CMake files are mended once, whole, and to this interpreter's own folders."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy
+import pytest
+
+from autograder.ros import mend
+
+BAKED = """\
+set(headers "/opt/python/cp311-cp311/include/python3.11")
+set(numpy "/opt/python/cp311-cp311/lib/python3.11/site-packages/numpy/_core/include;/usr/include")
+set(old "/opt/python/cp310-cp310/lib/python3.10/site-packages/numpy/core/include")
+set(python "/opt/python/cp311-cp311/bin/python")
+"""
+MENDED = """\
+set(headers "/H")
+set(numpy "/N;/usr/include")
+set(old "/N")
+set(python "/P/bin/python")
+"""
+
+
+def test_each_kind_of_folder_is_replaced_by_its_own() -> None:
+    assert mend.mended(BAKED, headers="/H", numpy_headers="/N", prefix="/P") == MENDED
+
+
+def test_a_folder_with_backslashes_is_taken_literally() -> None:
+    text = mend.mended("/opt/python/cp312-cp312/bin", headers="", numpy_headers="", prefix=r"/odd\1name")
+    assert text == r"/odd\1name/bin"
+
+
+@pytest.fixture
+def prefix(tmp_path: Path) -> Path:
+    """A prefix with one baked CMake file, a good one, and a text that is none of the mender's business."""
+    folder = tmp_path / "share" / "std_msgs" / "cmake"
+    folder.mkdir(parents=True)
+    (folder / "baked.cmake").write_text(BAKED)
+    (folder / "good.cmake").write_text("set(x 1)\n")
+    (folder / "notes.txt").write_text(BAKED)
+    return tmp_path
+
+
+def test_only_baked_cmake_files_are_rewritten_and_a_second_time_none(prefix: Path) -> None:
+    folder = prefix / "share" / "std_msgs" / "cmake"
+    assert [path.name for path in mend.baked_files(prefix)] == ["baked.cmake"]
+    assert mend.mend_wheels(prefix) == 1
+    assert mend.mend_wheels(prefix) == 0
+    text = (folder / "baked.cmake").read_text()
+    assert sysconfig.get_paths()["include"] in text
+    assert numpy.get_include() in text
+    assert f'"{prefix}/bin/python"' in text
+    assert (folder / "notes.txt").read_text() == BAKED
+    assert sorted(path.name for path in folder.iterdir()) == ["baked.cmake", "good.cmake", "notes.txt"]
+
+
+def test_a_prefix_without_wheels_needs_no_mending(tmp_path: Path) -> None:
+    assert mend.mend_wheels(tmp_path) == 0
+
+
+def test_the_environment_that_runs_the_tests_is_mended() -> None:
+    assert mend.baked_files(Path(sys.prefix)) == []
+
+
+def test_the_stand_ins_come_after_everything_real(tmp_path: Path) -> None:
+    pth = mend.link_standins(tmp_path)
+    assert mend.link_standins(tmp_path) == pth
+    assert [path.name for path in tmp_path.iterdir()] == [mend.STANDINS_PTH]
+    code = f"import site, sys; site.addsitedir({str(tmp_path)!r}); print(sys.path[-1])"
+    done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.strip() == str(Path(mend.__file__).parent / "standins"), done.stderr
