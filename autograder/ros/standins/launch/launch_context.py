@@ -116,7 +116,7 @@ class LaunchContext:
 
     def would_handle_event(self, event: Event) -> bool:
         """Whether a registered handler waits for `event`."""
-        return any(handler.matches(event) for handler in self._event_handlers)
+        return any(handler.matches(event) for handler in tuple(self._event_handlers))
 
     def add_completion_future(self, completion_future: asyncio.Future[None]) -> None:
         """Keep the launch running until `completion_future` is done."""

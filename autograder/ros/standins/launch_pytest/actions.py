@@ -1,0 +1,10 @@
+"""The action with which a launch description says that the test may begin."""
+
+from __future__ import annotations
+
+from launch_testing.actions import ReadyToTest
+from standin_notice import guard
+
+__all__ = ["ReadyToTest"]
+
+__getattr__ = guard(__name__)

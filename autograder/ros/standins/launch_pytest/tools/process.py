@@ -1,0 +1,215 @@
+"""Wait until a process has started, written something or exited: in coroutines, or (`_sync`) in plain tests.
+
+Each returns whether it came to that within `timeout` seconds; without a time-out it waits for ever. The
+action must have been made with ``cached_output=True`` where its output is asked for. A validator gets all of
+the output so far and returns True, or fails an assertion or returns False as long as it does not suit.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+from launch import LaunchContext
+from launch.actions import ExecuteLocal
+from launch.event_handler import BaseEventHandler
+from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+from standin_notice import guard
+
+Validator = Callable[[str], "bool | None"]
+
+
+def _handlers(action: ExecuteLocal, notify: Callable[[], None]) -> list[BaseEventHandler]:
+    """Return handlers that notify of everything that the process does."""
+    return [
+        OnProcessStart(target_action=action, on_start=lambda event, context: notify()),
+        OnProcessIO(target_action=action, on_stdout=lambda event: notify(), on_stderr=lambda event: notify()),
+        OnProcessExit(target_action=action, on_exit=lambda event, context: notify()),
+    ]
+
+
+@contextlib.contextmanager
+def _notified(context: LaunchContext, action: ExecuteLocal, notify: Callable[[], None]) -> Iterator[None]:
+    handlers = _handlers(action, notify)
+    for handler in handlers:
+        context.register_event_handler(handler, append=True)
+    try:
+        yield
+    finally:
+        for handler in handlers:
+            context.unregister_event_handler(handler)
+
+
+async def _wait(
+    context: LaunchContext, action: ExecuteLocal, condition: Callable[[], bool], timeout: float | None
+) -> bool:
+    happened = asyncio.Event()
+    deadline = None if timeout is None else time.monotonic() + timeout
+    with _notified(context, action, happened.set):
+        while not condition():
+            happened.clear()
+            left = None if deadline is None else deadline - time.monotonic()
+            try:
+                await asyncio.wait_for(happened.wait(), left)
+            except asyncio.TimeoutError:
+                return condition()
+    return True
+
+
+def _wait_sync(
+    context: LaunchContext, action: ExecuteLocal, condition: Callable[[], bool], timeout: float | None
+) -> bool:
+    happened = threading.Event()
+    deadline = None if timeout is None else time.monotonic() + timeout
+    with _notified(context, action, happened.set):
+        while not condition():
+            left = None if deadline is None else deadline - time.monotonic()
+            if not happened.wait(left):
+                return condition()
+            happened.clear()
+    return True
+
+
+def _started(action: ExecuteLocal) -> Callable[[], bool]:
+    return lambda: "pid" in (action.process_details or {})
+
+
+def _exited(action: ExecuteLocal) -> Callable[[], bool]:
+    return lambda: action.return_code is not None
+
+
+def _valid(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
+    def condition() -> bool:
+        try:
+            return bool(validate(read()))
+        except AssertionError:
+            return False
+
+    return condition
+
+
+async def wait_for_start(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> bool:
+    """Wait until the process has started."""
+    return await _wait(launch_context, execute_process_action, _started(execute_process_action), timeout)
+
+
+def wait_for_start_sync(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> bool:
+    """Wait until the process has started."""
+    return _wait_sync(launch_context, execute_process_action, _started(execute_process_action), timeout)
+
+
+async def wait_for_exit(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> bool:
+    """Wait until the process has exited."""
+    return await _wait(launch_context, execute_process_action, _exited(execute_process_action), timeout)
+
+
+def wait_for_exit_sync(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> bool:
+    """Wait until the process has exited."""
+    return _wait_sync(launch_context, execute_process_action, _exited(execute_process_action), timeout)
+
+
+async def wait_for_output(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> bool:
+    """Wait until the standard output suits."""
+    condition = _valid(execute_process_action.get_stdout, validate_output)
+    return await _wait(launch_context, execute_process_action, condition, timeout)
+
+
+def wait_for_output_sync(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> bool:
+    """Wait until the standard output suits."""
+    condition = _valid(execute_process_action.get_stdout, validate_output)
+    return _wait_sync(launch_context, execute_process_action, condition, timeout)
+
+
+async def wait_for_stderr(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> bool:
+    """Wait until the standard error suits."""
+    condition = _valid(execute_process_action.get_stderr, validate_output)
+    return await _wait(launch_context, execute_process_action, condition, timeout)
+
+
+def wait_for_stderr_sync(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> bool:
+    """Wait until the standard error suits."""
+    condition = _valid(execute_process_action.get_stderr, validate_output)
+    return _wait_sync(launch_context, execute_process_action, condition, timeout)
+
+
+def _explain(text: str, validate: Validator) -> None:
+    """Let the validator's own assertion fail, or say that it returned False."""
+    assert validate(text), f"the output does not suit: {text!r}"
+
+
+async def assert_output(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> None:
+    """Fail unless the standard output suits in time."""
+    if not await wait_for_output(launch_context, execute_process_action, validate_output, timeout):
+        _explain(execute_process_action.get_stdout(), validate_output)
+
+
+def assert_output_sync(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> None:
+    """Fail unless the standard output suits in time."""
+    if not wait_for_output_sync(launch_context, execute_process_action, validate_output, timeout):
+        _explain(execute_process_action.get_stdout(), validate_output)
+
+
+async def assert_stderr(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> None:
+    """Fail unless the standard error suits in time."""
+    if not await wait_for_stderr(launch_context, execute_process_action, validate_output, timeout):
+        _explain(execute_process_action.get_stderr(), validate_output)
+
+
+def assert_stderr_sync(
+    launch_context: LaunchContext,
+    execute_process_action: ExecuteLocal,
+    validate_output: Validator,
+    timeout: float | None = None,
+) -> None:
+    """Fail unless the standard error suits in time."""
+    if not wait_for_stderr_sync(launch_context, execute_process_action, validate_output, timeout):
+        _explain(execute_process_action.get_stderr(), validate_output)
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,30 @@
+"""The action with which a launch description says that the test may begin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from launch import Action, LaunchContext
+from standin_notice import guard
+
+__all__ = ["ReadyToTest"]
+
+
+class ReadyToTest(Action):
+    """Lets the test begin when it is executed."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._callbacks: list[Callable[[], None]] = []
+
+    def _add_callback(self, callback: Callable[[], None]) -> None:
+        self._callbacks.append(callback)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Let it begin."""
+        for callback in self._callbacks:
+            callback()
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,65 @@
+"""Conditions: which texts hold, which do not, and which are no conditions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from launch import LaunchContext
+from launch.actions import LogInfo
+from launch.conditions import (
+    IfCondition,
+    InvalidConditionExpressionError,
+    LaunchConfigurationEquals,
+    LaunchConfigurationNotEquals,
+    UnlessCondition,
+)
+from launch.substitutions import LaunchConfiguration, PythonExpression
+
+
+@pytest.mark.parametrize(("text", "holds"), [("true", True), ("True", True), ("1", True), (" TRUE ", True)])
+@pytest.mark.parametrize("negate", [False, True])
+def test_true_and_one_hold(context: LaunchContext, text: str, holds: bool, negate: bool) -> None:
+    condition = UnlessCondition(text) if negate else IfCondition(text)
+    assert condition.evaluate(context) is not negate
+
+
+@pytest.mark.parametrize("text", ["false", "False", "0"])
+def test_false_and_zero_do_not_hold(context: LaunchContext, text: str) -> None:
+    assert IfCondition(text).evaluate(context) is False
+    assert UnlessCondition(text).evaluate(context) is True
+
+
+def test_a_condition_is_evaluated_in_the_context(context: LaunchContext) -> None:
+    condition = IfCondition(PythonExpression(["'", LaunchConfiguration("robot"), "' == 'r2'"]))
+    assert condition.evaluate(context)
+    context.launch_configurations["robot"] = "c3"
+    assert not condition.evaluate(context)
+
+
+@pytest.mark.parametrize("text", ["yes", "", "2", "None"])
+def test_other_texts_are_errors(context: LaunchContext, text: str) -> None:
+    with pytest.raises(InvalidConditionExpressionError, match=f"expected one of .*'true'.*, but got '{text.lower()}'"):
+        IfCondition(text).evaluate(context)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected", "equal"),
+    [
+        ("robot", "r2", True),
+        ("robot", "c3", False),
+        ("missing", None, True),
+        ("robot", None, False),
+        ("missing", "", False),
+    ],
+)
+def test_a_launch_configuration_is_compared_with_a_text(
+    context: LaunchContext, name: str, expected: Any, equal: bool
+) -> None:
+    assert LaunchConfigurationEquals(name, expected).evaluate(context) is equal
+    assert LaunchConfigurationNotEquals(name, expected).evaluate(context) is not equal
+
+
+def test_a_condition_that_is_none_is_refused_at_once() -> None:
+    with pytest.raises(TypeError, match=r"LogInfo: condition must be a launch.Condition such as IfCondition.*got str"):
+        LogInfo(msg="", condition="true")

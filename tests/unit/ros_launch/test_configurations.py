@@ -1,0 +1,184 @@
+"""Arguments and scopes: who sees which launch configuration, and which part of the environment."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from launch import LaunchContext, LaunchDescription
+from launch.actions import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    GroupAction,
+    OpaqueFunction,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
+from launch.conditions import IfCondition
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration, TextSubstitution
+
+Run = Callable[..., int]
+Note = Callable[[Any], Any]
+X = LaunchConfiguration("x", default="unset")
+
+
+def test_a_default_is_used_and_may_refer_to_an_earlier_argument(run: Run, note: Note, seen: list[str]) -> None:
+    code = run(
+        DeclareLaunchArgument("robot", default_value="r2"),
+        DeclareLaunchArgument("topic", default_value=["/", LaunchConfiguration("robot"), "/scan"]),
+        note(LaunchConfiguration("topic")),
+    )
+    assert (code, seen) == (0, ["/r2/scan"])
+
+
+def test_a_default_does_not_replace_a_value(run: Run, note: Note, seen: list[str]) -> None:
+    run(SetLaunchConfiguration("x", "given"), DeclareLaunchArgument("x", default_value="default"), note(X))
+    assert seen == ["given"]
+
+
+def test_a_missing_argument_ends_the_launch_with_an_error(
+    run: Run, note: Note, seen: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = run(DeclareLaunchArgument("map", description="the map"), note("never"))
+    out = capsys.readouterr().out
+    assert (code, seen) == (1, [])
+    assert 'Required launch argument "map" (description: "the map") was not provided' in out
+    assert (
+        "[ERROR] [launch]: Caught exception in launch (see debug for traceback): "
+        'Required launch argument "map" was not provided.' in out
+    )
+
+
+def test_a_value_outside_of_the_choices_ends_the_launch(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    code = run(SetLaunchConfiguration("mode", "fly"), DeclareLaunchArgument("mode", choices=["drive", "stop"]))
+    assert code == 1
+    expected = """Argument "mode" provided value "fly" is not valid. Valid options are: ['drive', 'stop']"""
+    assert expected in capsys.readouterr().out
+
+
+def test_a_default_outside_of_the_choices_is_refused_at_once() -> None:
+    with pytest.raises(RuntimeError, match='Provided default_value "fly" is not in provided choices'):
+        DeclareLaunchArgument("mode", default_value="fly", choices=["drive"])
+    with pytest.raises(RuntimeError, match="Provided choices arg is empty"):
+        DeclareLaunchArgument("mode", choices=[])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "description"),
+    [
+        ({}, "no description given"),
+        ({"description": "speed"}, "speed"),
+        ({"choices": ["a", "b"]}, "One of: ['a', 'b']"),
+        ({"description": "speed", "choices": ["a"]}, "speed. Valid choices are: ['a']"),
+    ],
+)
+def test_the_description_of_an_argument_names_its_choices(arguments: dict[str, Any], description: str) -> None:
+    assert DeclareLaunchArgument("x", **arguments).description == description
+
+
+def test_what_a_group_sets_ends_with_the_group(run: Run, note: Note, seen: list[str]) -> None:
+    run(
+        SetLaunchConfiguration("x", "outer"),
+        GroupAction([note(X), SetLaunchConfiguration("x", "inner"), note(X)]),
+        note(X),
+    )
+    assert seen == ["outer", "inner", "outer"]
+
+
+def test_a_group_without_scope_leaves_what_it_sets(run: Run, note: Note, seen: list[str]) -> None:
+    run(GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), note(X))
+    assert seen == ["inner"]
+
+
+def test_a_group_without_forwarding_sees_only_what_it_is_given(run: Run, note: Note, seen: list[str]) -> None:
+    y = LaunchConfiguration("y", default="unset")
+    run(
+        SetLaunchConfiguration("x", "outer"),
+        GroupAction([note(X), note(y)], forwarding=False, launch_configurations={"y": ["from ", X]}),
+        note(X),
+        note(y),
+    )
+    assert seen == ["unset", "from outer", "outer", "unset"]
+
+
+def test_groups_nest(run: Run, note: Note, seen: list[str]) -> None:
+    run(
+        GroupAction(
+            [SetLaunchConfiguration("x", "1"), GroupAction([SetLaunchConfiguration("x", "2"), note(X)]), note(X)]
+        ),
+        note(X),
+    )
+    assert seen == ["2", "1", "unset"]
+
+
+def test_the_environment_of_a_group_ends_with_it(run: Run, note: Note, seen: list[str]) -> None:
+    variable = EnvironmentVariable("COURSE_X", default_value="unset")
+    run(
+        GroupAction([SetEnvironmentVariable("COURSE_X", "inner"), note(variable)]),
+        note(variable),
+        SetEnvironmentVariable(["COURSE", "_X"], TextSubstitution(text="outer")),
+        note(variable),
+        UnsetEnvironmentVariable("COURSE_X"),
+        note(variable),
+    )
+    assert seen == ["inner", "unset", "outer", "unset"]
+
+
+def test_an_environment_variable_grows_at_either_end(run: Run) -> None:
+    run(
+        AppendEnvironmentVariable("COURSE_PATH", "b"),
+        AppendEnvironmentVariable("COURSE_PATH", "c"),
+        AppendEnvironmentVariable("COURSE_PATH", "a", prepend=True),
+        AppendEnvironmentVariable("COURSE_LIST", "1"),
+        AppendEnvironmentVariable("COURSE_LIST", "2", separator=","),
+    )
+    assert os.environ["COURSE_PATH"] == "a:b:c"
+    assert os.environ["COURSE_LIST"] == "1,2"
+
+
+def test_a_configuration_can_be_removed(run: Run, note: Note, seen: list[str]) -> None:
+    run(SetLaunchConfiguration("x", "1"), UnsetLaunchConfiguration("x"), note(X))
+    assert seen == ["unset"]
+
+
+def test_substitutions_are_performed_when_the_action_is_executed(run: Run, note: Note, seen: list[str]) -> None:
+    late = note(X)
+    run(SetLaunchConfiguration("x", "1"), SetLaunchConfiguration("x", [X, "2"]), late)
+    assert seen == ["12"]
+
+
+def test_an_opaque_function_gets_its_arguments_and_may_yield_actions(run: Run, note: Note, seen: list[str]) -> None:
+    def function(context: LaunchContext, *args: str, key: str) -> Any:
+        return [note(X.perform(context)), note([*args, key])]
+
+    run(SetLaunchConfiguration("x", "1"), OpaqueFunction(function=function, args=["a", "b"], kwargs={"key": "c"}))
+    assert seen == ["1", "abc"]
+
+
+def test_what_is_no_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("LogInfo") == 1
+    assert "expected a LaunchDescriptionEntity such as an action, got str: 'LogInfo'" in capsys.readouterr().out
+
+
+def test_the_arguments_of_a_description_are_found_without_running_it() -> None:
+    description = LaunchDescription(
+        [
+            DeclareLaunchArgument("first"),
+            DeclareLaunchArgument("first", default_value="ignored"),
+            GroupAction([DeclareLaunchArgument("grouped")]),
+            GroupAction([DeclareLaunchArgument("guarded")], condition=IfCondition("false")),
+        ]
+    )
+    found = {argument.name: argument for argument in description.get_launch_arguments()}
+    assert list(found) == ["first", "grouped", "guarded"]
+    assert found["first"].default_value is None
+    assert [found[name]._conditionally_included for name in found] == [False, False, True]
+
+
+def test_arguments_behind_a_group_that_forwards_nothing_are_not_arguments_of_the_file() -> None:
+    description = LaunchDescription([GroupAction([DeclareLaunchArgument("hidden")], forwarding=False)])
+    assert description.get_launch_arguments() == []
