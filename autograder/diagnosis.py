@@ -30,6 +30,7 @@ class Kind(str, Enum):
     FLOODED_OUTPUT = "flooded_output"
     OUT_OF_MEMORY = "out_of_memory"
     TIMED_OUT = "timed_out"
+    NOT_GRADED = "not_graded"
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def build(workspace: Workspace) -> Build:
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
     environment = {
-        **workspace.environment(domain=0),
+        **workspace.environment(),
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }

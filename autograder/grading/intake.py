@@ -8,9 +8,10 @@ counts and depths are bounded; `build`, `install` and `log` are never looked at.
 from __future__ import annotations
 
 import hashlib
+import os
 import stat
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -59,15 +60,15 @@ def take(path: Path, assignment: str) -> Submission:
         UsageError: there is nothing at `path`.
         StudentError: it is no submission, or one that must not be unpacked.
     """
+    budget = _Budget()
     if path.is_dir():
-        entries = _from_folder(path)
+        entries = _from_folder(path, budget)
     elif path.is_file() and path.suffix == ".ipynb":
-        entries = [_bounded(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)]
+        entries = [budget.read(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)]
     elif path.is_file():
-        entries = _from_zip(path)
+        entries = _from_zip(path, budget)
     else:
         raise UsageError(f"{path}: there is no such file or folder")
-    _check_totals(entries)
     return arrange(entries, assignment)
 
 
@@ -82,7 +83,9 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
         digest.update(f"{entry.path}\0{len(entry.data)}\0".encode(errors="surrogatepass"))
         digest.update(entry.data)
     root = _root(entries, assignment)
-    inside = [Entry(entry.path.relative_to(root), entry.data, entry.executable) for entry in entries if _below(entry, root)]
+    inside = [
+        Entry(entry.path.relative_to(root), entry.data, entry.executable) for entry in entries if _below(entry, root)
+    ]
     notebook = next((entry.data for entry in inside if str(entry.path) == f"{assignment}.ipynb"), None)
     source, extra = [], []
     for entry in inside:
@@ -130,14 +133,35 @@ def _below(entry: Entry, root: PurePosixPath) -> bool:
     return entry.path.is_relative_to(root) and entry.path != root
 
 
-def _from_folder(root: Path) -> list[Entry]:
+class _Budget:
+    """Counts bytes before they are read, so that nothing larger than allowed is ever in memory."""
+
+    def __init__(self) -> None:
+        self._left = MAX_TOTAL
+
+    def read(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> Entry:
+        if len(path.parts) > MAX_DEPTH:
+            raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
+        if len(str(path)) > MAX_NAME or "\0" in str(path):
+            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} characters, or no name")
+        if size > MAX_FILE:
+            raise _unsafe(f"{path} is larger than {MAX_FILE // 2**20} MiB")
+        self._left -= size
+        if self._left < 0:
+            raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB in all")
+        return Entry(path, read(), executable)
+
+
+def _from_folder(root: Path, budget: _Budget) -> list[Entry]:
     return [
-        _bounded(PurePosixPath(path.relative_to(root)), info.st_size, path.read_bytes, bool(info.st_mode & _EXECUTABLE))
+        budget.read(
+            PurePosixPath(path.relative_to(root)), info.st_size, path.read_bytes, bool(info.st_mode & _EXECUTABLE)
+        )
         for path, info in _walk(root)
     ]
 
 
-def _walk(root: Path) -> Iterator[tuple[Path, stat.stat_result]]:
+def _walk(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
     pending, count = [root], 0
     while pending:
         for path in sorted(pending.pop().iterdir()):
@@ -158,19 +182,19 @@ def _walk(root: Path) -> Iterator[tuple[Path, stat.stat_result]]:
                 raise _unsafe(f"{path.relative_to(root)} is {what}")
 
 
-def _from_zip(path: Path) -> list[Entry]:
+def _from_zip(path: Path, budget: _Budget) -> list[Entry]:
     try:
         with zipfile.ZipFile(path) as archive:
             infos = archive.infolist()
             if len(infos) > MAX_FILES:
                 raise _unsafe(f"it holds more than {MAX_FILES} files and folders")
-            return [entry for info in infos if (entry := _zip_entry(archive, info)) is not None]
+            return [entry for info in infos if (entry := _zip_entry(archive, info, budget)) is not None]
     except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, EOFError, RuntimeError, ValueError) as error:
         sentence = f"{path.name} is no folder, notebook or readable zip archive ({error}): hand in one of these."
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
 
 
-def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Entry | None:
+def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget) -> Entry | None:
     path = PurePosixPath(info.filename.replace("\\", "/"))
     if path.is_absolute() or ".." in path.parts or ":" in path.parts[0:1]:
         raise _unsafe(f"{info.filename} points outside the archive")
@@ -179,7 +203,7 @@ def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Entry | None:
         raise _unsafe(f"{info.filename} is no ordinary file")
     if info.is_dir() or IGNORED.intersection(path.parts):
         return None
-    return _bounded(path, info.file_size, lambda: _inflate(archive, info), bool(mode & _EXECUTABLE))
+    return budget.read(path, info.file_size, lambda: _inflate(archive, info), bool(mode & _EXECUTABLE))
 
 
 def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
@@ -189,21 +213,6 @@ def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     if len(data) != info.file_size:
         raise zipfile.BadZipFile(f"{info.filename} is not as large as the archive says")
     return data
-
-
-def _bounded(path: PurePosixPath, size: int, read: object, executable: bool = False) -> Entry:
-    if len(path.parts) > MAX_DEPTH:
-        raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
-    if len(str(path)) > MAX_NAME or "\0" in str(path):
-        raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} characters, or no name")
-    if size > MAX_FILE:
-        raise _unsafe(f"{path} is larger than {MAX_FILE // 2**20} MiB")
-    return Entry(path, read(), executable)  # type: ignore[operator]
-
-
-def _check_totals(entries: list[Entry]) -> None:
-    if sum(len(entry.data) for entry in entries) > MAX_TOTAL:
-        raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB in all")
 
 
 def _unsafe(why: str) -> StudentError:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 import rclpy
 from rclpy.context import Context
@@ -23,6 +24,11 @@ from autograder.sandbox import Process
 MEETING_SECONDS = 30.0  # real time for the two sides to find each other
 DEPTH = 1000
 NAME = "grader"
+DOMAINS = 100  # beyond about that number, DDS ports reach into the ephemeral ones
+
+_LABS = itertools.count()
+
+AnyLab = TypeVar("AnyLab", bound="Lab")
 
 
 @dataclass(frozen=True)
@@ -64,12 +70,13 @@ class Lab(ABC):
         *,
         offers: dict[str, type] | None = None,
         listens: dict[str, type] | None = None,
-        domain: int = 0,
     ) -> None:
         self._program = workspace.executable(package, executable)
-        self._sandbox = workspace.sandbox(domain=domain)
+        # Two labs may be open at once, with programs that have the same names: each pair meets in a domain of its own.
+        workspace = replace(workspace, domain=(workspace.domain + next(_LABS)) % DOMAINS)
+        self._sandbox = workspace.sandbox()
         self._offers, self._listens = offers or {}, listens or {}
-        self._domain = domain
+        self._domain = workspace.domain
         self._publishers: dict[str, Any] = {}
         self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
 
@@ -108,7 +115,7 @@ class Lab(ABC):
 
     # What they share.
 
-    def __enter__(self) -> Lab:
+    def __enter__(self: AnyLab) -> AnyLab:
         self._context = Context()
         rclpy.init(args=[], context=self._context, domain_id=self._domain)
         self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
@@ -154,6 +161,20 @@ class Lab(ABC):
         """Return what the program published on `topic` after `since` and up to `until`, in seconds of ROS time."""
         return [stamped for stamped in self._received[topic] if since < stamped.seconds <= until]
 
+    def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Listen until `condition` holds, at most `seconds` of real time; return whether it does."""
+        deadline = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > deadline:
+                return False
+            self._spin(0.005)
+        return True
+
+    def nodes(self) -> list[str]:
+        """Return the fully qualified names of the student's nodes that are seen now."""
+        found = self.node.get_node_names_and_namespaces()
+        return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != NAME)
+
     def _meet(self) -> None:
         """Make endpoints that match the program's own, and wait until both sides see each other."""
         topics = self._topics()
@@ -184,12 +205,9 @@ class Lab(ABC):
         received = self._received[topic]
         return lambda message: received.append(Stamped(self.seconds, message))
 
-    def _await(self, condition: Callable[[], bool], seconds: float = MEETING_SECONDS) -> None:
-        deadline = time.monotonic() + seconds
-        while not condition():
-            if time.monotonic() > deadline:
-                raise GraderError(f"the grader and the student's node did not find each other within {seconds:.0f} s")
-            self._spin(0.005)
+    def _await(self, condition: Callable[[], bool]) -> None:
+        if not self.wait_for(condition, MEETING_SECONDS):
+            raise GraderError(f"the grader and the student's node did not meet within {MEETING_SECONDS:.0f} s")
 
     def _spin(self, timeout: float) -> None:
         try:

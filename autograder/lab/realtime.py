@@ -9,14 +9,13 @@ from types import TracebackType
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.lab.meeting import NAME, Lab
+from autograder.lab.meeting import Lab
 from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 
 START_SECONDS = 60.0  # real time from start until the node is seen, generous for a machine that is busy
 SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
-HIDDEN = "_"  # names of nodes that are not meant to be seen begin with it
 
 
 class RealtimeLab(Lab):
@@ -25,12 +24,8 @@ class RealtimeLab(Lab):
     def _start(self) -> None:
         self._began = time.monotonic()
         self._process = launch([sys.executable, str(self._program)], self._sandbox)
-        deadline = self._began + START_SECONDS
-        while not self.nodes():
-            self._alive()
-            if time.monotonic() > deadline:
-                raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self._process.output))
-            self._spin(0.02)
+        if not self.wait_for(lambda: self._alive() and bool(self.nodes()), START_SECONDS):
+            raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self._process.output))
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -57,30 +52,19 @@ class RealtimeLab(Lab):
             self._alive()
             self._spin(min(left, 0.05))
 
-    def nodes(self) -> list[str]:
-        """Return the fully qualified names of the student's nodes that are seen now."""
-        found = self.node.get_node_names_and_namespaces()
-        return sorted(
-            f"{namespace.rstrip('/')}/{name}"
-            for name, namespace in found
-            if name != NAME and not name.startswith(HIDDEN)
-        )
-
     def stop(self, number: signal.Signals, seconds: float) -> int | None:
         """Send a signal; return the exit status, or None if the program is still there after `seconds`."""
         self._process.signal(number)
         return self._process.returncode if self._process.wait(seconds) else None
 
-    def _alive(self) -> None:
+    def _alive(self) -> bool:
         if self._process.ending is not None:
             raise StudentError(diagnose_output(self._process) or diagnose_ending(self._process))
+        return True
 
     def _topics(self) -> set[str]:
         wanted = {*self._offers, *self._listens}
-        deadline = time.monotonic() + SETTLE_SECONDS
-        while not all(self._peers(topic) for topic in wanted) and time.monotonic() < deadline:
-            self._alive()
-            self._spin(0.02)
+        self.wait_for(lambda: self._alive() and all(self._peers(topic) for topic in wanted), SETTLE_SECONDS)
         return {topic for topic in wanted if self._peers(topic)}
 
     def _connected(self, topics: set[str]) -> bool:

@@ -27,12 +27,14 @@ class Workspace:
         ros: the ROS 2 that it was built with.
         scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
         underlays: install folders of workspaces below this one, such as given message packages.
+        domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
     """
 
     root: Path
     ros: RosEnvironment
     scratch: Path
     underlays: tuple[Path, ...] = ()
+    domain: int = 0
 
     @property
     def install(self) -> Path:
@@ -66,7 +68,7 @@ class Workspace:
             )
         )
 
-    def environment(self, *, domain: int) -> dict[str, str]:
+    def environment(self) -> dict[str, str]:
         """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
         prefixes = self.prefixes()
         libraries = [str(prefix / "lib") for prefix in prefixes]
@@ -76,7 +78,7 @@ class Workspace:
             modules += [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
         return {
             **inherited,
-            **self.ros.variables(overlays=prefixes, domain=domain, log_dir=self.scratch / "ros-log"),
+            **self.ros.variables(overlays=prefixes, domain=self.domain, log_dir=self.scratch / "ros-log"),
             "LD_LIBRARY_PATH": os.pathsep.join([*libraries, os.environ.get("LD_LIBRARY_PATH", "")]).strip(os.pathsep),
             "PYTHONPATH": os.pathsep.join(modules),
             "PYTHONHASHSEED": "0",
@@ -89,14 +91,14 @@ class Workspace:
             "LANG": "C.UTF-8",
         }
 
-    def sandbox(self, *, domain: int, limits: Limits = NODE) -> Sandbox:
+    def sandbox(self, limits: Limits = NODE) -> Sandbox:
         """Describe the sandbox of a node of this workspace: it reads the install space and meets peers over DDS."""
         spaces = tuple(Mount(space) for space in (self.install, *self.underlays) if space.is_dir())
         system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
         return Sandbox(
             workdir=self.scratch,
             mounts=(*system, *spaces, Mount(self.scratch, writable=True), Mount(HOST)),
-            environment=self.environment(domain=domain),
+            environment=self.environment(),
             network=True,
             limits=limits,
         )

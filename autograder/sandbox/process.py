@@ -119,8 +119,8 @@ class Process:
         """The exit status; negative for a signal. None while it runs."""
         return self._popen.returncode if self._ended.is_set() else None
 
-    def wait(self, timeout: float) -> bool:
-        """Wait until it has ended, at most `timeout` seconds; return whether it has."""
+    def wait(self, timeout: float | None) -> bool:
+        """Wait until it has ended, at most `timeout` seconds if given; return whether it has."""
         return self._ended.wait(timeout)
 
     def innermost(self) -> int:

@@ -1,0 +1,11 @@
+"""Grading: from what was handed in to a result.
+
+    submission -> intake -> notebook (hygiene, extract) -> build -> checks -> result
+
+`grade_submission` starts a worker for one submission in a cell of its own; the worker (`worker.py`) goes through the
+phases, running students' code in sandboxes only.
+"""
+
+from autograder.grading.pipeline import Graded, grade_submission
+
+__all__ = ["Graded", "grade_submission"]

@@ -1,0 +1,106 @@
+"""Extraction: the notebook runs in a sandboxed kernel, and its files land in a fresh workspace."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from nbclient import NotebookClient
+from nbclient.exceptions import CellTimeoutError, DeadKernelError
+from nbformat import NotebookNode
+
+import autograder
+import sim
+from autograder import layout
+from autograder.grading.hygiene import STUB
+from autograder.grading.kernel import SandboxedKernelManager
+from autograder.lab.workspace import Workspace
+from autograder.sandbox import Mount, Sandbox
+from autograder.sandbox.limits import KERNEL
+
+GRADING_VARIABLE = "AUTOGRADER_GRADING"
+CELL_SECONDS = 60
+MAX_OUTPUT = 4 * 1024 * 1024
+WRITEFILE = "%%writefile "
+
+
+def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:
+    """Run a notebook in `folder`, in a sandboxed kernel; its outputs are filled in, in place.
+
+    A cell that raises does not stop the run; a kernel that dies does, and the files written so far count.
+
+    Args:
+        notebook: after hygiene.
+        folder: the assignment's folder, with `ws/` in it; the notebook may write there.
+        workspace: says which ROS 2 and which scratch folder are used.
+    """
+    connections = workspace.scratch / "jupyter"
+    connections.mkdir(exist_ok=True)
+    manager = SandboxedKernelManager(_sandbox(folder, workspace), connections)
+    skipped = {index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)}
+    client = _Client(notebook, km=manager, timeout=CELL_SECONDS, allow_errors=True, skipped=skipped)
+    try:
+        client.execute()
+    except (DeadKernelError, CellTimeoutError):
+        return notebook
+    return notebook
+
+
+class _Client(NotebookClient):
+    """nbclient, with a bound on what the kernel may send and cells that are left out."""
+
+    def __init__(self, notebook: NotebookNode, *, skipped: set[int], **options: Any) -> None:
+        super().__init__(notebook, **options)
+        self._skipped = skipped
+        self._received = 0
+
+    async def async_execute_cell(self, cell: NotebookNode, cell_index: int, *args: Any, **kwargs: Any) -> NotebookNode:
+        if cell_index in self._skipped:
+            return cell
+        return await super().async_execute_cell(cell, cell_index, *args, **kwargs)
+
+    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
+        self._received += len(repr(msg.get("content", "")))
+        if self._received > MAX_OUTPUT:
+            manager: Any = self.km
+            manager.provisioner.process.kill()
+            return None
+        return super().process_message(msg, cell, cell_index)
+
+
+def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
+    """Return whether an untouched exercise cell would overwrite a file that the student wrote by other means."""
+    if cell.cell_type != "code" or STUB not in cell.source or not cell.source.startswith(WRITEFILE):
+        return False
+    target = cell.source.splitlines()[0].removeprefix(WRITEFILE).strip()
+    path = (folder / target).resolve()
+    return bool(path.is_relative_to(folder.resolve()) and path.is_file())
+
+
+def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
+    package = Path(autograder.__file__).parent
+    system = tuple(Mount(prefix) for prefix in workspace.ros.prefixes if workspace.ros.kind == "sourced")
+    environment = {
+        **workspace.environment(),
+        GRADING_VARIABLE: "1",
+        "IPYTHONDIR": str(workspace.scratch / "ipython"),
+        "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
+        "JUPYTER_RUNTIME_DIR": str(workspace.scratch / "jupyter"),
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    }
+    environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
+    return Sandbox(
+        workdir=folder,
+        mounts=(
+            *system,
+            Mount(package),
+            Mount(Path(sim.__file__).parent),
+            Mount(layout.WORLDS),
+            Mount(folder, writable=True),
+            Mount(workspace.scratch, writable=True),
+        ),
+        hidden=(layout.SUITES,),
+        environment=environment,
+        limits=KERNEL,
+    )

@@ -1,0 +1,110 @@
+"""Grading one submission: a worker in a cell, one retry when the grader itself failed, and never a made-up zero."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder import suites
+from autograder.checks import Outcome
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import UsageError
+from autograder.grading.job import Job
+from autograder.result import CheckResult, Result, Status, from_json, write_json
+from autograder.sandbox import Tier, require
+from autograder.sandbox.cell import CellReport, run_in_cell
+from autograder.sandbox.process import Ending
+
+RESULT = "result.json"
+NOTEBOOK = "notebook.ipynb"
+TRIES = 2
+
+
+@dataclass(frozen=True)
+class Graded:
+    """A submission's result, and its notebook as it ran in the sandboxed kernel (None without one)."""
+
+    result: Result
+    notebook: NotebookNode | None
+
+
+def grade_submission(
+    path: Path,
+    assignment: str,
+    *,
+    student: str,
+    seed: int,
+    out: Path,
+    isolation: Tier = Tier.BUBBLEWRAP,
+) -> Graded:
+    """Grade one submission.
+
+    Args:
+        path: an assignment's folder, a zip of one, a notebook, or a source tree.
+        assignment: which assignment it answers.
+        student: whose it is; stands in the result only.
+        seed: every hidden input is drawn from it; the same seed gives the same inputs.
+        out: the folder that gets `result.json` and the pictures.
+        isolation: the sandbox's tier.
+
+    Returns:
+        The result. `status` is `not_graded` when the grader failed twice; that is no zero.
+
+    Raises:
+        UsageError: there is no such path or assignment.
+        IsolationError: this machine cannot isolate the submission so.
+    """
+    suite = suites.load(assignment)
+    if not path.exists():
+        raise UsageError(f"{path}: there is no such file or folder")
+    require(isolation)
+    for stale in (RESULT, NOTEBOOK):
+        (out / stale).unlink(missing_ok=True)
+    report = CellReport(Ending.EXITED, 0, "")
+    for _ in range(TRIES):
+        report = run_in_cell(
+            lambda scratch: _worker(Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation)),
+            isolation,
+        )
+        if report.returncode == 0 and (out / RESULT).is_file():
+            result = from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
+            return Graded(result, _notebook(out / NOTEBOOK))
+    result = _not_graded(suite, path, student, seed, isolation, report)
+    write_json(out / RESULT, result.to_json())
+    return Graded(result, None)
+
+
+def _worker(job: Job) -> list[str]:
+    return [sys.executable, "-m", "autograder.grading.worker", job.to_json()]
+
+
+def _notebook(path: Path) -> NotebookNode | None:
+    return nbformat.read(path, as_version=4) if path.is_file() else None
+
+
+def _not_graded(
+    suite: suites.Suite, path: Path, student: str, seed: int, isolation: Tier, report: CellReport
+) -> Result:
+    sentence = (
+        f"The grader failed on this submission, {TRIES} times. This is no zero: an instructor has to grade it again."
+    )
+    return Result(
+        assignment=suite.assignment,
+        student=student,
+        submission_sha256="0" * 64,
+        suite_version=suite.version,
+        seed=seed,
+        isolation=isolation.value,
+        checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, "not graded") for check in suite.checks),
+        max_score=suite.max_score,
+        started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        seconds=0.0,
+        status=Status.NOT_GRADED,
+        diagnosis=Diagnosis(Kind.NOT_GRADED, sentence, "\n".join(report.output.strip().splitlines()[-40:])),
+    )

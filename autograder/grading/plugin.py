@@ -1,0 +1,101 @@
+"""The pytest plug-in of a grading run: turns a suite's tests into check results, and nothing else into anything."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.checks import Check, CheckFailed, Outcome, declared
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.grading.gallery import Gallery
+from autograder.lab.workspace import Workspace
+from autograder.result import CheckResult
+
+
+class GradingPlugin:
+    """Collects a result for each check, in memory of the trusted process.
+
+    Attributes:
+        results: by check id, in the order in which they ran.
+        diagnosis: the first thing that was wrong with the student's program, or OK.
+        failures: tracebacks of the grader's own errors; any of them makes the submission "not graded".
+    """
+
+    def __init__(self, workspace: Workspace, seed: int, gallery: Gallery) -> None:
+        self._workspace = workspace
+        self._seed = seed
+        self._gallery = gallery
+        self.results: dict[str, CheckResult] = {}
+        self.diagnosis: Diagnosis = OK
+        self.failures: list[str] = []
+        self._seconds: dict[str, float] = {}
+
+    @pytest.fixture(scope="session")
+    def workspace(self) -> Workspace:
+        """The student's built workspace."""
+        return self._workspace
+
+    @pytest.fixture(scope="session")
+    def seed(self) -> int:
+        """The number from which every hidden input of this run is drawn."""
+        return self._seed
+
+    @pytest.fixture
+    def gallery(self, request: pytest.FixtureRequest) -> Gallery:
+        """Keeps pictures for the feedback, under the running check's name."""
+        check = declared(request.function)
+        return self._gallery.of("" if check is None else check.id)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(
+        self, item: pytest.Item, call: pytest.CallInfo[Any]
+    ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        check = declared(getattr(item, "function", None))
+        if check is not None:
+            self._record(check, call)
+        return (yield)
+
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        check = declared(getattr(item, "function", None))
+        for needed in check.depends if check else ():
+            if self.results[needed].outcome is not Outcome.PASSED:
+                pytest.skip(f'not checked: first "{self.results[needed].title}" has to pass')
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        if report.failed:
+            self.failures.append(str(report.longrepr))
+
+    def _record(self, check: Check, call: pytest.CallInfo[Any]) -> None:
+        error = None if call.excinfo is None else call.excinfo.value
+        seconds = self._seconds[check.id] = self._seconds.get(check.id, 0.0) + call.duration
+        if error is None:
+            if call.when == "call":
+                self.results[check.id] = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
+            return
+        if isinstance(error, CheckFailed):
+            verdict = CheckResult.of(check, Outcome.FAILED, error.message, fraction=error.fraction, seconds=seconds)
+        elif isinstance(error, StudentError):
+            if self.diagnosis is OK:
+                self.diagnosis = error.diagnosis
+            verdict = CheckResult.of(check, Outcome.FAILED, error.diagnosis.sentence, seconds=seconds)
+        elif isinstance(error, pytest.skip.Exception):
+            verdict = CheckResult.of(check, Outcome.NOT_CHECKED, str(error), seconds=seconds)
+        else:
+            self.failures.append("".join(traceback.format_exception(error)))
+            verdict = CheckResult.of(check, Outcome.NOT_CHECKED, "the grader failed here", seconds=seconds)
+        self.results[check.id] = verdict
+
+
+def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
+    """Run a suite's modules under pytest with nothing of the machine's or the submission's configuration."""
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    arguments = ["-p", "no:cacheprovider", "-p", "no:terminal", "-p", "no:faulthandler"]
+    arguments += ["-c", "/dev/null", "--rootdir", str(files[0].parent), "--confcutdir", str(files[0].parent)]
+    arguments += ["--import-mode=importlib", "-W", "default"]
+    return int(pytest.main([*arguments, *map(str, files)], plugins=[plugin]))

@@ -1,0 +1,152 @@
+"""The worker: the trusted process that grades one submission inside its cell.
+
+    python -m autograder.grading.worker JOB
+
+It imports no student code; that runs in sandboxes below it. It writes `result.json`, or ends with a traceback, which
+the pipeline takes for what it is: a failure of the grader.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from pathlib import Path
+
+import nbformat
+
+from autograder import layout, suites
+from autograder.checks import Outcome
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import GraderError, StudentError
+from autograder.grading.gallery import Gallery
+from autograder.grading.job import Job
+from autograder.grading.plugin import GradingPlugin, run
+from autograder.result import Artifact, Build, CheckResult, Result, write_json
+from autograder.ros import activate
+from autograder.sandbox.tiers import Tier
+from autograder.suites import Suite
+
+RESULT = "result.json"
+NOTEBOOK = "notebook.ipynb"
+_NO_DIGEST = "0" * 64
+
+
+class Grading:
+    """One submission on its way from what was handed in to a result."""
+
+    def __init__(self, job: Job, suite: Suite) -> None:
+        # Imported here, once ROS is switched on: these reach rclpy and the message packages.
+        from autograder.lab.workspace import Workspace
+
+        self._job, self._suite = job, suite
+        self._folder = job.scratch / "assignment"
+        home = job.scratch / "home"
+        home.mkdir(parents=True)
+        # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
+        domain = 0 if job.tier is Tier.BUBBLEWRAP else 1 + os.getpid() % 100
+        self._workspace = Workspace(self._folder / "ws", activate(), home, domain=domain)
+        self._gallery = Gallery(job.out)
+        self._phases: dict[str, float] = {}
+        self._sha256 = _NO_DIGEST
+        self._build: Build | None = None
+
+    def grade(self) -> Result:
+        """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
+        began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
+        results: dict[str, CheckResult] = {}
+        try:
+            self._prepare()
+            diagnosis = self._check(results)
+        except StudentError as error:
+            diagnosis = error.diagnosis
+        if self._build is None and diagnosis is not OK:
+            self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
+        sentence = f"not checked: {diagnosis.sentence}"
+        return Result(
+            assignment=self._job.assignment,
+            student=self._job.student,
+            submission_sha256=self._sha256,
+            suite_version=self._suite.version,
+            seed=self._job.seed,
+            isolation=self._job.tier.value,
+            checks=tuple(
+                results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED, sentence)
+                for check in self._suite.checks
+            ),
+            max_score=self._suite.max_score,
+            started=started,
+            seconds=round(time.monotonic() - began, 2),
+            diagnosis=diagnosis,
+            build=self._build,
+            artifacts=tuple(self._gallery.artifacts),
+            phases=self._phases,
+        )
+
+    def _prepare(self) -> None:
+        from autograder.grading import build, extract, hygiene, intake
+
+        with self._phase("intake"):
+            submission = intake.take(self._job.path, self._job.assignment)
+            self._sha256 = submission.sha256
+            intake.lay_down(submission.extra, self._folder)
+            source = self._workspace.root / "src"
+            source.mkdir(parents=True)
+            intake.lay_down(submission.source, source)
+        if submission.notebook is not None:
+            with self._phase("notebook"):
+                self._give(source)
+                name = f"{self._job.assignment}.ipynb"
+                original = nbformat.read(layout.source_notebook(self._job.assignment), as_version=4)
+                notebook = hygiene.restore(hygiene.read(submission.notebook, name), original)
+                extract.execute(notebook, self._folder, self._workspace)
+                nbformat.write(notebook, self._job.out / NOTEBOOK)
+        with self._phase("build"):
+            build.require_packages(source, self._suite.packages)
+            self._build = build.build(self._workspace)
+
+    def _give(self, source: Path) -> None:
+        """Lay down the packages that the chapter gives and the submission does not bring."""
+        given = layout.chapter(self._job.assignment) / "ws" / "src"
+        for package in sorted(given.iterdir()) if given.is_dir() else ():
+            if not (source / package.name).exists():
+                shutil.copytree(package, source / package.name)
+
+    def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
+        plugin = GradingPlugin(self._workspace, self._job.seed, self._gallery)
+        with self._phase("checks"):
+            run(self._suite.files, plugin)
+        missing = {check.id for check in self._suite.checks} - set(plugin.results)
+        if missing and not plugin.failures:
+            plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
+        if plugin.failures:
+            raise GraderError("\n".join(plugin.failures))
+        results.update(plugin.results)
+        return plugin.diagnosis
+
+    @contextmanager
+    def _phase(self, name: str) -> Iterator[None]:
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            self._phases[name] = round(time.monotonic() - began, 3)
+
+
+def main() -> None:
+    """Grade the job that the command line holds."""
+    job = Job.from_json(sys.argv[1])
+    job.out.mkdir(parents=True, exist_ok=True)
+    activate()
+    result = Grading(job, suites.load(job.assignment)).grade()
+    write_json(job.out / RESULT, result.to_json())
+
+
+__all__ = ["NOTEBOOK", "RESULT", "Artifact", "Grading", "main"]
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""Where the course's parts lie."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+
+ROOT = Path(__file__).resolve().parent.parent
+CHAPTERS = ROOT / "chapters"
+SOLUTIONS = ROOT / "solutions"
+SUITES = ROOT / "autograder" / "suites"
+WORLDS = ROOT / "assets" / "worlds"
+BUILD = ROOT / ".build"
+
+
+def chapter(assignment: str) -> Path:
+    """Return an assignment's source folder.
+
+    Raises:
+        UsageError: there is none of that name; says which there are.
+    """
+    folder = CHAPTERS / assignment
+    if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
+        raise UsageError(f"there is no assignment {assignment!r}; there are: {', '.join(assignments()) or 'none'}")
+    return folder
+
+
+def assignments() -> list[str]:
+    """Return the names of the course's assignments, in order."""
+    return sorted(path.parent.name for path in CHAPTERS.glob("*/*.ipynb") if path.stem == path.parent.name)
+
+
+def source_notebook(assignment: str) -> Path:
+    """Return the path of an assignment's source notebook. Raises UsageError as `chapter` does."""
+    return chapter(assignment) / f"{assignment}.ipynb"

@@ -1,0 +1,55 @@
+"""A cell: a trusted worker process in namespaces of its own, with a scratch folder that dies with it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.sandbox import bubblewrap
+from autograder.sandbox.launcher import TIER_VARIABLE
+from autograder.sandbox.limits import GIB, MIB, Limits
+from autograder.sandbox.process import Ending, Process
+from autograder.sandbox.tiers import Tier, require
+
+SCRATCH = 512 * MIB
+WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=2048, output=4 * MIB)
+
+
+@dataclass(frozen=True)
+class CellReport:
+    """How a worker ended, and what it wrote to stdout and stderr."""
+
+    ending: Ending
+    returncode: int
+    output: str
+
+
+def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = WORKER) -> CellReport:
+    """Run a trusted command in a new cell and wait for its end.
+
+    Args:
+        make_command: gets the cell's scratch folder, returns the command.
+        tier: how strongly the cell is kept apart.
+        limits: a bound on the whole cell, students' processes included.
+
+    Raises:
+        IsolationError: this machine cannot give the tier.
+    """
+    require(tier)
+    scratch = Path(tempfile.mkdtemp(prefix="cell-"))
+    try:
+        command = make_command(scratch)
+        if tier is Tier.BUBBLEWRAP:
+            command = bubblewrap.cell(command, scratch=scratch, size=SCRATCH)
+        environment = {name: value for name, value in os.environ.items() if name not in WHEEL_BOOTSTRAP_VARIABLES}
+        with Process(command, limits, environment={**environment, TIER_VARIABLE: tier.value}) as process:
+            process.wait(None)
+            assert process.ending is not None
+            return CellReport(process.ending, process.returncode or 0, process.output)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)

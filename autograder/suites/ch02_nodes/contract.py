@@ -1,0 +1,22 @@
+"""The contract of the exercise, in numbers, and the names that the checks use."""
+
+from __future__ import annotations
+
+PACKAGE = "my_robot_package"
+EXECUTABLE = "robot_controller"
+NODE = "/robot_controller"
+
+FORWARD = 0.3  # m/s
+TURN = 0.5  # rad/s, to the left
+SAFETY_DISTANCE = 1.0  # m
+HALF_SECTOR = 30.0  # degrees
+STALE_AFTER = 0.5  # s
+TOLERANCE = 0.02  # m/s and rad/s
+
+RULE_FORWARD = "The way is clear: linear.x = 0.3, angular.z = 0."
+RULE_TURN = "Something is within 1 m in front: linear.x = 0, angular.z = 0.5."
+RULE_STOP = "A robot that sees nothing it can trust stands still: publish Twist() as it is."
+REP_117 = "https://www.ros.org/reps/rep-0117.html"
+LASER_SCAN = "https://docs.ros.org/en/jazzy/p/sensor_msgs/msg/LaserScan.html"
+QOS = "https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html"
+NODES = "https://docs.ros.org/en/jazzy/Tutorials/Beginner-Client-Libraries/Writing-A-Simple-Py-Publisher-And-Subscriber.html"

@@ -1,0 +1,53 @@
+"""Stimuli: laser scans made by hand, beam by beam."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sensor_msgs.msg import LaserScan
+
+RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m, as an LDS-01
+
+
+@dataclass(frozen=True)
+class Part:
+    """The beams from bearing `first` to bearing `last` (degrees, 0 is forward, left is positive) read `value` m."""
+
+    first: float
+    last: float
+    value: float
+
+
+def scan(
+    *parts: Part, fill: float = 3.0, beams: int = 360, first_bearing: float = 0.0, last_bearing: float | None = None
+) -> LaserScan:
+    """Return a scan that reads `fill` everywhere but in `parts`; a later part goes over an earlier one.
+
+    Args:
+        parts: what is different.
+        fill: metres.
+        beams: how many.
+        first_bearing: the bearing of beam 0 in degrees.
+        last_bearing: the bearing of the last beam; a full turn without a doubled beam when not given.
+    """
+    last = first_bearing + 360.0 * (beams - 1) / beams if last_bearing is None else last_bearing
+    increment = math.radians(last - first_bearing) / (beams - 1)
+    start = math.radians(first_bearing)
+    message = LaserScan()
+    message.header.frame_id = "laser"
+    message.angle_min, message.angle_increment = start, increment
+    message.angle_max = start + increment * (beams - 1)
+    message.scan_time = 0.1
+    message.range_min, message.range_max = RANGE_MIN, RANGE_MAX
+    bearings = [math.degrees(math.remainder(start + i * increment, math.tau)) for i in range(beams)]
+    message.ranges = [_reading(bearing, parts, fill) for bearing in bearings]
+    return message
+
+
+def _reading(bearing: float, parts: Sequence[Part], fill: float) -> float:
+    for part in reversed(parts):
+        if part.first <= bearing <= part.last:
+            return part.value
+    return fill

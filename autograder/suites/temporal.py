@@ -1,0 +1,48 @@
+"""Temporal logic over recorded traces: how well a formula holds, and the instant at which it first does not.
+
+Formulas are signal temporal logic in discrete time, evaluated by rtamt with quantitative semantics (robustness): the
+value is positive where the formula holds, and its size is the distance to the border in the signals' own units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import rtamt
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of "always CONDITION" on a trace.
+
+    Attributes:
+        robustness: the smallest value of the condition; above 0 when it always holds.
+        violated_at: the first time, in seconds, at which the condition does not hold; None when it always does.
+    """
+
+    robustness: float
+    violated_at: float | None
+
+
+def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequence[float]]) -> Verdict:
+    """Evaluate "always CONDITION" on a trace.
+
+    Args:
+        condition: a formula of rtamt, such as `gap > 0.05` or `(blocked > 0) implies eventually[0:10] (turn > 0)`; its
+            intervals count samples.
+        times: seconds, rising, one a sample.
+        signals: one value a sample, by the names that the formula uses.
+
+    Raises:
+        rtamt.RTAMTException: the formula is malformed.
+    """
+    specification = rtamt.StlDiscreteTimeSpecification()
+    for name in signals:
+        specification.declare_var(name, "float")
+    specification.spec = condition
+    specification.parse()
+    trace = {name: [float(value) for value in values] for name, values in signals.items()}
+    values = [value for _, value in specification.evaluate({"time": list(range(len(times))), **trace})]
+    bad = next((index for index, value in enumerate(values) if value <= 0.0), None)
+    return Verdict(float(min(values)), None if bad is None else float(times[bad]))
