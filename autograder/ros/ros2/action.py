@@ -1,0 +1,160 @@
+"""`ros2 action`: list, info, type and send_goal."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from rclpy.action import (
+    ActionClient,
+    get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
+
+from autograder.ros.ros2 import graph
+from autograder.ros.ros2.filling import filled
+from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.session import Session, add_session_arguments, open_session
+
+_STATUS = {
+    GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
+    GoalStatus.STATUS_EXECUTING: "EXECUTING",
+    GoalStatus.STATUS_CANCELING: "CANCELING",
+    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
+    GoalStatus.STATUS_CANCELED: "CANCELED",
+    GoalStatus.STATUS_ABORTED: "ABORTED",
+}
+
+
+def _list_arguments(parser: argparse.ArgumentParser) -> None:
+    add_session_arguments(parser)
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
+    parser.add_argument(
+        "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
+    )
+
+
+def _list(args: argparse.Namespace) -> Outcome:
+    with open_session(args) as session:
+        session.settle()
+        actions = sorted(get_action_names_and_types(session.node))
+    if args.count_actions:
+        print(len(actions))
+        return None
+    for name, types in actions:
+        print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+    return None
+
+
+def _info_arguments(parser: argparse.ArgumentParser) -> None:
+    add_session_arguments(parser)
+    parser.add_argument("action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')")
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
+    parser.add_argument(
+        "-c", "--count", action="store_true", help="Only display the number of action clients and action servers"
+    )
+
+
+def _info(args: argparse.Namespace) -> Outcome:
+    with open_session(args) as session:
+        name = graph.full_topic_name(session.node, args.action_name)
+        session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
+        session.settle()
+        ends = [
+            ("Action clients", _ends(session, name, get_action_client_names_and_types_by_node)),
+            ("Action servers", _ends(session, name, get_action_server_names_and_types_by_node)),
+        ]
+    print(f"Action: {args.action_name}")
+    for heading, nodes in ends:
+        print(f"{heading}: {len(nodes)}")
+        if not args.count:
+            for node_name, types in nodes:
+                print(f"    {node_name} [{', '.join(types)}]" if args.show_types else f"    {node_name}")
+    return None
+
+
+def _ends(session: Session, action: str, query: Any) -> graph.NamesAndTypes:
+    """Return the nodes that have an end of an action, each with the action's types."""
+    found = []
+    for node in graph.node_names(session, include_hidden=True):
+        types = dict(query(session.node, node.name, node.namespace)).get(action)
+        if types:
+            found.append((node.full_name, types))
+    return sorted(found)
+
+
+def _type_arguments(parser: argparse.ArgumentParser) -> None:
+    add_session_arguments(parser)
+    parser.add_argument("action_name", help="Name of the ROS action to get type (e.g. '/fibonacci')")
+
+
+def _type(args: argparse.Namespace) -> Outcome:
+    with open_session(args) as session:
+        name = graph.full_topic_name(session.node, args.action_name)
+        session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
+        types = dict(get_action_names_and_types(session.node)).get(name, [])
+    for line in types:
+        print(line)
+    return 0 if types else 1
+
+
+def _send_goal_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
+    parser.add_argument("action_type", help="Type of the ROS action (e.g. 'my_interfaces/action/Fibonacci')")
+    parser.add_argument("goal", help="Goal request values in YAML format (e.g. '{order: 10}')")
+    parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+    add_session_arguments(parser)
+
+
+def _send_goal(args: argparse.Namespace) -> Outcome:
+    from rosidl_runtime_py import message_to_yaml
+
+    action_class = graph.load_class(args.action_type, "action")
+    goal, _ = filled(action_class.Goal, args.goal, "message", stamps=False)
+
+    def on_feedback(message: Any) -> None:
+        print(f"Feedback:\n    {message_to_yaml(message.feedback)}")
+
+    with open_session(args) as session:
+        client = ActionClient(session.node, action_class, args.action_name)
+        print("Waiting for an action server to become available...")
+        session.wait_for(client.server_is_ready, timeout=float("inf"))
+        print(f"Sending goal:\n     {message_to_yaml(goal)}")
+        sending = client.send_goal_async(goal, on_feedback if args.feedback else None)
+        session.spin_until(sending)
+        handle = sending.result()
+        if not handle.accepted:
+            print("Goal was rejected.")
+            return None
+        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+        finishing = handle.get_result_async()
+        try:
+            session.spin_until(finishing)
+        except KeyboardInterrupt:
+            _cancel(session, handle)
+            raise
+        answer = finishing.result()
+        print(f"Result:\n    {message_to_yaml(answer.result)}")
+        print(f"Goal finished with status: {_STATUS.get(answer.status, 'UNKNOWN')}")
+        client.destroy()
+    return None
+
+
+def _cancel(session: Session, handle: Any) -> None:
+    """Ask the server to give up the goal, so that Ctrl-C does not leave the robot at it."""
+    print("Canceling goal...")
+    cancelling = handle.cancel_goal_async()
+    if session.spin_until(cancelling, timeout=5.0) and cancelling.result().goals_canceling:
+        print("Goal canceled.")
+    else:
+        print("Failed to cancel goal")
+
+
+VERBS = (
+    Verb("info", "Print information about an action", _info_arguments, _info),
+    Verb("list", "Output a list of action names", _list_arguments, _list),
+    Verb("send_goal", "Send an action goal", _send_goal_arguments, _send_goal),
+    Verb("type", "Print an action's type", _type_arguments, _type),
+)

@@ -1,0 +1,38 @@
+"""A message, request or goal from the YAML text that the user typed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+from rosidl_runtime_py import set_message_fields
+
+from autograder.ros.ros2.exceptions import Ros2Error
+
+
+def filled(interface: Any, text: str, noun: str, *, stamps: bool = True) -> tuple[Any, list[Any]]:
+    """Make a message from YAML text.
+
+    Args:
+        interface: the message's class.
+        text: a YAML dictionary of its fields.
+        noun: what to call it in an error.
+        stamps: allow `auto` for a header and `now` for a time.
+
+    Returns:
+        The message, and a setter for each of its `auto` and `now` fields.
+
+    Raises:
+        Ros2Error: the text is not a YAML dictionary, or does not fit the message.
+    """
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise Ros2Error(f"The passed value is not valid YAML: {error}") from None
+    if not isinstance(values, dict):
+        raise Ros2Error("The passed value needs to be a dictionary in YAML format")
+    message = interface()
+    try:
+        return message, set_message_fields(message, values, expand_header_auto=stamps, expand_time_now=stamps)
+    except (AssertionError, AttributeError, OverflowError, TypeError, ValueError) as error:
+        raise Ros2Error(f"Failed to populate {noun}: {error}") from None

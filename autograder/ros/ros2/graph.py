@@ -1,0 +1,158 @@
+"""Questions to the graph: which nodes, topics and services there are, and of which types."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.expand_topic_name import expand_topic_name
+from rclpy.node import Node
+from rclpy.validate_full_topic_name import validate_full_topic_name
+
+from autograder.ros.ros2.exceptions import Ros2Error
+from autograder.ros.ros2.session import Session
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+@dataclass(frozen=True, order=True)
+class NodeName:
+    """A node, by name and namespace."""
+
+    name: str
+    namespace: str
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name, such as `/robot/driver`."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def hidden(self) -> bool:
+        """Whether the name begins with an underscore, as those of this command's own nodes do."""
+        return self.name.startswith("_")
+
+    @classmethod
+    def parse(cls, text: str) -> NodeName:
+        """Split a name as a user types it, with or without the leading slash."""
+        namespace, _, name = f"/{text.lstrip('/')}".rpartition("/")
+        return cls(name, namespace or "/")
+
+
+def has_hidden_part(name: str) -> bool:
+    """Say whether a topic or service is hidden: a part of its name begins with an underscore."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+def node_names(session: Session, *, include_hidden: bool = False) -> list[NodeName]:
+    """Return the nodes discovered so far."""
+    found = (NodeName(name, namespace) for name, namespace in session.node.get_node_names_and_namespaces())
+    return [node for node in found if include_hidden or not node.hidden]
+
+
+def topic_names_and_types(session: Session, *, include_hidden: bool = False) -> NamesAndTypes:
+    """Return the topics discovered so far, sorted by name."""
+    return _visible(session.node.get_topic_names_and_types(), include_hidden)
+
+
+def service_names_and_types(session: Session, *, include_hidden: bool = False) -> NamesAndTypes:
+    """Return the services discovered so far, sorted by name."""
+    return _visible(session.node.get_service_names_and_types(), include_hidden)
+
+
+def _visible(names_and_types: Any, include_hidden: bool) -> NamesAndTypes:
+    return sorted((name, types) for name, types in names_and_types if include_hidden or not has_hidden_part(name))
+
+
+def find_node(session: Session, text: str, *, include_hidden: bool = True) -> NodeName | None:
+    """Wait for the node that the user named; `None` if it does not show up."""
+    wanted = NodeName.parse(text)
+    if wanted.hidden and not include_hidden:
+        return None
+    return wanted if session.wait_for(lambda: wanted in node_names(session, include_hidden=True)) else None
+
+
+def full_topic_name(node: Node, topic: str) -> str:
+    """Expand a topic's name as the node sees it.
+
+    Raises:
+        Ros2Error: the name is not valid (rclpy's text says where).
+    """
+    try:
+        name: str = expand_topic_name(topic, node.get_name(), node.get_namespace())
+        validate_full_topic_name(name)
+    except ValueError as error:
+        raise Ros2Error(str(error)) from None
+    return name
+
+
+def types_of_topic(session: Session, name: str, timeout: float | None = None) -> list[str]:
+    """Wait for a topic, by its full name, and return its types; none if it does not show up."""
+    return _types_of(session, name, session.node.get_topic_names_and_types, timeout)
+
+
+def types_of_service(session: Session, name: str) -> list[str]:
+    """Wait for a service, by its full name, and return its types; none if it does not show up."""
+    return _types_of(session, name, session.node.get_service_names_and_types, None)
+
+
+def _types_of(session: Session, name: str, query: Callable[[], Any], timeout: float | None) -> list[str]:
+    session.wait_for(lambda: name in dict(query()), timeout)
+    return list(dict(query()).get(name, []))
+
+
+def message_class_of(session: Session, topic: str, *, blocking: bool = False) -> Any:
+    """Return the class of a topic's messages, waiting until the topic has a publisher or subscriber.
+
+    Args:
+        session: where to look.
+        topic: the topic's name, expanded or not.
+        blocking: warn and wait for ever, instead of giving up after the time for named things.
+
+    Returns:
+        The class, or `None` for a topic that did not show up.
+
+    Raises:
+        Ros2Error: the topic has two types, or its type cannot be imported.
+    """
+    name = full_topic_name(session.node, topic)
+    found = types_of_topic(session, name)
+    if not found:
+        print(f"WARNING: topic [{topic}] does not appear to be published yet")
+        if not blocking:
+            return None
+        found = types_of_topic(session, name, timeout=math.inf)
+    if len(found) > 1:
+        raise Ros2Error(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(found)}]")
+    return load_class(found[0], "msg")
+
+
+def load_class(type_name: str, kind: str) -> Any:
+    """Import the class of a message (`kind` is `msg`), service (`srv`) or action (`action`).
+
+    Raises:
+        Ros2Error: it cannot be imported.
+    """
+    from rosidl_runtime_py.utilities import get_action, get_message, get_service
+
+    load = {"msg": get_message, "srv": get_service, "action": get_action}[kind]
+    noun = {"msg": "message", "srv": "service", "action": "action"}[kind]
+    try:
+        return load(type_name)
+    except (AttributeError, ModuleNotFoundError, ValueError) as error:
+        hint = "" if re.fullmatch(r"[\w/]+", type_name) else " (expected package/kind/Name)"
+        raise Ros2Error(f"The passed {noun} type is invalid: '{type_name}'{hint}: {error}") from None
+
+
+def warn_of_duplicates(names: list[NodeName]) -> None:
+    """Warn on stderr if two nodes have one name."""
+    if len(set(names)) < len(names):
+        print(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+            "which can have unintended side effects.",
+            file=sys.stderr,
+        )

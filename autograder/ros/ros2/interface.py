@@ -1,0 +1,132 @@
+"""`ros2 interface`: list, show, package, packages and proto."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from autograder.ros.ros2.exceptions import Ros2Error
+from autograder.ros.ros2.interface_text import unfold
+from autograder.ros.ros2.parsing import Outcome, Verb
+
+_KINDS = (("m", "msg", "Messages"), ("s", "srv", "Services"), ("a", "action", "Actions"))
+
+
+def _kind_arguments(parser: argparse.ArgumentParser) -> None:
+    for letter, kind, plural in _KINDS:
+        parser.add_argument(
+            f"-{letter}", f"--only-{kind}s", action="store_true", help=f"Print out only the {plural.lower()}"
+        )
+
+
+def _chosen(args: argparse.Namespace) -> list[tuple[str, dict[str, list[str]]]]:
+    """Return a heading and the interfaces by package, for each kind asked for, all kinds by default."""
+    from rosidl_runtime_py import get_action_interfaces, get_message_interfaces, get_service_interfaces
+
+    getters = {"msg": get_message_interfaces, "srv": get_service_interfaces, "action": get_action_interfaces}
+    asked = [kind for _, kind, _ in _KINDS if getattr(args, f"only_{kind}s")]
+    return [(plural, getters[kind]()) for _, kind, plural in _KINDS if not asked or kind in asked]
+
+
+def _list(args: argparse.Namespace) -> Outcome:
+    for heading, by_package in _chosen(args):
+        print(f"{heading}:")
+        for package in sorted(by_package):
+            for name in sorted(by_package[package]):
+                print(f"    {package}/{name}")
+    return None
+
+
+def _packages(args: argparse.Namespace) -> Outcome:
+    for package in sorted({package for _, by_package in _chosen(args) for package in by_package}):
+        print(package)
+    return None
+
+
+def _package_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("package_name", help="Name of the ROS package (e.g. 'std_msgs')")
+
+
+def _package(args: argparse.Namespace) -> Outcome:
+    from rosidl_runtime_py import get_interfaces
+
+    try:
+        found = get_interfaces([args.package_name])
+    except LookupError as error:
+        return _message(error)
+    for package in sorted(found):
+        for name in sorted(found[package]):
+            print(f"{package}/{name}")
+    return None
+
+
+def _show_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "type",
+        help="Show an interface definition (e.g. 'std_msgs/msg/String'). '-' reads the name from stdin "
+        "(e.g. 'ros2 topic type /chatter | ros2 interface show -')",
+    )
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--all-comments", action="store_true", help="Show all comments, including for nested interfaces")
+    which.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
+
+
+def _show(args: argparse.Namespace) -> Outcome:
+    name = _name(args.type)
+    lines = unfold(name, _read, comments=not args.no_comments, nested_comments=args.all_comments)
+    try:
+        # Complete before anything is printed: an unknown nested type then gives an error alone.
+        print(*list(lines), sep="\n")
+    except (LookupError, ValueError) as error:
+        return _message(error)
+    return None
+
+
+def _read(name: str) -> str:
+    from rosidl_runtime_py import get_interface_path
+
+    return Path(get_interface_path(name)).read_text(encoding="utf-8")
+
+
+def _proto_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("type", help="Show an interface prototype (e.g. 'std_msgs/msg/String')")
+    parser.add_argument("--no-quotes", action="store_true", help="Omit the outer quotes")
+
+
+def _proto(args: argparse.Namespace) -> Outcome:
+    from rosidl_runtime_py import message_to_yaml
+    from rosidl_runtime_py.utilities import get_interface
+
+    name = _name(args.type)
+    try:
+        interface: Any = get_interface(name)
+    except (AttributeError, ModuleNotFoundError, ValueError) as error:
+        raise Ros2Error(f"The passed interface type is invalid: '{name}': {error}") from None
+    # What one sends: the request of a service, the goal of an action, a message itself.
+    part = getattr(interface, "Request", getattr(interface, "Goal", interface))
+    text = message_to_yaml(part())
+    print(text if args.no_quotes else f'"{text}"')
+    return None
+
+
+def _name(text: str) -> str:
+    if text != "-":
+        return text
+    if sys.stdin.isatty():
+        raise Ros2Error("expected stdin pipe")
+    return sys.stdin.readline().strip()
+
+
+def _message(error: Exception) -> str:
+    return str(error.args[0]) if error.args else str(error)
+
+
+VERBS = (
+    Verb("list", "List all interface types available", _kind_arguments, _list),
+    Verb("package", "Output a list of available interface types within one package", _package_arguments, _package),
+    Verb("packages", "Output a list of packages that provide interfaces", _kind_arguments, _packages),
+    Verb("proto", "Output an interface prototype", _proto_arguments, _proto),
+    Verb("show", "Output the interface definition", _show_arguments, _show),
+)

@@ -1,0 +1,147 @@
+"""`ros2 launch`: find a launch file and hand it to `launch`, the real one or its stand-in."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from autograder.ros.ros2 import packages
+from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, NotCoveredError, Ros2Error
+from autograder.ros.ros2.parsing import Outcome, Verb
+
+_SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "-n",
+        "--noninteractive",
+        action="store_true",
+        help="Run the launch system non-interactively, with no terminal associated",
+    )
+    parser.add_argument(
+        "-d", "--debug", action="store_true", help="Put the launch system in debug mode, provides more verbose output"
+    )
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument(
+        "-p",
+        "--print",
+        "--print-description",
+        dest="print_description",
+        action="store_true",
+        help="Print the launch description to the console without launching it",
+    )
+    which.add_argument(
+        "-s",
+        "--show-args",
+        "--show-arguments",
+        dest="show_args",
+        action="store_true",
+        help="Show arguments that may be given to the launch file",
+    )
+    which.add_argument(
+        "-a",
+        "--show-all-subprocesses-output",
+        action="store_true",
+        help="Show all launched subprocesses' output by overriding their output configuration",
+    )
+    parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
+    parser.add_argument(
+        "package_name", help="Name of the ROS package which contains the launch file, or path of a launch file"
+    )
+    parser.add_argument("launch_file_name", nargs="?", help="Name of the launch file")
+    parser.add_argument(
+        "launch_arguments",
+        nargs="*",
+        help="Arguments to the launch file; '<name>:=<value>' (for duplicates, last one wins)",
+    )
+
+
+def _run(args: argparse.Namespace) -> Outcome:
+    path, words = find_launch_file(args.package_name, args.launch_file_name, args.launch_arguments)
+    arguments = launch_arguments(words)
+    if args.launch_prefix is not None:
+        arguments["launch-prefix"] = args.launch_prefix
+    if args.show_all_subprocesses_output:
+        raise NotCoveredError("`ros2 launch --show-all-subprocesses-output`")
+    try:
+        import launch
+        from launch.launch_description_sources import AnyLaunchDescriptionSource
+    except ModuleNotFoundError as error:
+        return f"`ros2 launch` needs the Python package launch ({error}): {HOW_TO_GET_THE_REAL_ONE}"
+    source = AnyLaunchDescriptionSource(str(path))
+    if args.show_args or args.print_description:
+        description = source.get_launch_description(launch.LaunchContext(argv=words, noninteractive=True))
+        lines = (
+            argument_lines(description)
+            if args.show_args
+            else [launch.LaunchIntrospector().format_launch_description(description)]
+        )
+        print(*lines, sep="\n")
+        return None
+    service = launch.LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)
+    include = launch.actions.IncludeLaunchDescription(source, launch_arguments=arguments.items())
+    service.include_launch_description(launch.LaunchDescription([include]))
+    code: int = service.run()
+    return code
+
+
+def find_launch_file(package: str, name: str | None, words: list[str]) -> tuple[Path, list[str]]:
+    """Find the launch file that the words name; return its path and the words left over as launch arguments.
+
+    Raises:
+        Ros2Error: no such package or file, or several files of that name.
+    """
+    alone = Path(package)
+    if alone.is_file():
+        return alone.absolute(), ([name] if name is not None else []) + words
+    if "/" in package or package.endswith(_SUFFIXES):
+        raise Ros2Error(f"File '{package}' not found")
+    prefix = packages.prefix_of(package)
+    if name is None:
+        raise Ros2Error("launch_file_name is required when package_name is not a path to a launch file")
+    share = prefix / "share" / package
+    found = sorted(path for path in share.rglob(Path(name).name) if path.is_file() and str(path).endswith(f"/{name}"))
+    if not found:
+        raise Ros2Error(
+            f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'"
+        )
+    if len(found) > 1:
+        raise Ros2Error(f"file '{name}' was found more than once in package '{package}': {', '.join(map(str, found))}")
+    return found[0], words
+
+
+def launch_arguments(words: list[str]) -> dict[str, str]:
+    """Parse words of the form `<name>:=<value>`; the last one of a name wins.
+
+    Raises:
+        Ros2Error: a word has another form.
+    """
+    parsed: dict[str, str] = {}
+    for word in words:
+        name, sign, value = word.partition(":=")
+        if not sign or not name:
+            raise Ros2Error(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
+        parsed[name] = value
+    return parsed
+
+
+def argument_lines(description: Any) -> Iterator[str]:
+    """Yield what `--show-args` prints of a launch description."""
+    yield "Arguments (pass arguments as '<name>:=<value>'):"
+    arguments = description.get_launch_arguments()
+    if not arguments:
+        yield "\n  No arguments."
+    for argument in arguments:
+        yield f"\n    '{argument.name}':"
+        yield f"        {argument.description}"
+        if argument.choices:
+            yield f"        Valid choices are: {argument.choices}"
+        if argument.default_value is not None:
+            shown = " + ".join(substitution.describe() for substitution in argument.default_value)
+            yield f"        (default: {shown})"
+
+
+VERB = Verb("launch", "Run a launch file", _arguments, _run)

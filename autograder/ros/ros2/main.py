@@ -1,0 +1,83 @@
+"""The entry point: the real `ros2` if there is one, else the stand-in."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from autograder.ros import RosError, activate
+from autograder.ros.ros2.exceptions import Ros2Error
+from autograder.ros.ros2.parsing import Command, Outcome, parse
+
+STAND_INS = Path(__file__).parents[1] / "standins"
+
+COMMANDS = {
+    "action": Command("Various action related sub-commands", "action", ("echo", "find")),
+    "bag": Command("Various rosbag related sub-commands"),
+    "component": Command("Various component related sub-commands"),
+    "control": Command("Various control related sub-commands"),
+    "daemon": Command("Various daemon related sub-commands"),
+    "doctor": Command("Check ROS setup and other potential issues", "doctor"),
+    "interface": Command("Show information about ROS interfaces", "interface"),
+    "launch": Command("Run a launch file", "launch"),
+    "lifecycle": Command("Various lifecycle related sub-commands"),
+    "multicast": Command("Various multicast related sub-commands"),
+    "node": Command("Various node related sub-commands", "node"),
+    "param": Command("Various param related sub-commands", "param"),
+    "pkg": Command("Various package related sub-commands", "pkg", ("dependencies",)),
+    "run": Command("Run a package specific executable", "run"),
+    "security": Command("Various security related sub-commands"),
+    "service": Command("Various service related sub-commands", "service", ("echo",)),
+    "test": Command("Run a ROS2 launch test"),
+    "topic": Command("Various topic related sub-commands", "topic", ("delay",)),
+    "trace": Command("Trace ROS 2 nodes"),
+    "wtf": Command("Use `wtf` as alias to `doctor`", "doctor"),
+}
+
+
+def main(argv: Sequence[str] | None = None) -> Outcome:
+    """Run `ros2` and return its exit code, or the text of an error (for `sys.exit`, which prints it and exits with 1).
+
+    Ctrl-C gives 2 and SIGTERM 15, as in the real one.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        activate(overlays=_sourced_overlays())
+    except RosError as error:
+        return str(error)
+    if importlib.util.find_spec("ros2cli") is not None:
+        outcome: Outcome = importlib.import_module("ros2cli.cli").main(argv=arguments)
+        return outcome
+    if str(STAND_INS) not in sys.path:
+        sys.path.append(str(STAND_INS))
+    if "--use-python-default-buffering" not in arguments:
+        sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        run, args = parse(COMMANDS, arguments)
+        return run(args)
+    except Ros2Error as error:
+        return str(error)
+    except KeyboardInterrupt:
+        return int(signal.SIGINT)
+    except BrokenPipeError:
+        # `ros2 topic echo /scan | head`: nobody reads on. Python would complain once more when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def _terminate(signum: int, _: object) -> NoReturn:
+    """Leave through the `finally` clauses, so that nodes and children end with us."""
+    raise SystemExit(signum)
+
+
+def _sourced_overlays() -> tuple[Path, ...]:
+    """Return the workspaces that the user has sourced, nearest first; `activate` adds the installation itself."""
+    entries = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return tuple(Path(entry) for entry in entries if entry and Path(entry) != Path(sys.prefix))

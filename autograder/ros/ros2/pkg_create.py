@@ -1,0 +1,191 @@
+"""`ros2 pkg create`."""
+
+from __future__ import annotations
+
+import argparse
+import getpass
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from datetime import date
+from pathlib import Path
+
+from autograder.ros.ros2 import pkg_templates as templates
+from autograder.ros.ros2 import pkg_templates_cpp as templates_cpp
+from autograder.ros.ros2.exceptions import NotCoveredError, Ros2Error
+from autograder.ros.ros2.parsing import Outcome
+from autograder.ros.ros2.pkg_templates import LICENCE_TEXTS, PackageSpec
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `ros2 pkg create`."""
+    parser.add_argument("package_name", help="The package name")
+    parser.add_argument(
+        "--package-format",
+        "--package_format",
+        type=int,
+        default=3,
+        choices=[2, 3],
+        help="The package.xml format",
+    )
+    parser.add_argument(
+        "--description", default="TODO: Package description", help="The description given in the package.xml"
+    )
+    parser.add_argument(
+        "--license",
+        default="TODO: License declaration",
+        help="The license attached to this package; this can be an arbitrary string, but a LICENSE file will only be "
+        "generated if it is one of the supported licenses (pass '?' to get a list)",
+    )
+    parser.add_argument("--destination-directory", default=".", help="Directory where to create the package directory")
+    parser.add_argument(
+        "--build-type",
+        default="ament_cmake",
+        choices=["cmake", "ament_cmake", "ament_python"],
+        help="The build type to process the package with",
+    )
+    parser.add_argument("--dependencies", nargs="+", default=[], help="list of dependencies")
+    parser.add_argument("--maintainer-email", help="email address of the maintainer of this package")
+    parser.add_argument("--maintainer-name", default=getpass.getuser(), help="name of the maintainer of this package")
+    parser.add_argument("--node-name", help="name of the empty executable")
+    parser.add_argument("--library-name", help="name of the empty library")
+
+
+def run(args: argparse.Namespace) -> Outcome:
+    """Write a new package below the destination directory."""
+    if args.license == "?":
+        print("Supported licenses:", *LICENCE_TEXTS, sep="\n")
+        return None
+    spec = _spec(args)
+    _describe(spec, Path(args.destination_directory))
+    folder = Path(args.destination_directory) / spec.name
+    if folder.exists():
+        return (
+            f"\nAborted!\nThe directory already exists: {_shown(folder)}\n"
+            "Either remove the directory or choose a different destination directory or package name"
+        )
+    licence = templates.licence_text(spec.licence, spec.maintainer_name, date.today().year)
+    made: set[Path] = set()
+    try:
+        for relative, text in files(spec, licence):
+            _write(folder, relative, text, made)
+    except OSError as error:
+        return f"unable to create {folder}: {error}"
+    if licence is None:
+        print(
+            f"\n[WARNING]: Unknown license '{spec.licence}'.  This has been set in the package.xml, but no LICENSE "
+            "file has been created.\nIt is recommended to use one of the ament license identifiers:"
+        )
+        print(*LICENCE_TEXTS, sep="\n")
+    return None
+
+
+def files(spec: PackageSpec, licence: str | None) -> Iterator[tuple[str, str]]:
+    """Yield the path and the text of each file of a package; a path that ends in a slash is a folder."""
+    yield "package.xml", templates.package_xml(spec)
+    if licence is not None:
+        yield "LICENSE", licence
+    if spec.build_type == "ament_python":
+        yield f"{spec.name}/__init__.py", ""
+        yield "setup.py", templates.setup_py(spec)
+        yield "setup.cfg", templates.setup_cfg(spec)
+        yield f"resource/{spec.name}", ""
+        for name, text in templates.PYTHON_TESTS.items():
+            yield f"test/{name}", text
+        if spec.library_name:
+            yield f"{spec.name}/{spec.library_name}/__init__.py", ""
+        if spec.node_name:
+            yield f"{spec.name}/{spec.node_name}.py", templates.python_node(spec)
+        return
+    yield "src/", ""
+    yield f"include/{spec.name}/", ""
+    yield "CMakeLists.txt", templates_cpp.cmakelists(spec)
+    if spec.library_name:
+        yield from templates_cpp.cpp_library(spec).items()
+    if spec.node_name:
+        yield f"src/{spec.node_name}.cpp", templates_cpp.cpp_node(spec)
+
+
+def _spec(args: argparse.Namespace) -> PackageSpec:
+    """Check the arguments and complete them with what the machine knows of the user.
+
+    Raises:
+        Ros2Error: a name cannot be one of a package, module or target.
+        NotCoveredError: the build type is not covered.
+    """
+    if args.build_type == "cmake":
+        raise NotCoveredError("`ros2 pkg create --build-type cmake`")
+    for noun, name in (("package", args.package_name), ("node", args.node_name), ("library", args.library_name)):
+        if name is not None and not _IDENTIFIER.fullmatch(name):
+            raise Ros2Error(
+                f"'{name}' cannot be the name of a {noun}: take letters, digits and underscores, a letter first"
+            )
+    node = args.node_name
+    if args.build_type == "ament_python" and args.package_name == "test":
+        raise Ros2Error("A Python package cannot be named 'test': its code and its tests would share a folder")
+    if node and node == args.library_name:
+        node = f"{node}_node"
+        print("[WARNING] node name can not be equal to the library name", file=sys.stderr)
+        print(f"[WARNING] renaming node to {node}", file=sys.stderr)
+    return PackageSpec(
+        name=args.package_name,
+        build_type=args.build_type,
+        package_format=args.package_format,
+        description=args.description,
+        licence=args.license,
+        maintainer_name=args.maintainer_name,
+        maintainer_email=args.maintainer_email or _git_email() or f"{args.maintainer_name}@todo.todo",
+        dependencies=tuple(args.dependencies),
+        node_name=node,
+        library_name=args.library_name,
+    )
+
+
+def _git_email() -> str:
+    """Return the e-mail address that the user gave to git, or an empty text."""
+    git = shutil.which("git")
+    if git is None:
+        return ""
+    answer = subprocess.run([git, "config", "--global", "user.email"], capture_output=True, text=True, check=False)
+    return answer.stdout.strip()
+
+
+def _describe(spec: PackageSpec, destination: Path) -> None:
+    print("going to create a new package")
+    print("package name:", spec.name)
+    print("destination directory:", destination.absolute())
+    print("package format:", spec.package_format)
+    print("version: 0.0.0")
+    print("description:", spec.description)
+    print("maintainer:", [f"{spec.maintainer_name} <{spec.maintainer_email}>"])
+    print("licenses:", [spec.licence])
+    print("build type:", spec.build_type)
+    print("dependencies:", list(spec.dependencies))
+    if spec.node_name:
+        print("node_name:", spec.node_name)
+    if spec.library_name:
+        print("library_name:", spec.library_name)
+
+
+def _write(folder: Path, relative: str, text: str, made: set[Path]) -> None:
+    """Write a file and the folders above it, telling of each as the real command does."""
+    path = folder / relative
+    is_folder = relative.endswith("/")
+    last = path if is_folder else path.parent
+    for parent in (p for p in (*reversed(last.parents), last) if p == folder or folder in p.parents):
+        if parent not in made:
+            print(f"creating folder {_shown(parent)}")
+            parent.mkdir(parents=True)
+            made.add(parent)
+    if not is_folder:
+        print(f"creating {_shown(path)}")
+        path.write_text(text, encoding="utf-8")
+
+
+def _shown(path: Path) -> str:
+    """Return a path as it is printed: below the current directory it begins with `./`."""
+    return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"

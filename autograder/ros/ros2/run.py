@@ -1,0 +1,64 @@
+"""`ros2 run`: start an executable of a package and end with its exit code."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from autograder.ros.ros2 import packages
+from autograder.ros.ros2.parsing import Outcome, Verb
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--prefix",
+        help="Prefix command, which should go before the executable. Command must be wrapped in quotes if it contains "
+        "spaces (e.g. --prefix 'gdb -ex run --args')",
+    )
+    parser.add_argument("package_name", help="Name of the ROS package")
+    parser.add_argument("executable_name", help="Name of the executable")
+    parser.add_argument("argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable")
+
+
+def _run(args: argparse.Namespace) -> Outcome:
+    paths = [path for path in packages.executables_of(args.package_name) if path.name == args.executable_name]
+    if not paths:
+        return "No executable found"
+    if len(paths) > 1:
+        return "\n".join(["Multiple executables found:", *(f"- {path}" for path in paths)])
+    command = [*shlex.split(args.prefix or ""), str(paths[0]), *args.argv]
+    try:
+        child = subprocess.Popen(command)
+    except OSError as error:
+        return f"Cannot start {shlex.join(command)}: {error}"
+    with _signals_go_to(child):
+        code = child.wait()
+    if code < 0:
+        print(f"[ros2run]: {signal.strsignal(-code)}")
+    elif code:
+        print(f"[ros2run]: Process exited with failure {code}")
+    return code
+
+
+@contextmanager
+def _signals_go_to(child: subprocess.Popen[bytes]) -> Iterator[None]:
+    """Let the child decide what Ctrl-C and SIGTERM mean, and outlive it only to report its exit code.
+
+    A terminal sends Ctrl-C to both; a SIGTERM to this process alone would leave the child behind.
+    """
+    before = {
+        signal.SIGINT: signal.signal(signal.SIGINT, lambda *_: None),
+        signal.SIGTERM: signal.signal(signal.SIGTERM, lambda *_: child.terminate()),
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+VERB = Verb("run", "Run a package specific executable", _arguments, _run)

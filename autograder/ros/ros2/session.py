@@ -1,0 +1,127 @@
+"""The node through which a verb looks at the graph, and waiting for the graph to show something.
+
+Nothing here sleeps: waiting is spinning until a condition holds or a deadline passes, in steps short enough for
+Ctrl-C to be heard.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import rclpy
+from rclpy.exceptions import InvalidNodeNameException, InvalidTopicNameException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+from autograder.ros.ros2.exceptions import Ros2Error
+
+NODE_NAME_PREFIX = "_ros2cli"
+
+# Seconds without a change after which the graph counts as discovered, and the most to wait for that.
+QUIET = 0.5
+LONGEST_SETTLING = 5.0
+# Seconds to wait for something that was named: a node, a topic's publisher.
+NAMED = 3.0
+_STEP = 0.05
+
+
+@dataclass(frozen=True)
+class Session:
+    """A node of our own and the executor that spins it.
+
+    Attributes:
+        node: hidden, as its name begins with an underscore.
+        executor: spins the node, on this thread.
+        spin_time: what `--spin-time` said, in seconds.
+    """
+
+    node: Node
+    executor: SingleThreadedExecutor
+    spin_time: float | None
+
+    def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
+        """Spin until `condition` holds; return whether it did before `timeout` (`--spin-time`, or 3 s)."""
+        limit = timeout if timeout is not None else NAMED if self.spin_time is None else self.spin_time
+        deadline = time.monotonic() + limit
+        while not condition():
+            left = deadline - time.monotonic()
+            if left <= 0:
+                return False
+            self.executor.spin_once(timeout_sec=min(_STEP, left))
+        return True
+
+    def settle(self) -> None:
+        """Spin until the graph has not changed for `--spin-time` (0.5 s) seconds."""
+        quiet = QUIET if self.spin_time is None else self.spin_time
+        last = self._graph()
+        changed = start = time.monotonic()
+        while (now := time.monotonic()) - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet):
+            self.executor.spin_once(timeout_sec=_STEP)
+            graph = self._graph()
+            if graph != last:
+                last, changed = graph, time.monotonic()
+
+    def spin_until(self, future: Any, timeout: float | None = None) -> bool:
+        """Spin until a future is done; return whether it is, after at most `timeout` seconds (none: for ever)."""
+        return self.wait_for(future.done, math.inf if timeout is None else timeout)
+
+    def spin(self) -> None:
+        """Spin until interrupted."""
+        self.wait_for(lambda: False, math.inf)
+
+    def _graph(self) -> tuple[object, ...]:
+        node = self.node
+        return (
+            sorted(node.get_node_names_and_namespaces()),
+            sorted(node.get_topic_names_and_types(no_demangle=True)),
+        )
+
+
+@contextmanager
+def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> Iterator[Session]:
+    """Start rclpy with a node of our own, and end it afterwards.
+
+    Raises:
+        Ros2Error: the node's name, or the name of a topic or service used with it, is not valid.
+    """
+    parameters = [Parameter("use_sim_time", value=True)] if getattr(args, "use_sim_time", False) else []
+    # Python's own handlers stay: Ctrl-C then leaves the context alive, so that a goal can still be cancelled.
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        node = rclpy.create_node(
+            node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}",
+            start_parameter_services=False,
+            parameter_overrides=parameters,
+        )
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        try:
+            yield Session(node, executor, getattr(args, "spin_time", None))
+        finally:
+            executor.shutdown(timeout_sec=0)
+            node.destroy_node()
+    except (InvalidNodeNameException, InvalidTopicNameException) as error:
+        raise Ros2Error(str(error)) from None
+    finally:
+        rclpy.try_shutdown()
+
+
+def add_session_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that every verb that looks at the graph has."""
+    parser.add_argument(
+        "--spin-time",
+        type=float,
+        help="Seconds to wait for discovery: of a named thing at most (default: 3), "
+        "of the whole graph until nothing new shows up for so long (default: 0.5)",
+    )
+    parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
+    parser.add_argument("--no-daemon", action="store_true", help="Accepted; this stand-in has no daemon anyway")
