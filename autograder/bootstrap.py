@@ -28,6 +28,7 @@ STAMP = "course-set-up.json"
 
 # What apt provides, and the commands that show that it, or its like, is there.
 TOOLS = {
+    "g++": ("g++",),
     "bubblewrap": ("bwrap",),
     "chromium": ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"),
 }
@@ -242,10 +243,7 @@ def alone(lock: Path) -> Iterator[None]:
 
 
 def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> None:
-    """Install packages with apt; where that is not possible say the command and go on.
-
-    `tried` remembers what apt was asked for: each vain attempt takes seconds, so there is one.
-    """
+    """Install packages with apt, or say the command; `tried` remembers what failed, as each attempt takes seconds."""
     by_hand = f"sudo apt-get install {' '.join(missing)}"
     before = tried.read_text().split() if tried.exists() else []
     sudo = [] if uid == 0 else ["sudo", "-n"]
@@ -285,6 +283,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 set_up.make(dev=options.dev)
         asked = [tool for tool in TOOLS if options.browser or tool != "chromium"]
         missing = [tool for tool in asked if not any(map(shutil.which, TOOLS[tool]))]
+        if not Path(sysconfig.get_path("include"), "Python.h").is_file():
+            missing.append("python{}.{}-dev".format(*interpreter.version))
         if missing:
             install_tools(missing, set_up.venv / "apt-tried", os.geteuid(), run)
     except SetUpError as error:

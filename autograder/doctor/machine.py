@@ -60,11 +60,15 @@ def environment(system: System) -> Finding:
 
 
 def compiler(system: System) -> Finding:
-    """Look for the C and C++ compilers that turn message definitions into libraries."""
+    """Look for the compilers, and for Python's headers, that turn message definitions into libraries."""
     missing = [command for command in ("gcc", "g++") if system.run([command, "--version"], {}).status != 0]
     if missing:
         found = f"{' and '.join(missing)} not found: message packages cannot be compiled"
         return Finding("compiler", Status.MISSING, found, "sudo apt-get install g++")
+    if system.read(system.headers / "Python.h") is None:
+        found = f"Python's headers are not in {system.headers}: message packages cannot be compiled"
+        package = "python{}.{}-dev".format(*system.python)
+        return Finding("compiler", Status.MISSING, found, f"sudo apt-get install {package}")
     return Finding("compiler", Status.OK, system.run(["g++", "--version"], {}).output.splitlines()[0])
 
 

@@ -8,6 +8,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -42,6 +43,7 @@ class System:
         platform: operating system and machine, as in ("Linux", "x86_64").
         prefix: the running environment's folder.
         in_venv: whether that is a virtual environment.
+        headers: where this Python's C headers belong.
         environ: environment variables.
         tmp: the folder for temporary files.
         which: finds a command on PATH or in the running environment.
@@ -58,6 +60,7 @@ class System:
     platform: tuple[str, str]
     prefix: Path
     in_venv: bool
+    headers: Path
     environ: Mapping[str, str]
     tmp: Path
     which: Callable[[str], str | None]
@@ -77,6 +80,7 @@ def this_system() -> System:
         platform=(platform.system(), platform.machine()),
         prefix=Path(sys.prefix),
         in_venv=sys.prefix != sys.base_prefix,
+        headers=Path(sysconfig.get_path("include")),
         environ=os.environ,
         tmp=_temporary(os.environ),
         which=_which,
@@ -117,7 +121,7 @@ def _run(command: Sequence[str], variables: Mapping[str, str]) -> Ran:
     except OSError as error:
         return Ran(127, f"{command[0]}: {error.strerror}")
     except subprocess.TimeoutExpired:
-        return Ran(124, f"{command[0]} did not end within {PATIENCE_SECONDS:.0f} s")
+        return Ran(124, f"{command[0]} did not end within {PATIENCE_SECONDS:g} s")
     return Ran(done.returncode, done.stdout)
 
 

@@ -1,0 +1,389 @@
+"""Each finding is seen on a machine that lacks the thing, and carries the command that mends it."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import stat
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render, this_system
+from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
+
+VENV = Path("/course/.venv")
+WHEELS = RosEnvironment("wheels", (VENV,), VENV / "lib/python3.12/site-packages/rclpy")
+SOURCED = RosEnvironment("sourced", (Path("/opt/ros/jazzy"),), Path("/opt/ros/jazzy/lib/rclpy"))
+FILES = {
+    VENV / "share/rclpy/package.xml": "<package><version>7.1.6</version></package>",
+    Path("/opt/ros/jazzy/share/rclpy/package.xml"): "<package><version>7.1.4</version></package>",
+    Path("/usr/include/python3.12/Python.h"): "",
+}
+DENIED = "bwrap: setting up uid map: Permission denied"
+
+
+def answers(failing: Mapping[str, Ran]) -> Callable[[Sequence[str], Mapping[str, str]], Ran]:
+    """Return a `run` under which everything works but the commands that hold one of the given words."""
+
+    def run(command: Sequence[str], _: Mapping[str, str]) -> Ran:
+        return next((ran for words, ran in failing.items() if words in " ".join(command)), Ran(0, f"{command[0]} 1.0"))
+
+    return run
+
+
+GOOD = System(
+    python=(3, 12, 1),
+    platform=("Linux", "x86_64"),
+    prefix=VENV,
+    in_venv=True,
+    headers=Path("/usr/include/python3.12"),
+    environ={},
+    tmp=Path("/tmp"),
+    which=lambda command: f"/usr/bin/{command}",
+    run=answers({}),
+    read=FILES.get,
+    free=lambda path: 50 * 1024**3,
+    writable=lambda path: True,
+    package=lambda name: "1.2",
+    find_ros=lambda: WHEELS,
+    baked=lambda prefix: 0,
+)
+
+
+def without(*commands: str) -> Callable[[str], str | None]:
+    """Return a `which` that does not find the given commands."""
+    return lambda command: None if command in commands else f"/usr/bin/{command}"
+
+
+def raising(error: Exception) -> Callable[[], RosEnvironment]:
+    """Return a `find_ros` that raises."""
+
+    def find() -> RosEnvironment:
+        raise error
+
+    return find
+
+
+def finding(name: str, **lack: Any) -> Finding:
+    """Examine the good machine with something replaced, and return the finding of that name."""
+    return next(found for found in examine(dataclasses.replace(GOOD, **lack)) if found.name == name)
+
+
+def test_a_machine_with_everything_is_healthy_and_nothing_has_to_be_mended() -> None:
+    findings = examine(GOOD)
+    assert {found.status for found in findings} == {Status.OK}, findings
+    assert [found.mend for found in findings if found.mend] == []
+    assert healthy(findings)
+
+
+def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
+    """Return a `read` that knows one kernel setting besides the usual files."""
+    return {**FILES, Path("/proc/sys") / name.replace(".", "/"): f"{value}\n"}.get
+
+
+def unwritable(folder: str) -> Callable[[Path], bool]:
+    """Return a `writable` that denies one folder."""
+    return lambda path: path != Path(folder)
+
+
+NO_CELL = answers({"bwrap": Ran(1, DENIED)})
+NO_NESTING = answers({"--proc /proc": Ran(1, "bwrap: Can't mount proc on /newroot/proc: Operation not permitted")})
+
+LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
+    "an old Python": ("Python", {"python": (3, 9, 18)}, Status.MISSING, "3.9.18", "make setup PYTHON=python3.12"),
+    "a Python without wheels": ("Python", {"python": (3, 14, 0)}, Status.MISSING, "3.10 to 3.13", "PYTHON=python3.12"),
+    "a Mac": ("Python", {"platform": ("Darwin", "arm64")}, Status.MISSING, "Darwin arm64", "devcontainer up"),
+    "an ARM board": ("Python", {"platform": ("Linux", "aarch64")}, Status.MISSING, "a JupyterHub", "devcontainer up"),
+    "the system's own Python": ("environment", {"in_venv": False}, Status.WEAK, "not a virtual", "make setup"),
+    "no ROS": (
+        "ROS 2",
+        {"find_ros": raising(RosNotFoundError("rclpy cannot be imported"))},
+        Status.MISSING,
+        "rclpy cannot be imported",
+        "make setup",
+    ),
+    "another distribution": (
+        "ROS 2",
+        {"find_ros": raising(WrongDistroError("the sourced ROS 2 is humble"))},
+        Status.MISSING,
+        "humble",
+        "env -i HOME",
+    ),
+    "wheels and a sourced ROS at once": (
+        "ROS 2",
+        {"find_ros": lambda: SOURCED},
+        Status.WEAK,
+        "rclpy 7.1.4; the wheels are installed as well",
+        "make setup",
+    ),
+    "the wheels of a later ROS": (
+        "ROS 2",
+        {"read": {VENV / "share/rclpy/package.xml": "<version>9.2.0</version>"}.get},
+        Status.MISSING,
+        "rclpy 9.2.0 in /course/.venv is not Jazzy's",
+        "make setup",
+    ),
+    "half an installation": ("ROS 2", {"read": {}.get}, Status.MISSING, "no package.xml", "make setup"),
+    "CMake files not mended": (
+        "CMake files",
+        {"baked": lambda prefix: 15},
+        Status.MISSING,
+        "15 CMake files",
+        "-m autograder.ros.mend",
+    ),
+    "a log folder that was chosen and is closed": (
+        "ROS logs",
+        {"environ": {"ROS_LOG_DIR": "/closed"}, "writable": unwritable("/closed")},
+        Status.MISSING,
+        "/closed, cannot be written to",
+        "unset ROS_LOG_DIR",
+    ),
+    "a usual log folder that is closed": (
+        "ROS logs",
+        {"writable": lambda path: False},
+        Status.MISSING,
+        "cannot be written to",
+        "export ROS_LOG_DIR=~/.ros/log",
+    ),
+    "an rclpy that does not start": (
+        "rclpy",
+        {"run": answers({"import rclpy": Ran(1, "Traceback\n  File\nImportError: librcl.so: no such file\n\n")})},
+        Status.MISSING,
+        "a node does not start: ImportError: librcl.so: no such file",
+        "make setup",
+    ),
+    "a sourced rclpy that does not start": (
+        "rclpy",
+        {"find_ros": lambda: SOURCED, "run": answers({"import rclpy": Ran(-11, "")})},
+        Status.MISSING,
+        "exit status -11",
+        "source /opt/ros/jazzy/setup.bash",
+    ),
+    "nodes kept to this host": (
+        "ROS variables",
+        {"environ": {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_LOCALHOST_ONLY": "0"}},
+        Status.WEAK,
+        "ROS_AUTOMATIC_DISCOVERY_RANGE keeps nodes from meeting",
+        "unset ROS_AUTOMATIC_DISCOVERY_RANGE",
+    ),
+    "another middleware": (
+        "ROS variables",
+        {"environ": {"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp", "ROS_DISCOVERY_SERVER": "10.0.0.1"}},
+        Status.MISSING,
+        "asks for rmw_cyclonedds_cpp",
+        "unset ROS_DISCOVERY_SERVER RMW_IMPLEMENTATION",
+    ),
+    "a domain out of range": (
+        "ROS variables",
+        {"environ": {"ROS_DOMAIN_ID": "300"}},
+        Status.MISSING,
+        "is 300, a domain is 0 to 232",
+        "unset ROS_DOMAIN_ID",
+    ),
+    "a domain that is no number": (
+        "ROS variables",
+        {"environ": {"ROS_DOMAIN_ID": "lab"}},
+        Status.MISSING,
+        "is lab, a domain",
+        "unset ROS_DOMAIN_ID",
+    ),
+    "no C++ compiler": (
+        "compiler",
+        {"run": answers({"g++": Ran(127, "")})},
+        Status.MISSING,
+        "g++ not found",
+        "sudo apt-get install g++",
+    ),
+    "no compiler at all": (
+        "compiler",
+        {"run": answers({"g++": Ran(127, ""), "gcc": Ran(127, "")})},
+        Status.MISSING,
+        "gcc and g++ not found",
+        "sudo apt-get install g++",
+    ),
+    "no Python headers": (
+        "compiler",
+        {"headers": Path("/nowhere")},
+        Status.MISSING,
+        "not in /nowhere",
+        "sudo apt-get install python3.12-dev",
+    ),
+    "no colcon": ("build tools", {"which": without("colcon")}, Status.MISSING, "colcon not found", "make setup"),
+    "no CMake": ("build tools", {"which": without("cmake")}, Status.MISSING, "cmake not found", "make setup"),
+    "no nbgrader": (
+        "notebooks",
+        {"package": lambda name: None if name == "nbgrader" else "1.2"},
+        Status.MISSING,
+        "nbgrader not installed",
+        "make setup",
+    ),
+    "no bubblewrap": (
+        "isolation",
+        {"which": without("bwrap")},
+        Status.MISSING,
+        "bubblewrap is not installed",
+        "sudo apt-get install bubblewrap",
+    ),
+    "Ubuntu's AppArmor restriction": (
+        "isolation",
+        {"run": NO_CELL, "read": sysctl("kernel.apparmor_restrict_unprivileged_userns", "1")},
+        Status.WEAK,
+        f"cannot make namespaces ({DENIED}): AppArmor restricts user namespaces",
+        "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
+    ),
+    "a kernel closed to users": (
+        "isolation",
+        {"run": NO_CELL, "read": sysctl("kernel.unprivileged_userns_clone", "0")},
+        Status.WEAK,
+        "the kernel forbids user namespaces",
+        "sudo sysctl -w kernel.unprivileged_userns_clone=1",
+    ),
+    "a kernel with no namespaces left": (
+        "isolation",
+        {"run": NO_CELL, "read": sysctl("user.max_user_namespaces", "0")},
+        Status.WEAK,
+        "no user namespaces at all",
+        "sudo sysctl -w user.max_user_namespaces=15000",
+    ),
+    "a container that hides /proc": (
+        "isolation",
+        {"run": NO_NESTING, "read": {**FILES, Path("/.dockerenv"): ""}.get},
+        Status.WEAK,
+        "cannot make one namespace inside another (bwrap: Can't mount proc",
+        "--security-opt systempaths=unconfined",
+    ),
+    "namespaces forbidden by something unknown": (
+        "isolation",
+        {"run": NO_CELL},
+        Status.WEAK,
+        "the kernel or a security module forbids it",
+        "sudo dmesg | tail",
+    ),
+    "a closed folder for temporary files": (
+        "disk",
+        {"tmp": Path("/full"), "writable": unwritable("/full")},
+        Status.MISSING,
+        "/full cannot be written to",
+        'export TMPDIR="$HOME/tmp"',
+    ),
+    "a full disk": ("disk", {"free": lambda path: 3 * 1024**2}, Status.WEAK, "0.0 GB free in /tmp", "df -h /tmp"),
+    "no browser": (
+        "browser",
+        {"which": without("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")},
+        Status.WEAK,
+        "no Chromium that starts",
+        "sudo apt-get install chromium",
+    ),
+    "a browser that does not start": (
+        "browser",
+        {"run": answers({"--version": Ran(1, "snap needed")})},
+        Status.WEAK,
+        "no Chromium that starts",
+        "sudo apt-get install chromium",
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "lack", "status", "found", "mend"), LACKS.values(), ids=LACKS.keys())
+def test_a_lack_is_named_with_what_mends_it(
+    name: str, lack: dict[str, Any], status: Status, found: str, mend: str
+) -> None:
+    seen = finding(name, **lack)
+    assert seen.status is status
+    assert found in seen.found
+    assert mend in seen.mend
+    assert not seen.found.endswith(".")
+
+
+def test_what_is_weak_does_not_make_a_machine_unfit_and_what_is_missing_does() -> None:
+    assert healthy(examine(dataclasses.replace(GOOD, in_venv=False)))
+    assert not healthy(examine(dataclasses.replace(GOOD, which=without("bwrap"))))
+
+
+def test_a_sourced_jazzy_alone_is_fine_and_has_no_wheels_to_mend() -> None:
+    alone = dataclasses.replace(GOOD, find_ros=lambda: SOURCED, package=lambda n: None if n == "ros-rclpy" else "1")
+    findings = examine(alone)
+    assert {found.status for found in findings} == {Status.OK}
+    assert "CMake files" not in [found.name for found in findings]
+
+
+def test_rclpy_is_started_with_the_log_folder_that_the_user_chose() -> None:
+    seen: list[Mapping[str, str]] = []
+
+    def run(command: Sequence[str], variables: Mapping[str, str]) -> Ran:
+        seen.append(variables)
+        return Ran(0, "fine")
+
+    examine(dataclasses.replace(GOOD, run=run, environ={"ROS_LOG_DIR": "/mine"}))
+    started = next(variables for variables in seen if variables)
+    assert (started["ROS_LOG_DIR"], started["AMENT_PREFIX_PATH"]) == ("/mine", str(VENV))
+
+
+def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
+    command = "sudo " + "x" * 200
+    findings = [
+        Finding("Python", Status.OK, "Python 3.12.1"),
+        Finding("isolation", Status.MISSING, "a long story " * 12, command),
+        Finding("browser", Status.WEAK, "none", "sudo apt-get install chromium"),
+    ]
+    lines = render(findings, width=60).splitlines()
+    assert lines[0] == "ok       Python     Python 3.12.1"
+    assert lines[1].startswith("missing  isolation  a long story")
+    assert " " * 20 + f"mend: {command}" in lines
+    assert max(len(line) for line in lines if "mend:" not in line) <= 60
+    assert lines[-1] == "Something needed is missing. 1 ok, 1 weak, 1 missing."
+    assert render(findings[:1]).endswith("Everything needed is here. 1 ok, 0 weak, 0 missing.")
+
+
+def test_this_machine_can_run_the_course() -> None:
+    findings = {found.name: found for found in examine()}
+    for name in ("Python", "environment", "ROS 2", "rclpy", "compiler", "build tools", "notebooks", "disk"):
+        assert findings[name].status is Status.OK, findings[name]
+
+
+def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    system = this_system()
+    assert system.run(["no-such-command-anywhere"], {}).status == 127
+    told = system.run([sys.executable, "-c", "import os; print(os.environ['X']); raise SystemExit('why')"], {"X": "y"})
+    assert (told.status, told.output, told.last_line) == (1, "y\nwhy\n", "why")
+    assert system.read(tmp_path / "nothing") is None
+    assert system.package("no-such-distribution-anywhere") is None
+    assert system.which("no-such-command-anywhere") is None
+    assert system.writable(tmp_path / "made" / "later")
+    assert not system.writable(Path("/proc/nothing"))
+    monkeypatch.setenv("TMPDIR", "/proc")
+    assert this_system().tmp == Path("/proc")
+
+
+def test_a_command_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autograder.doctor.system.PATIENCE_SECONDS", 0.2)
+    ran = this_system().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
+    assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
+
+
+def test_a_bubblewrap_that_is_denied_namespaces_is_found_out_for_real(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    denied = tmp_path / "bwrap"
+    denied.write_text(f"#!/bin/sh\necho '{DENIED}' >&2\nexit 1\n")
+    denied.chmod(denied.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    seen = next(found for found in examine() if found.name == "isolation")
+    assert (seen.status, DENIED in seen.found, bool(seen.mend)) == (Status.WEAK, True, True)
+
+
+def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> None:
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").write_text("raise ImportError('half an installation')\n")
+    code = "from autograder.doctor import *; f = examine(); print(render(f)); raise SystemExit(not healthy(f))"
+    environ = {**os.environ, "PYTHONPATH": str(tmp_path), "ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": sys.prefix}
+    done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1, done.stderr
+    told = " ".join(done.stdout.split())
+    assert "a node does not start: ImportError: half an installation" in told
+    assert "the wheels are installed as well" in told
