@@ -1,0 +1,72 @@
+"""What pip cannot give is installed with apt where that needs no question, and named elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import bootstrap
+
+Which = Callable[..., None]
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch) -> Which:
+    """Let only the given commands be on PATH."""
+
+    def only(*commands: str) -> None:
+        monkeypatch.setattr(bootstrap.shutil, "which", lambda name: f"/bin/{name}" if name in commands else None)
+
+    return only
+
+
+def test_apt_installs_what_is_missing_as_root(installed: Which, commands: Any, tmp_path: Path) -> None:
+    installed("apt-get")
+    bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 0, commands)
+    assert [line.rpartition("DPkg::Lock::Timeout=60 ")[2] for line in commands.ran[1:]] == [
+        "update",
+        "install -y --no-install-recommends bubblewrap",
+    ]
+    assert not any("sudo" in line for line in commands.ran)
+
+
+def test_apt_is_asked_through_sudo_when_that_needs_no_password(installed: Which, commands: Any, tmp_path: Path) -> None:
+    installed("apt-get", "sudo")
+    bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 1000, commands)
+    assert commands.ran[0] == "env sudo -n true"
+    assert commands.ran[-1].startswith("sudo -n env DEBIAN_FRONTEND=noninteractive apt-get ")
+
+
+@pytest.mark.parametrize(("commands_there", "failing"), [((), ""), (("apt-get", "sudo"), "sudo -n true")])
+def test_without_a_way_to_install_the_command_is_said(
+    installed: Which,
+    commands: Any,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    commands_there: tuple[str, ...],
+    failing: str,
+) -> None:
+    installed(*commands_there)
+    commands.failing = failing
+    bootstrap.install_tools(["bubblewrap", "chromium"], tmp_path / "tried", 1000, commands)
+    told = "set-up: bubblewrap, chromium is missing; to install it: sudo apt-get install bubblewrap chromium\n"
+    assert capsys.readouterr().out == told
+    assert not any("install" in line for line in commands.ran)
+
+
+def test_a_vain_installation_is_not_tried_again(
+    installed: Which, commands: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    installed("apt-get")
+    commands.failing = "install -y"
+    bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
+    assert "apt-get failed, the rest goes on; by hand: sudo apt-get install chromium" in capsys.readouterr().out
+    commands.ran.clear()
+    bootstrap.install_tools(["chromium"], tmp_path / "tried", 0, commands)
+    assert not any("apt-get" in line for line in commands.ran)
+    assert "chromium is missing" in capsys.readouterr().out
+    bootstrap.install_tools(["bubblewrap", "chromium"], tmp_path / "tried", 0, commands)
+    assert any("apt-get" in line for line in commands.ran)

@@ -1,0 +1,125 @@
+"""The set-up uses the ROS that the shell has, or the wheels, or refuses in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder import bootstrap
+from autograder.bootstrap import Interpreter, SetUpError
+
+PY312 = Interpreter("/usr/bin/python3.12", (3, 12), "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
+LOCK = """\
+numpy==2.5.0 ; python_full_version >= '3.12' \\
+    --hash=sha256:00
+ros-rclpy==7.1.6 \\
+    --hash=sha256:01 \\
+    --hash=sha256:02
+ros-wheels-bootstrapper==0.1.2 \\
+    --hash=sha256:03
+rosbags==0.10 \\
+    --hash=sha256:04
+"""
+
+
+@pytest.mark.parametrize("version", [(3, 10), (3, 11), (3, 12), (3, 13)])
+def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: tuple[int, int]) -> None:
+    assert bootstrap.check_machine(version, "Linux", "x86_64") is None
+
+
+@pytest.mark.parametrize("version", [(2, 7), (3, 9), (3, 14)])
+def test_another_python_is_refused_with_what_serves(version: tuple[int, int]) -> None:
+    with pytest.raises(
+        SetUpError, match=rf"Python {version[0]}\.{version[1]} does not serve: .* 3\.10 to 3\.13\. .*3\.12"
+    ):
+        bootstrap.check_machine(version, "Linux", "x86_64")
+
+
+@pytest.mark.parametrize("machine", [("Darwin", "arm64"), ("Windows", "AMD64"), ("Linux", "aarch64")])
+def test_another_machine_is_refused_with_what_serves(machine: tuple[str, str]) -> None:
+    with pytest.raises(SetUpError, match=f"this is {' '.join(machine)}: use the container"):
+        bootstrap.check_machine((3, 12), *machine)
+
+
+@pytest.fixture
+def ros(tmp_path: Path) -> Path:
+    """The site-packages folder of a ROS whose rclpy was built for Python 3.12."""
+    site = tmp_path / "opt/ros/any/lib/python3.12/site-packages"
+    (site / "rclpy").mkdir(parents=True)
+    (site / "rclpy" / f"_rclpy_pybind11{PY312.suffix}").touch()
+    return site
+
+
+VENV = Path("/course/.venv")
+
+
+def test_without_a_sourced_ros_the_wheels_are_used() -> None:
+    assert bootstrap.sourced_ros({}, VENV, PY312) is None
+    assert bootstrap.sourced_ros({"ROS_DISTRO": "humble", "PYTHONPATH": "/my/code"}, VENV, PY312) is None
+
+
+def test_this_projects_own_environment_does_not_count_as_sourced() -> None:
+    own = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(VENV), "PYTHONPATH": str(VENV / "lib/site-packages")}
+    assert bootstrap.sourced_ros(own, VENV, PY312) is None
+
+
+def test_a_students_workspace_over_the_wheels_does_not_count_as_sourced() -> None:
+    overlaid = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"/ws/install/robot:{VENV}", "PYTHONPATH": "/ws/install"}
+    assert bootstrap.sourced_ros(overlaid, VENV, PY312) is None
+
+
+def test_a_sourced_jazzy_is_used(ros: Path) -> None:
+    sourced = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": "/opt/ros/jazzy", "PYTHONPATH": f"/elsewhere:{ros}"}
+    assert bootstrap.sourced_ros(sourced, VENV, PY312) == str(ros)
+
+
+@pytest.mark.parametrize(
+    "variables",
+    [
+        {"ROS_DISTRO": "humble", "AMENT_PREFIX_PATH": "/opt/ros/humble"},
+        {"ROS_DISTRO": "noetic", "ROS_PACKAGE_PATH": "/opt/ros/noetic/share"},
+    ],
+)
+def test_another_distribution_is_refused_by_name(variables: dict[str, str]) -> None:
+    with pytest.raises(
+        SetUpError, match=f"sourced is {variables['ROS_DISTRO']} and the course needs Jazzy: open a shell"
+    ):
+        bootstrap.sourced_ros(variables, VENV, PY312)
+
+
+def test_a_ros_of_no_known_distribution_is_refused(ros: Path) -> None:
+    with pytest.raises(SetUpError, match="is of no known distribution and the course needs Jazzy"):
+        bootstrap.sourced_ros({"PYTHONPATH": str(ros)}, VENV, PY312)
+
+
+def test_a_jazzy_for_another_python_is_refused_with_the_one_that_fits(ros: Path) -> None:
+    py311 = replace(PY312, version=(3, 11), suffix=".cpython-311-x86_64-linux-gnu.so")
+    with pytest.raises(SetUpError, match=r"is not for Python 3\.11: run `make PYTHON=python3\.12`"):
+        bootstrap.sourced_ros({"ROS_DISTRO": "jazzy", "PYTHONPATH": str(ros)}, VENV, py311)
+
+
+def test_only_ros_itself_is_left_out_of_the_lock() -> None:
+    kept = bootstrap.without_ros(LOCK)
+    assert [line.split("==")[0] for line in kept.splitlines() if "==" in line] == ["numpy", "rosbags"]
+    assert "--hash=sha256:00" in kept
+    assert "--hash=sha256:01" not in kept
+    assert "--hash=sha256:04" in kept
+
+
+def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libraries() -> None:
+    given = {
+        "HTTPS_PROXY": "proxy:3128",
+        "PIP_CERT": "/cert.pem",
+        "PYTHONPATH": "/opt/ros/jazzy/lib",
+        "PYTHONHOME": "/odd",
+        "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
+        "LD_LIBRARY_PATH": "/other/.venv/lib",
+    }
+    assert bootstrap.child_environment(given) == {
+        "HTTPS_PROXY": "proxy:3128",
+        "PIP_CERT": "/cert.pem",
+        "PIP_DISABLE_PIP_VERSION_CHECK": "1",
+    }
+    assert bootstrap.child_environment({"LD_LIBRARY_PATH": "/opt/python/lib"})["LD_LIBRARY_PATH"] == "/opt/python/lib"

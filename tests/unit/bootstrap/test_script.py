@@ -1,0 +1,77 @@
+"""The script itself, run as the Makefile runs it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder import bootstrap
+from autograder.bootstrap import Interpreter
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_the_running_interpreter_is_the_one_under_the_virtual_environment() -> None:
+    interpreter = Interpreter.running()
+    assert not Path(interpreter.executable).is_relative_to(sys.prefix)
+    code = "import sys, sysconfig; print(sys.prefix == sys.base_prefix, sysconfig.get_config_var('EXT_SUFFIX'))"
+    done = subprocess.run([interpreter.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["True", interpreter.suffix]
+
+
+def script(root: Path, *arguments: str, **environ: str) -> subprocess.CompletedProcess[str]:
+    """Run a clone's bootstrap as the Makefile does."""
+    command = [Interpreter.running().executable, "-I", str(root / "autograder/bootstrap.py"), *arguments]
+    environ = {"PATH": "/usr/bin:/bin", **environ}
+    return subprocess.run(command, env=environ, capture_output=True, text=True, timeout=120)
+
+
+@pytest.fixture
+def script_clone(clone: Path) -> Path:
+    """A clone that holds the bootstrap script itself, and a lock that pip refuses at once."""
+    (clone / "autograder/bootstrap.py").write_bytes((ROOT / "autograder/bootstrap.py").read_bytes())
+    for name in ("requirements.lock", "requirements-dev.lock"):
+        (clone / name).write_text("unpinned\n")
+    return clone
+
+
+def test_the_script_says_in_a_sentence_why_it_cannot(script_clone: Path) -> None:
+    done = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("set-up: the ROS that is sourced is iron and the course needs Jazzy")
+    assert done.stderr.count("\n") == 1
+
+
+def test_the_script_passes_on_pips_own_words_and_leaves_no_stamp(script_clone: Path) -> None:
+    done = script(script_clone)
+    assert done.returncode == 1
+    assert "set-up: installing the pinned packages of requirements.lock" in done.stdout
+    assert "unpinned" in done.stderr
+    assert "set-up: pip could not install requirements.lock" in done.stderr
+    assert not (script_clone / ".venv" / bootstrap.STAMP).exists()
+
+
+def test_the_script_does_nothing_where_the_stamp_holds(script_clone: Path) -> None:
+    program = script_clone / "autograder/bootstrap.py"
+    code = f"""
+import runpy, json, pathlib
+names = runpy.run_path({str(program)!r})
+set_up = names["SetUp"](pathlib.Path({str(script_clone)!r}), names["Interpreter"].running(), None, None)
+(set_up.venv / "bin").mkdir(parents=True)
+(set_up.venv / "bin/python").touch()
+(set_up.venv / names["STAMP"]).write_text(json.dumps(set_up.wanted(dev=True)))
+"""
+    subprocess.run([Interpreter.running().executable, "-I", "-c", code], check=True, timeout=60)
+    before = json.loads((script_clone / ".venv" / bootstrap.STAMP).read_text())
+    done = script(script_clone, "--dev")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "making" not in done.stdout
+    assert json.loads((script_clone / ".venv" / bootstrap.STAMP).read_text()) == before
+
+
+def test_the_script_refuses_an_unknown_option(script_clone: Path) -> None:
+    assert script(script_clone, "--nonsense").returncode == 2

@@ -1,0 +1,179 @@
+"""A set-up is made once, whole or not at all, and names the step that failed."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import bootstrap
+from autograder.bootstrap import Interpreter, SetUp, SetUpError
+
+PY312 = Interpreter("/usr/bin/python3.12", (3, 12), "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
+
+
+@pytest.fixture
+def set_up(clone: Path, commands: Any) -> SetUp:
+    return SetUp(clone, PY312, None, commands)
+
+
+def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    set_up.make(dev=False)
+    assert commands.take() == ["venv", "base", "project", "mend"]
+    shown = capsys.readouterr().out
+    assert shown.startswith("set-up: making .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
+    set_up.make(dev=False)
+    assert commands.take() == []
+    assert capsys.readouterr().out == ""
+
+
+def test_the_tests_packages_are_added_to_what_stands_and_then_stay(set_up: SetUp, commands: Any) -> None:
+    set_up.make(dev=False)
+    commands.take()
+    set_up.make(dev=True)
+    assert commands.take() == ["dev", "project", "mend"]
+    set_up.make(dev=False)
+    set_up.make(dev=True)
+    assert commands.take() == []
+
+
+def test_the_tests_packages_come_at_once_when_nothing_stands(set_up: SetUp, commands: Any) -> None:
+    set_up.make(dev=True)
+    assert commands.take() == ["venv", "dev", "project", "mend"]
+    assert set_up.lacks(dev=False) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "again"),
+    [
+        ("requirements.lock", ["venv", "base", "project", "mend"]),
+        ("autograder/ros/mend.py", ["venv", "base", "project", "mend"]),
+        ("pyproject.toml", ["project", "mend"]),
+        ("requirements-dev.lock", []),
+    ],
+)
+def test_a_changed_file_makes_again_what_depends_on_it(
+    set_up: SetUp, commands: Any, changed: str, again: list[str]
+) -> None:
+    set_up.make(dev=False)
+    commands.take()
+    (set_up.root / changed).write_text("another\n")
+    set_up.make(dev=False)
+    assert commands.take() == again
+
+
+@pytest.mark.parametrize("change", [{"sourced": "/opt/ros/jazzy"}, {"interpreter": replace(PY312, build="3.12.2")}])
+def test_another_ros_or_interpreter_makes_everything_again(
+    set_up: SetUp, commands: Any, change: dict[str, object]
+) -> None:
+    set_up.make(dev=False)
+    commands.take()
+    replace(set_up, **change).make(dev=False)  # type: ignore[arg-type]
+    assert commands.take()[0] == "venv"
+
+
+def test_a_moved_clone_makes_everything_again(set_up: SetUp, commands: Any, tmp_path: Path) -> None:
+    set_up.make(dev=False)
+    moved = replace(set_up, root=set_up.root.rename(tmp_path / "moved"))
+    assert moved.lacks(dev=False) == ["base"]
+
+
+def test_an_environment_whose_interpreter_is_gone_is_made_again(set_up: SetUp) -> None:
+    set_up.make(dev=False)
+    (set_up.venv / "bin/python").unlink()
+    assert set_up.lacks(dev=False) == ["base", "project"]
+
+
+@pytest.mark.parametrize("stamp", ["", "half a {", "[]"])
+def test_an_unreadable_stamp_counts_as_none(set_up: SetUp, stamp: str) -> None:
+    set_up.make(dev=False)
+    (set_up.venv / bootstrap.STAMP).write_text(stamp)
+    assert set_up.lacks(dev=False) == ["base", "project"]
+
+
+@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.mend"])
+def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
+    commands.interrupting = step
+    with pytest.raises(KeyboardInterrupt):
+        set_up.make(dev=False)
+    commands.interrupting = ""
+    commands.take()
+    set_up.make(dev=False)
+    assert commands.take() == ["venv", "base", "project", "mend"]
+
+
+def test_an_interrupted_addition_is_made_again_from_the_start(set_up: SetUp, commands: Any) -> None:
+    set_up.make(dev=False)
+    commands.interrupting = "requirements-dev.lock"
+    with pytest.raises(KeyboardInterrupt):
+        set_up.make(dev=True)
+    commands.interrupting = ""
+    commands.take()
+    set_up.make(dev=False)
+    assert commands.take() == ["venv", "base", "project", "mend"]
+
+
+@pytest.mark.parametrize(
+    ("step", "told"),
+    [
+        ("-m venv", "the virtual environment could not be made"),
+        ("requirements.lock", "pip could not install requirements.lock: its lines above say why; pip.conf"),
+        ("-e ", "the project could not be installed"),
+        ("ros.mend", "the ROS wheels could not be mended"),
+    ],
+)
+def test_a_failed_step_is_named_with_its_command(set_up: SetUp, commands: Any, step: str, told: str) -> None:
+    commands.failing = step
+    with pytest.raises(SetUpError) as error:
+        set_up.make(dev=False)
+    assert str(error.value).startswith(told)
+    assert "exit status 3 of `" in str(error.value)
+    assert set_up.lacks(dev=False) == ["base", "project"]
+
+
+def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp, commands: Any) -> None:
+    commands.failing = "import ensurepip"
+    set_up.make(dev=False)
+    assert "--without-pip" in commands.ran[1]
+    assert f"--target {set_up.venv}/lib/python3.12/site-packages pip" in commands.ran[2]
+
+
+def test_a_python_without_any_pip_is_told_what_to_install(set_up: SetUp, commands: Any) -> None:
+
+    def run(*command: str, quiet: bool = False) -> int:
+        return 1 if "import ensurepip" in command or "--target" in command else commands(*command)
+
+    with pytest.raises(SetUpError, match=r"neither ensurepip nor pip works .* install python3-venv or python3-pip"):
+        replace(set_up, run=run).make(dev=False)
+
+
+def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, commands: Any) -> None:
+    replace(set_up, sourced="/opt/ros/jazzy/lib/python3.12/site-packages").make(dev=False)
+    lock = (set_up.root / "requirements.lock").read_text()
+    assert (set_up.venv / "requirements.lock").read_text() == bootstrap.without_ros(lock) != lock
+    assert f"--requirement {set_up.venv}/requirements.lock" in " ".join(commands.ran)
+    commands.take()
+    set_up.make(dev=False)
+    assert (set_up.venv / "requirements.lock").read_text() == lock
+
+
+def test_two_set_ups_of_one_clone_take_turns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lock = tmp_path / ".build" / "lock"
+    waiting, entered = threading.Event(), threading.Event()
+    monkeypatch.setattr(bootstrap, "say", lambda line: waiting.set())
+
+    def other() -> None:
+        with bootstrap.alone(lock):
+            entered.set()
+
+    thread = threading.Thread(target=other)
+    with bootstrap.alone(lock):
+        assert not waiting.is_set()
+        thread.start()
+        assert waiting.wait(timeout=60)
+        assert not entered.is_set()
+    assert entered.wait(timeout=60)
+    thread.join(timeout=60)
