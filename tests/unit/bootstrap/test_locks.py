@@ -1,0 +1,72 @@
+"""The two locks pin everything with hashes, agree with each other, and tie the project to no package source."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from autograder import bootstrap
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[3]
+BASE, DEV = "requirements.lock", "requirements-dev.lock"
+ENTRY = r"[a-z0-9-]+==[^\s;]+( ; [^\\]+?)?( +--hash=sha256:[0-9a-f]{64})+"
+
+
+def entries(lock: str) -> list[str]:
+    """Return a lock's entries, each with its continuation lines in one."""
+    text = (ROOT / lock).read_text().replace("\\\n", "")
+    return text.splitlines()
+
+
+def pins(lock: str) -> set[str]:
+    """Return each pin, `name==version`, without the marker that says where it holds."""
+    return {entry.split()[0] for entry in entries(lock)}
+
+
+def names(lock: str) -> set[str]:
+    """Return the names that a lock pins."""
+    return {pin.partition("==")[0] for pin in pins(lock)}
+
+
+@pytest.mark.parametrize("lock", [BASE, DEV])
+def test_a_lock_holds_nothing_but_exact_pins_with_hashes(lock: str) -> None:
+    odd = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
+    assert odd == []
+    assert len(entries(lock)) > 100
+
+
+@pytest.mark.parametrize("lock", [BASE, DEV])
+def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
+    assert (
+        re.findall(r"(?im)^.*(?:://|@ |--index|--extra-index|--find-links|^-[a-z]).*$", (ROOT / lock).read_text()) == []
+    )
+
+
+def test_what_the_tests_run_on_is_what_users_run_on() -> None:
+    assert pins(BASE) <= pins(DEV)
+
+
+def test_every_dependency_of_the_project_is_pinned() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for lock, asked in (
+        (BASE, project["dependencies"]),
+        (DEV, [line for extra in project["optional-dependencies"].values() for line in extra]),
+    ):
+        missing = {canonicalize_name(Requirement(line).name) for line in asked} - names(lock)
+        assert missing == set(), f"{lock} is older than pyproject.toml: run `make lock`"
+
+
+def test_without_ros_the_lock_keeps_what_the_course_itself_needs() -> None:
+    kept = set(re.findall(r"(?m)^([a-z0-9-]+)==", bootstrap.without_ros((ROOT / BASE).read_text())))
+    assert {"numpy", "jupyterlab", "nbgrader", "colcon-core", "empy", "lark", "catkin-pkg"} <= kept
+    assert kept == {name for name in names(BASE) if not name.startswith("ros-")} != names(BASE)

@@ -1,0 +1,87 @@
+"""The Makefile explains itself and picks an interpreter that really runs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+
+
+def make(*arguments: str, path: str | None = None, **environ: str) -> str:
+    """Run make in the project and return what it prints."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTHON"))}
+    done = subprocess.run(
+        [shutil.which("make") or "make", *arguments],
+        cwd=ROOT,
+        env={**clean, **({"PATH": path} if path else {}), **environ},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_make_alone_lists_every_target_with_its_help() -> None:
+    told = make()
+    for target in ("setup", "demo", "test", "check", "lab", "bench", "verify", "lock", "clean"):
+        line = next(line for line in told.splitlines() if line.startswith(f"  make {target} "))
+        assert len(line.split()) > 3, line
+    assert make("help") == told
+
+
+@pytest.fixture
+def interpreters(tmp_path: Path) -> Path:
+    """A folder that holds the shell and nothing else to run."""
+    for tool in ("sh", "sed", "expand"):
+        (tmp_path / tool).symlink_to(shutil.which(tool) or tool)
+    return tmp_path
+
+
+def interpreter(folder: Path, name: str, body: str) -> None:
+    """Put an executable script into the folder."""
+    (folder / name).write_text(f"#!/bin/sh\n{body}\n")
+    (folder / name).chmod(0o755)
+
+
+def chosen(folder: Path, **environ: str) -> str:
+    """Return the interpreter that the set-up would be run with."""
+    return make("-n", "setup", path=str(folder), **environ).split()[0]
+
+
+def test_a_name_that_does_not_run_is_passed_over(interpreters: Path) -> None:
+    interpreter(interpreters, "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
+    interpreter(interpreters, "python3", "exit 0")
+    assert chosen(interpreters) == "python3"
+
+
+def test_an_interpreter_of_the_wrong_version_is_passed_over(interpreters: Path) -> None:
+    interpreter(interpreters, "python3", "exit 1")
+    interpreter(interpreters, "python3.11", "exit 0")
+    assert chosen(interpreters) == "python3.11"
+
+
+def test_jazzys_own_python_comes_first(interpreters: Path) -> None:
+    for name in ("python3.10", "python3.12", "python3"):
+        interpreter(interpreters, name, "exit 0")
+    assert chosen(interpreters) == "python3.12"
+
+
+def test_where_none_serves_the_set_up_gets_to_say_so(interpreters: Path) -> None:
+    assert chosen(interpreters) == "python3"
+
+
+def test_a_chosen_interpreter_is_taken(interpreters: Path) -> None:
+    assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
+
+
+def test_the_real_machines_interpreter_is_one_that_serves() -> None:
+    name = make("-n", "setup").split()[0]
+    code = "import sys; print(*sys.version_info[:2])"
+    done = subprocess.run([name, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (3, 10) <= tuple(map(int, done.stdout.split())) <= (3, 13)
