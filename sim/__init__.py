@@ -6,13 +6,16 @@
 >>> observe(simulation, state).ranges[0]
 """
 
+from sim.clearance import Clearance, clearance
 from sim.exceptions import EngineError, RecordingError, SimError, SpecError, WorldError
 from sim.faults import DeadSector, Faults, Window
 from sim.lidar import LDS_01, RPLIDAR_A1, UTM_30LX, LidarSpec, Scan
 from sim.pose import Command, Pose
 from sim.recording import Recorder, Recording, ScanLog, load_recording, replay, run
 from sim.robot import OdometryDrift, RobotSpec, RobotState
-from sim.simulation import Clearance, Event, Simulation, State, clearance, observe, start, step
+from sim.sensing import cast, directions, observe, scan_angles
+from sim.simulation import start, step
+from sim.state import Event, Simulation, State
 from sim.world import BOX_NAMES, Goal, Mover, World, box
 from sim.worldfile import load_world
 
@@ -47,12 +50,15 @@ __all__ = [
     "World",
     "WorldError",
     "box",
+    "cast",
     "clearance",
+    "directions",
     "load_recording",
     "load_world",
     "observe",
     "replay",
     "run",
+    "scan_angles",
     "start",
     "step",
 ]

@@ -11,7 +11,7 @@ from sim.faults import DeadSector, Faults, Window
 from sim.lidar import LidarSpec
 from sim.pose import Pose
 from sim.robot import OdometryDrift, RobotSpec
-from sim.simulation import Simulation
+from sim.state import Simulation
 from sim.world import Goal, Mover, World
 
 

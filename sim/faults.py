@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from sim.exceptions import SpecError
+
 
 @dataclass(frozen=True, slots=True)
 class Window:
@@ -12,6 +14,14 @@ class Window:
 
     start: float = 0.0
     end: float = math.inf
+
+    def __post_init__(self) -> None:
+        if not (0.0 <= self.start < self.end):
+            raise SpecError(f"a window from {self.start} s to {self.end} s; give a start of 0 or more and a later end")
+
+    def holds(self, time_ns: int) -> bool:
+        """Return whether a simulated time in nanoseconds is within the window."""
+        return self.start <= time_ns / 1e9 < self.end
 
 
 ALWAYS = Window()
@@ -24,6 +34,16 @@ class DeadSector:
     first: float
     last: float
     window: Window = ALWAYS
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.first) and math.isfinite(self.last)):
+            raise SpecError(f"a dead sector from {self.first} to {self.last}; give two angles in radians")
+
+    @property
+    def width(self) -> float:
+        """How wide it is in radians: the whole turn where `last` is one or more beyond `first`."""
+        width = self.last - self.first
+        return width if width >= math.tau else width % math.tau
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,9 @@ from sim.pose import ORIGIN, Pose
 
 Float32s = NDArray[np.float32]
 
+MOST_BEAMS = 100_000
+MOST_RANGE = 10_000.0
+
 
 @dataclass(frozen=True, slots=True)
 class LidarSpec:
@@ -38,13 +41,33 @@ class LidarSpec:
     mount: Pose = ORIGIN
 
     def __post_init__(self) -> None:
-        if self.beams < 1:
-            raise SpecError(f"lidar {self.name}: beams is {self.beams}; give at least 1")
+        for what, good, remedy in (
+            ("beams", 1 <= self.beams <= MOST_BEAMS, f"from 1 to {MOST_BEAMS}"),
+            ("angle_min", -math.tau <= self.angle_min <= math.tau, "an angle in radians within a turn of 0"),
+            ("angle_increment", 1e-7 <= self.angle_increment <= math.tau, "radians, from 1e-7 to a whole turn"),
+            ("range_max", 0.0 < self.range_max <= MOST_RANGE, f"metres, above 0 and at most {MOST_RANGE:.0f}"),
+            ("range_min", 0.0 <= self.range_min < self.range_max, "metres, from 0 to below range_max"),
+            ("rate", 0.0 < self.rate <= 1000.0, "scans a second, above 0 and at most 1000"),
+            ("noise", 0.0 <= self.noise <= self.range_max, "a standard deviation in metres, 0 or above"),
+            ("dropout", 0.0 <= self.dropout <= 1.0, "a probability from 0 to 1"),
+        ):
+            if not good:
+                raise SpecError(f"lidar {self.name!r}: {what} is {getattr(self, what)}; give {remedy}")
+        if self.beams * self.angle_increment > math.tau * (1.0 + 1e-9):
+            raise SpecError(
+                f"lidar {self.name!r}: {self.beams} beams {self.angle_increment} rad apart go round more than once, "
+                "and a beam would be doubled; give fewer beams or a smaller angle_increment"
+            )
 
     @property
     def angle_max(self) -> float:
         """The last beam's angle in radians: never a repeat of the first."""
         return self.angle_min + (self.beams - 1) * self.angle_increment
+
+    @property
+    def time_increment(self) -> float:
+        """The time between two beams in seconds, of a lidar that takes them one after the other."""
+        return self.angle_increment / math.tau / self.rate
 
 
 LDS_01 = LidarSpec()

@@ -13,11 +13,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.clearance import clearance
 from sim.codec import from_json, to_json
+from sim.engine import EngineName
 from sim.exceptions import RecordingError
 from sim.lidar import Scan
 from sim.pose import Command
-from sim.simulation import Commands, Engine, Event, Simulation, State, clearance, observe, start, step
+from sim.sensing import observe
+from sim.simulation import start, step
+from sim.state import Commands, Event, Simulation, State
 
 FORMAT = 1
 
@@ -218,7 +222,7 @@ def load_recording(path: str | Path) -> Recording:
         raise RecordingError(f"{path}: not a recording, or a damaged one ({error}); record the run again") from None
 
 
-def replay(recording: Recording, *, engine: Engine = "numpy") -> Iterator[State]:
+def replay(recording: Recording, *, engine: EngineName = "numpy") -> Iterator[State]:
     """Run the recorded commands again from the recorded start: each state is the recorded one, bit for bit."""
     simulation = replace(recording.simulation, engine=engine)
     state = start(simulation)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from sim.faults import NO_FAULTS, Faults
 from sim.lidar import LDS_01, LidarSpec
 from sim.pose import ORIGIN, REST, Command, Pose
+
+if TYPE_CHECKING:
+    from sim.state import State
 
 Covariance = tuple[float, float, float, float, float, float, float, float, float]
 
@@ -61,7 +64,7 @@ class RobotState:
     `pose` is the truth in the frame `map`; `velocity` what it does now, in m/s and rad/s; `command` the last one
     received, at `command_ns`; `odometry` the pose by its wheels in the frame `odom` (which starts at the start
     pose), with `covariance` over (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while
-    something blocks it; `collisions` counts the contacts so far.
+    something blocks it; `collisions` counts the contacts so far. `held` is the state in which a frozen lidar froze.
     """
 
     name: str
@@ -73,3 +76,4 @@ class RobotState:
     covariance: Covariance = (0.0,) * 9
     collided: bool = False
     collisions: int = 0
+    held: State | None = None

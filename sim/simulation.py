@@ -1,174 +1,281 @@
-"""The run: `step(simulation, state, commands, dt) -> state`, with no globals and no hidden clock."""
+"""The run: `start(simulation) -> state` and `step(simulation, state, commands, dt) -> state`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sim.clearance import Around, Clearance, around, clearance, nearest_of
+from sim.engine.motion import STATE
+from sim.engine.trig import wrap
 from sim.exceptions import SpecError
-from sim.lidar import Scan
+from sim.noise import normal, words_of_ticks
 from sim.pose import Command, Pose
 from sim.robot import RobotSpec, RobotState
-from sim.world import World
+from sim.scene import Body
+from sim.sensing import observe
+from sim.state import Commands, Event, Simulation, State
 
-Commands = Mapping[str, Command] | Command | None
-Engine = Literal["numpy", "numba", "auto"]
+__all__ = ["Clearance", "Commands", "Event", "Simulation", "State", "clearance", "observe", "start", "step"]
 
-
-@dataclass(frozen=True, slots=True)
-class Event:
-    """Something that happened: `kind` is "collision", "contact lost", "watchdog" or "fault"; `what` says it in words.
-
-    `x` and `y` are where, in the frame `map`; `speed` in m/s at that moment.
-    """
-
-    time_ns: int
-    robot: str
-    kind: str
-    what: str
-    x: float
-    y: float
-    speed: float = 0.0
-
-
-@dataclass(frozen=True)
-class Simulation:
-    """What a run is made of: a world, robots, a seed. Nothing in it ever changes.
-
-    `tick` is the physics period in seconds; `engine` is who computes: "numpy", "numba" (the extra `fast`) or
-    "auto" (numba where it is installed). All give the same states and the same scans, bit for bit.
-    """
-
-    world: World
-    robots: tuple[RobotSpec, ...] = (RobotSpec(),)
-    seed: int = 0
-    tick: float = 0.02
-    engine: Engine = "numpy"
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """The whole of a run at one instant: `tick` physics ticks and `time_ns` nanoseconds after its start.
-
-    `events` are those of the step that led here.
-    """
-
-    tick: int
-    time_ns: int
-    robots: tuple[RobotState, ...]
-    events: tuple[Event, ...] = ()
+Floats = NDArray[np.float64]
+LONGEST_STEP = 3600.0
 
 
 def start(simulation: Simulation) -> State:
-    """Return the state at time 0, every robot at rest on its start pose."""
-    poses = simulation.world.starts
+    """Return the state at time 0, every robot at rest on its start pose and its odometry at zero."""
+    places = simulation.world.starts
     robots = []
     for index, spec in enumerate(simulation.robots):
-        pose = spec.start or poses[index % len(poses)]
-        robots.append(RobotState(name=spec.name, pose=pose, odometry=Pose()))
-    return State(tick=0, time_ns=0, robots=tuple(robots))
+        pose = spec.start or places[index % len(places)]
+        robots.append(RobotState(name=spec.name, pose=Pose(pose.x, pose.y, wrap(pose.theta))))
+    return _holding(simulation, State(tick=0, time_ns=0, robots=tuple(robots)), None)
 
 
 def step(simulation: Simulation, state: State, commands: Commands = None, dt: float | None = None) -> State:
     """Return the state `dt` seconds later (one physics tick if None), each robot obeying its command.
 
     `commands` maps a robot's name to its command; with one robot the command alone will do. A robot that is not
-    named keeps its last command until its watchdog stops it.
+    named keeps its last command until its watchdog stops it. `dt` is cut into ticks of the physics period, the last
+    one shorter where it must be: one step of five ticks and five steps of one tick end in the same state.
+
+    Raises SpecError for a robot that does not exist, a command that is not finite, or a `dt` that makes no sense.
     """
-    dt = simulation.tick if dt is None else dt
-    ticks = max(1, math.ceil(dt / simulation.tick - 1e-9))
-    robots = []
-    for spec, robot in zip(simulation.robots, state.robots, strict=True):
-        command = commands if isinstance(commands, Command) else (commands or {}).get(spec.name, robot.command)
-        v = min(max(command.linear, -spec.max_linear), spec.max_linear)
-        w = min(max(command.angular, -spec.max_angular), spec.max_angular)
-        turn = w * dt
-        chord = v * dt * (math.sin(turn / 2) / (turn / 2) if turn else 1.0)
-        pose = robot.pose
-        pose = Pose(
-            pose.x + chord * math.cos(pose.theta + turn / 2),
-            pose.y + chord * math.sin(pose.theta + turn / 2),
-            pose.theta + turn,
+    tick_ns = simulation.tick_ns
+    if dt is None:
+        dt_ns = tick_ns
+    elif 0.0 < dt <= LONGEST_STEP:
+        dt_ns = round(dt * 1e9)
+    else:
+        raise SpecError(f"dt is {dt!r}; give a step in seconds, above 0 and at most {LONGEST_STEP:.0f}")
+    ticks, rest_ns = divmod(dt_ns, tick_ns)
+    time_ns = state.time_ns
+    robots = state.robots
+    if commands is not None:
+        robots = _commanded(simulation, state, commands)
+    events: list[Event] = []
+    tick = state.tick
+    if ticks:
+        robots = _advance(simulation, robots, tick, time_ns, ticks, tick_ns, events)
+        tick += ticks
+        time_ns += ticks * tick_ns
+    if rest_ns:
+        robots = _advance(simulation, robots, tick, time_ns, 1, rest_ns, events)
+        tick += 1
+        time_ns += rest_ns
+    return _holding(simulation, State(tick, time_ns, robots, tuple(events)), state)
+
+
+def _commanded(simulation: Simulation, state: State, commands: Commands) -> tuple[RobotState, ...]:
+    if isinstance(commands, Command):
+        if len(state.robots) > 1:
+            raise SpecError("one command for several robots; give a mapping from robot names to commands")
+        commands = {state.robots[0].name: commands}
+    assert isinstance(commands, Mapping)
+    robots = list(state.robots)
+    for name, command in commands.items():
+        if not (math.isfinite(command.linear) and math.isfinite(command.angular)):
+            raise SpecError(f"the command for robot {name!r} is not finite: {command}; give m/s and rad/s")
+        index = simulation.number_of(name)
+        robots[index] = replace(robots[index], command=command, command_ns=state.time_ns)
+    return tuple(robots)
+
+
+def _advance(
+    simulation: Simulation,
+    robots: tuple[RobotState, ...],
+    tick: int,
+    time_ns: int,
+    ticks: int,
+    tick_ns: int,
+    events: list[Event],
+) -> tuple[RobotState, ...]:
+    """Advance all robots by equal ticks: at once where nothing is near any of them, else tick by tick."""
+    scene = simulation.scene
+    vectors = [_vector(robot) for robot in robots]
+    noises = [_noise(body, tick, ticks) for body in scene.bodies]
+    seconds = ticks * tick_ns / 1e9
+    strides = [
+        max(spec.max_linear, abs(robot.velocity.linear)) * seconds
+        for spec, robot in zip(simulation.robots, robots, strict=True)
+    ]
+    poses = [robot.pose for robot in robots]
+    mover_stride = max((mover.speed for mover in simulation.world.movers), default=0.0) * seconds
+    others = max(strides, default=0.0) if len(robots) > 1 else 0.0
+    near = [
+        nearest_of(simulation, time_ns, poses, index) - body.reach <= stride + max(mover_stride, others) + 1e-3
+        for index, (body, stride) in enumerate(zip(scene.bodies, strides, strict=True))
+    ]
+    flags = [(robot.collided, robot.collisions) for robot in robots]
+    if not any(near):
+        for index, (robot, body) in enumerate(zip(robots, scene.bodies, strict=True)):
+            _coast(simulation, robot, body, vectors[index], time_ns, ticks, tick_ns, noises[index], events)
+        flags = [(False, collisions) for _, collisions in flags]
+    else:
+        for number in range(ticks):
+            now_ns = time_ns + number * tick_ns
+            for index, (robot, body) in enumerate(zip(robots, scene.bodies, strict=True)):
+                one = noises[index][number : number + 1]
+                here = [Pose(*vector[:3].tolist()) for vector in vectors]
+                if near[index]:
+                    within = body.reach + 2.0 * strides[index] + 1e-3
+                    things = around(simulation, now_ns + tick_ns, here, index, within)
+                    flags[index] = _push(
+                        simulation, index, robot, vectors[index], now_ns, tick_ns, one[0], things, flags[index], events
+                    )
+                else:
+                    _coast(simulation, robot, body, vectors[index], now_ns, 1, tick_ns, one, events)
+                    flags[index] = (False, flags[index][1])
+    return tuple(_unpacked(robot, vector, *flag) for robot, vector, flag in zip(robots, vectors, flags, strict=True))
+
+
+def _coast(
+    simulation: Simulation,
+    robot: RobotState,
+    body: Body,
+    vector: Floats,
+    time_ns: int,
+    ticks: int,
+    tick_ns: int,
+    noise: Floats,
+    events: list[Event],
+) -> None:
+    coast = simulation.scene.engine.coast
+    dt = tick_ns / 1e9
+    left_ns = robot.command_ns + body.watchdog_ns - time_ns
+    obeyed = min(max(-(-left_ns // tick_ns), 0), ticks)
+    if obeyed:
+        command = robot.command
+        coast(vector, command.linear, command.angular, obeyed, dt, body.limits, body.drift, noise)
+    if obeyed < ticks:
+        _tell_watchdog(robot, vector, time_ns + obeyed * tick_ns, tick_ns, body, events)
+        coast(vector, 0.0, 0.0, ticks - obeyed, dt, body.limits, body.drift, noise[obeyed:])
+
+
+def _push(
+    simulation: Simulation,
+    index: int,
+    robot: RobotState,
+    vector: Floats,
+    time_ns: int,
+    tick_ns: int,
+    noise: Floats,
+    things: Around,
+    flag: tuple[bool, int],
+    events: list[Event],
+) -> tuple[bool, int]:
+    spec, body = simulation.robots[index], simulation.scene.bodies[index]
+    command = robot.command
+    if time_ns - robot.command_ns >= body.watchdog_ns:
+        _tell_watchdog(robot, vector, time_ns, tick_ns, body, events)
+        command = Command()
+    touch = np.zeros(6)
+    hit = simulation.scene.engine.push(
+        vector,
+        command.linear,
+        command.angular,
+        tick_ns / 1e9,
+        body.limits,
+        body.drift,
+        noise,
+        body.shape,
+        things.walls,
+        things.circles,
+        spec.on_collision == "slide",
+        touch,
+    )
+    collided, collisions = flag
+    if hit and not collided:
+        what, speed = things.names[int(touch[0])], float(touch[5])
+        events.append(
+            Event(
+                time_ns + tick_ns,
+                spec.name,
+                "collision",
+                f"{spec.name} met {what} at {speed:.2f} m/s",
+                float(touch[1]),
+                float(touch[2]),
+                speed,
+            )
         )
-        robots.append(replace(robot, pose=pose, velocity=Command(v, w), command=command))
-    return State(state.tick + ticks, state.time_ns + round(dt * 1e9), tuple(robots))
+        collisions += 1
+    return bool(hit), collisions
 
 
-def observe(simulation: Simulation, state: State, robot: str | None = None) -> Scan | None:
-    """Return what the lidar of `robot` (the first if None) sees now; None when a dead lidar sends nothing.
+def _tell_watchdog(
+    robot: RobotState, vector: Floats, time_ns: int, tick_ns: int, body: Body, events: list[Event]
+) -> None:
+    """Note the first tick at which a command that asks for motion is dropped for its age."""
+    fresh = time_ns - tick_ns - robot.command_ns < body.watchdog_ns
+    if fresh and (robot.command.linear != 0.0 or robot.command.angular != 0.0):
+        x, y = vector[:2].tolist()
+        what = f"{robot.name} had no new command for {body.watchdog_ns / 1e9:g} s and stops"
+        events.append(Event(time_ns, robot.name, "watchdog", what, x, y, abs(float(vector[3]))))
 
-    Raises SpecError for a robot that does not exist or has no lidar.
-    """
-    index = _index(simulation, robot)
-    spec = simulation.robots[index]
-    lidar = spec.lidar
-    if lidar is None:
-        raise SpecError(f"robot {spec.name!r} has no lidar")
-    pose = state.robots[index].pose
-    angles = pose.theta + lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
-    dx, dy = np.cos(angles), np.sin(angles)
-    best = np.full(lidar.beams, 1e-300)
-    for x1, y1, x2, y2 in simulation.world.segments.tolist():
-        ex, ey, vx, vy = x2 - x1, y2 - y1, x1 - pose.x, y1 - pose.y
-        h = vx * ey - vy * ex
-        s1, s2 = dx * vy - dy * vx, dx * (y2 - pose.y) - dy * (x2 - pose.x)
-        if h:
-            best = np.maximum(best, np.where(s1 * s2 <= 0, (dx * ey - dy * ex) / h, 0.0))
-    ranges = (1 / best).astype(np.float32)
-    ranges[ranges > lidar.range_max] = np.inf
-    ranges[ranges < lidar.range_min] = -np.inf
-    return Scan(
-        stamp_ns=state.time_ns,
-        ranges=ranges,
-        intensities=np.empty(0, np.float32),
-        angle_min=lidar.angle_min,
-        angle_max=lidar.angle_max,
-        angle_increment=lidar.angle_increment,
-        time_increment=0.0,
-        scan_time=1 / lidar.rate,
-        range_min=lidar.range_min,
-        range_max=lidar.range_max,
+
+def _noise(body: Body, tick: int, ticks: int) -> Floats:
+    if body.drift.any():
+        return normal(words_of_ticks(body.odometry_key, tick, ticks)[:, :2])
+    return np.zeros((ticks, 2))
+
+
+def _vector(robot: RobotState) -> Floats:
+    pose, velocity, odometry, c = robot.pose, robot.velocity, robot.odometry, robot.covariance
+    vector = np.array(
+        (
+            pose.x,
+            pose.y,
+            pose.theta,
+            velocity.linear,
+            velocity.angular,
+            odometry.x,
+            odometry.y,
+            odometry.theta,
+            c[0],
+            c[1],
+            c[2],
+            c[4],
+            c[5],
+            c[8],
+        )
+    )
+    assert len(vector) == STATE
+    return vector
+
+
+def _unpacked(robot: RobotState, vector: Floats, collided: bool, collisions: int) -> RobotState:
+    x, y, theta, v, w, ox, oy, ot, xx, xy, xt, yy, yt, tt = vector.tolist()
+    return RobotState(
+        robot.name,
+        Pose(x, y, theta),
+        Command(v, w),
+        robot.command,
+        robot.command_ns,
+        Pose(ox, oy, ot),
+        (xx, xy, xt, xy, yy, yt, xt, yt, tt),
+        collided,
+        collisions,
+        robot.held,
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Clearance:
-    """How near the nearest obstacle is: `distance` in m from the footprint (below 0: inside it), where, and its name.
-
-    `x` and `y` are the obstacle's nearest point in the frame `map`; `what` reads like "north wall", "wall 3",
-    "pillar 0", "mover 1" or "robot bob".
-    """
-
-    distance: float
-    x: float
-    y: float
-    what: str
+def _holding(simulation: Simulation, state: State, before: State | None) -> State:
+    """Keep, for each lidar that is frozen now, the state that it froze in."""
+    if not any(spec.faults.frozen for spec in simulation.robots):
+        return state
+    robots = [_held(spec, robot, state) for spec, robot in zip(simulation.robots, state.robots, strict=True)]
+    return replace(state, robots=tuple(robots))
 
 
-def clearance(simulation: Simulation, state: State, robot: str | None = None) -> Clearance:
-    """Return how near the nearest obstacle is to the footprint of `robot` (the first if None)."""
-    index = _index(simulation, robot)
-    pose, spec, world = state.robots[index].pose, simulation.robots[index], simulation.world
-    best = Clearance(math.inf, math.nan, math.nan, "nothing")
-    for number, (x1, y1, x2, y2) in enumerate(world.segments.tolist()):
-        ex, ey = x2 - x1, y2 - y1
-        length = ex * ex + ey * ey
-        t = min(max(((pose.x - x1) * ex + (pose.y - y1) * ey) / length, 0.0), 1.0) if length else 0.0
-        x, y = x1 + t * ex, y1 + t * ey
-        distance = math.hypot(x - pose.x, y - pose.y) - spec.radius
-        if distance < best.distance:
-            best = Clearance(distance, x, y, world.segment_names[number] or f"wall {number}")
-    return best
-
-
-def _index(simulation: Simulation, robot: str | None) -> int:
-    names = [spec.name for spec in simulation.robots]
-    if robot is None:
-        return 0
-    if robot not in names:
-        raise SpecError(f"there is no robot {robot!r}; the robots are {', '.join(names)}")
-    return names.index(robot)
+def _held(spec: RobotSpec, robot: RobotState, state: State) -> RobotState:
+    frozen = any(window.holds(state.time_ns) for window in spec.faults.frozen)
+    if not frozen:
+        return robot if robot.held is None else replace(robot, held=None)
+    if robot.held is not None:
+        return robot
+    seen = tuple(replace(other, held=None) for other in state.robots)
+    return replace(robot, held=replace(state, robots=seen, events=()))

@@ -1,0 +1,33 @@
+"""Who computes: the array engine (numpy) or the compiled one (numba), chosen by name, with the same bits from both."""
+
+from __future__ import annotations
+
+import importlib.util
+from typing import Any, Literal
+
+from sim.exceptions import EngineError
+
+EngineName = Literal["numpy", "numba", "auto"]
+
+
+def engine(name: EngineName) -> Any:
+    """Return the module that computes. Raises EngineError for a name that is unknown or not installed.
+
+    numba is imported here and nowhere else: neither `import sim` nor the array engine needs it.
+    """
+    if name == "auto":
+        name = "numba" if importlib.util.find_spec("numba") else "numpy"
+    if name == "numpy":
+        from sim.engine import arrays
+
+        return arrays
+    if name == "numba":
+        try:
+            from sim.engine import compiled
+        except ImportError as error:
+            raise EngineError(
+                f"the engine 'numba' cannot be loaded ({error}); install it with "
+                "`pip install 'ros2-python-course[fast]'`, or use engine='numpy'"
+            ) from error
+        return compiled
+    raise EngineError(f"there is no engine {name!r}; use 'numpy', 'numba' or 'auto'")

@@ -1,0 +1,55 @@
+"""The fast engine: the scalar sources compiled by numba, unchanged and without fast-math, so that no bit differs.
+
+Machine code is kept in the user's cache folder (or in NUMBA_CACHE_DIR) under a hash of those sources: a change in
+any of them compiles anew, and an installation that can't be written to does not matter.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.extending import register_jitable
+
+from sim.engine import exact, loops, motion, pairs, shapes, traverse, trig
+
+_SOURCES = (trig, exact, pairs, loops, traverse, shapes, motion)
+
+
+def _compiler() -> Callable[[Any], Any]:
+    digest = hashlib.sha256()
+    for module in _SOURCES:
+        digest.update(Path(str(module.__file__)).read_bytes())
+    home = os.environ.get("NUMBA_CACHE_DIR") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sim"
+    folder = Path(home) / digest.hexdigest()[:16]
+
+    def compiled(function: Any) -> Any:
+        before = numba.config.CACHE_DIR
+        try:
+            numba.config.CACHE_DIR = str(folder)
+            return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+        except (OSError, RuntimeError):  # nowhere to write: compile once a process
+            return numba.njit(error_model="numpy", nogil=True)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return compiled
+
+
+for _module in _SOURCES:
+    for _function in vars(_module).values():
+        if callable(_function) and getattr(_function, "__module__", "") == _module.__name__:
+            register_jitable(_function)
+
+_compiled = _compiler()
+fan = _compiled(loops.fan)
+fan_in_grid = _compiled(traverse.fan_in_grid)
+rays = _compiled(traverse.rays)
+coast = _compiled(motion.coast)
+push = _compiled(motion.push)
+gap = _compiled(shapes.gap)
+nearest = _compiled(shapes.nearest)

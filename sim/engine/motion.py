@@ -1,0 +1,189 @@
+"""How a differential drive moves: exact arcs, limited accelerations, odometry that drifts, and contacts that stop it.
+
+A robot is a vector of `STATE` numbers: x, y, theta, v, w, then the odometry's x, y, theta, then the upper triangle of
+its covariance. During a tick v and w are constant, so that its path is an arc of a circle, whose chord is
+v dt sinc(w dt / 2) at the heading of half the turn. Plain Python throughout: the compiled engine compiles it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.engine.shapes import gap
+from sim.engine.trig import sinc, sincos, wrap
+
+Floats = NDArray[np.float64]
+
+STATE = 14
+# A contact is a gap of two skins; sliding along may wear it to one, and no motion makes a gap smaller than that.
+SKIN = 1e-6
+# How far a robot may move between two looks at what is around it, where something is near.
+STRIDE = 1e-3
+
+
+def approach(value: float, target: float, most: float) -> float:
+    """Return `value` moved towards `target` by at most `most`."""
+    return value + min(max(target - value, -most), most)
+
+
+def along_arc(x: float, y: float, theta: float, v: float, w: float, dt: float) -> tuple[float, float, float]:
+    """Return the pose after `dt` seconds at the constant speeds v and w: exact, whatever w is."""
+    half = 0.5 * (w * dt)
+    s, c = sincos(theta + half)
+    chord = v * dt * sinc(half)
+    return x + chord * c, y + chord * s, wrap(theta + w * dt)
+
+
+def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats) -> None:
+    """Add a motion of `ds` metres and `turn` radians to the odometry and its covariance.
+
+    `drift` holds the variances: of the distance per metre, of the turn per radian, of the turn per metre. `noise`
+    holds two standard normal numbers. The covariance is propagated to first order about the measured motion.
+    """
+    distance_variance = drift[0] * abs(ds)
+    turn_variance = drift[1] * abs(turn) + drift[2] * abs(ds)
+    noisy = distance_variance + turn_variance > 0.0
+    if noisy:
+        ds += math.sqrt(distance_variance) * noise[0]
+        turn += math.sqrt(turn_variance) * noise[1]
+    s, c = sincos(robot[7] + 0.5 * turn)
+    chord = ds * sinc(0.5 * turn)
+    robot[5] += chord * c
+    robot[6] += chord * s
+    robot[7] = wrap(robot[7] + turn)
+    if drift[0] + drift[1] + drift[2] > 0.0:
+        # P := F P F' + V Q V', F = [[1, 0, fx], [0, 1, fy], [0, 0, 1]], V = [[c, fx / 2], [s, fy / 2], [0, 1]]
+        fx = -ds * s
+        fy = ds * c
+        xx, xy, xt, yy, yt, tt = robot[8], robot[9], robot[10], robot[11], robot[12], robot[13]
+        q, r = distance_variance, turn_variance
+        robot[8] = xx + 2.0 * fx * xt + fx * fx * tt + c * c * q + 0.25 * fx * fx * r
+        robot[9] = xy + fx * yt + fy * xt + fx * fy * tt + c * s * q + 0.25 * fx * fy * r
+        robot[10] = xt + fx * tt + 0.5 * fx * r
+        robot[11] = yy + 2.0 * fy * yt + fy * fy * tt + s * s * q + 0.25 * fy * fy * r
+        robot[12] = yt + fy * tt + 0.5 * fy * r
+        robot[13] = tt + r
+
+
+def coast(
+    robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
+) -> None:
+    """Advance `robot` by `ticks` ticks of `dt` seconds towards the speeds v and w, where nothing is in its way.
+
+    `limits` are the largest speeds and accelerations, linear and angular: m/s, rad/s, m/s², rad/s². `noise` is
+    (ticks, 2).
+    """
+    for tick in range(ticks):
+        robot[3] = approach(robot[3], min(max(v, -limits[0]), limits[0]), limits[2] * dt)
+        robot[4] = approach(robot[4], min(max(w, -limits[1]), limits[1]), limits[3] * dt)
+        robot[0], robot[1], robot[2] = along_arc(robot[0], robot[1], robot[2], robot[3], robot[4], dt)
+        measure(robot, robot[3] * dt, robot[4] * dt, drift, noise[tick])
+
+
+def sweep(
+    pose: Floats,
+    v: float,
+    w: float,
+    sx: float,
+    sy: float,
+    dt: float,
+    keep: float,
+    body: Floats,
+    walls: Floats,
+    circles: Floats,
+    touch: Floats,
+) -> float:
+    """Move `pose` (x, y, theta) until something is met; return the share of `dt` that went by, 1 if nothing was.
+
+    The motion is an arc at the speeds v and w and, besides, a slip at (sx, sy) m/s. The gap to what is around is
+    never let below `keep`, or below what it was. `body` is as in `shapes.gap`, which fills `touch`.
+    """
+    x, y, theta = pose[0], pose[1], pose[2]
+    left = gap(x, y, theta, body, walls, circles, touch)
+    keep = min(keep, left)
+    most = (abs(v) + abs(sx) + abs(sy) + abs(w) * body[0, 1]) * dt
+    done = 0.0
+    while done < 1.0 and most > 0.0:
+        share = min(done + max(left - SKIN, STRIDE) / most, 1.0)
+        low, high = done, share
+        for _ in range(40):  # once if the way is free; else halve the interval in which the contact is
+            t = share * dt
+            a, b, c = along_arc(x, y, theta, v, w, t)
+            a += sx * t
+            b += sy * t
+            left = gap(a, b, c, body, walls, circles, touch)
+            if left >= keep:
+                low = share
+                pose[0], pose[1], pose[2] = a, b, c
+                if share == high:
+                    break
+            else:
+                high = share
+            share = 0.5 * (low + high)
+        else:
+            gap(pose[0], pose[1], pose[2], body, walls, circles, touch)
+            return low
+        done = high
+    return 1.0
+
+
+def push(
+    robot: Floats,
+    v: float,
+    w: float,
+    dt: float,
+    limits: Floats,
+    drift: Floats,
+    noise: Floats,
+    body: Floats,
+    walls: Floats,
+    circles: Floats,
+    slide: bool,
+    touch: Floats,
+) -> bool:
+    """Advance `robot` by one tick where something is near; return whether it was in contact.
+
+    After a contact a robot that stops turns on where it is, and one that slides keeps the part of its motion along
+    the obstacle. `touch` then tells of the contact (see `shapes.gap`), and its sixth number is the speed it was met
+    at.
+    """
+    robot[3] = approach(robot[3], min(max(v, -limits[0]), limits[0]), limits[2] * dt)
+    robot[4] = approach(robot[4], min(max(w, -limits[1]), limits[1]), limits[3] * dt)
+    v, w = robot[3], robot[4]
+    pose = robot[:3]
+    if gap(pose[0], pose[1], pose[2], body, walls, circles, touch) < 0.0:
+        # something has run into it; it may still get away
+        touch[5] = abs(v)
+        share = sweep(pose, v, w, 0.0, 0.0, dt, 0.0, body, walls, circles, np.empty(6))
+        if share < 1.0:
+            robot[3] = 0.0
+        measure(robot, v * dt * share, w * dt * share, drift, noise)
+        return True
+    share = sweep(pose, v, w, 0.0, 0.0, dt, 2.0 * SKIN, body, walls, circles, touch)
+    if share == 1.0:
+        measure(robot, v * dt, w * dt, drift, noise)
+        return False
+    ds, turn = v * dt * share, w * dt * share
+    rest = dt * (1.0 - share)
+    nx, ny = touch[3], touch[4]
+    s, c = sincos(pose[2])
+    sx = 0.0
+    sy = 0.0
+    if slide:
+        into = min(v * (c * nx + s * ny), 0.0)
+        sx = v * c - into * nx
+        sy = v * s - into * ny
+    spare = np.empty(6)
+    more = sweep(pose, 0.0, w, sx, sy, rest, SKIN, body, walls, circles, spare)
+    if more < 1.0 and slide:  # a corner: what is left is the turn
+        more = sweep(pose, 0.0, w, 0.0, 0.0, rest * (1.0 - more), SKIN, body, walls, circles, spare)
+        sx = 0.0
+        sy = 0.0
+    robot[3] = c * sx + s * sy
+    robot[4] = w if more == 1.0 else 0.0
+    measure(robot, ds + robot[3] * rest, turn + robot[4] * rest, drift, noise)
+    touch[5] = abs(v)
+    return True

@@ -1,0 +1,157 @@
+"""Beams one by one: from any origin in any direction, and through a grid of cells where there are many walls.
+
+The grid holds, for each square cell, the walls that pass within `MARGIN` of it, so that a beam which rounding puts
+into the cell next door still finds its wall. A beam walks from cell to cell and stops once what it has met is nearer
+than the next cell: its cost is that of the free space in front of it, not that of the world.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.engine.exact import DOUBT
+from sim.engine.loops import circle_into
+from sim.engine.pairs import NOTHING, TOUCHING, circle_inverse, wall_hit, wall_inverse
+from sim.engine.trig import sincos
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+MARGIN = 1e-6
+FLAT = 1e-12  # a beam this near an axis stays in its column or row, to within the margin
+NEVER = 1e300
+
+
+def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
+    """Return the ranges (K,) of beams from `origins` (K, 2) along the unit vectors `directions` (K, 2), in metres."""
+    ranges = np.empty(len(origins))
+    for beam in range(len(origins)):
+        ox, oy = origins[beam, 0], origins[beam, 1]
+        dx, dy = directions[beam, 0], directions[beam, 1]
+        best = NOTHING
+        for k in range(walls.shape[1]):
+            px, qx, py, qy = walls[0, k], walls[1, k], walls[2, k], walls[3, k]
+            best = max(best, wall_hit(dx, dy, ox, oy, px, py, qx, qy, walls[5, k], walls[4, k]))
+        for k in range(len(circles)):
+            cx, cy, radius = circles[k, 0], circles[k, 1], circles[k, 2]
+            vx = cx - ox
+            vy = cy - oy
+            if vx * vx + vy * vy <= radius * radius:
+                best = TOUCHING
+            else:
+                best = max(best, circle_inverse(dx, dy, ox, oy, cx, cy, radius))
+        ranges[beam] = 1.0 / best
+    return ranges
+
+
+def walk(
+    walls: Floats,
+    starts: Integers,
+    members: Integers,
+    west: float,
+    south: float,
+    cell: float,
+    columns: int,
+    rows: int,
+    ox: float,
+    oy: float,
+    dx: float,
+    dy: float,
+    reach: float,
+) -> float:
+    """Return the largest inverse range of the walls in the grid along one beam."""
+    best = NOTHING
+    x, y = ox - west, oy - south
+    wide, high = cell * columns, cell * rows
+    per_x = 1.0 / dx if abs(dx) >= FLAT else 0.0
+    per_y = 1.0 / dy if abs(dy) >= FLAT else 0.0
+    enter = 0.0
+    if x < 0.0 or x > wide or y < 0.0 or y > high:  # from outside: go to where the beam enters, if it does
+        leave = reach
+        for o, per, size in ((x, per_x, wide), (y, per_y, high)):
+            if per != 0.0:
+                a, b = -o * per, (size - o) * per
+                enter = max(enter, min(a, b))
+                leave = min(leave, max(a, b))
+            elif o < -MARGIN or o > size + MARGIN:
+                return best
+        if enter > leave + MARGIN:
+            return best
+    per_cell = 1.0 / cell
+    column = min(max(int((x + enter * dx) * per_cell), 0), columns - 1)
+    row = min(max(int((y + enter * dy) * per_cell), 0), rows - 1)
+    doubt = 4.0 * DOUBT * (abs(x) + abs(y) + wide + high)
+    right = 1 if dx > 0.0 else -1
+    ahead = 1 if dy > 0.0 else -1
+    across = (cell * (column + (right + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
+    up = (cell * (row + (ahead + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
+    per_x = cell * abs(per_x)
+    per_y = cell * abs(per_y)
+    while True:
+        place = row * columns + column
+        for index in range(starts[place], starts[place + 1]):
+            k = members[index]
+            px, qx, py, qy = walls[0, k], walls[1, k], walls[2, k], walls[3, k]
+            vx = px - ox
+            vy = py - oy
+            before = dx * vy - dy * vx
+            after = dx * (qy - oy) - dy * (qx - ox)
+            ey = walls[4, k]
+            ex = walls[5, k]
+            if (before > doubt and after > doubt) or (before < -doubt and after < -doubt):
+                continue  # most walls: both ends plainly on one side of the beam
+            h = vx * ey - vy * ex
+            if min(abs(before), abs(after)) <= doubt or abs(h) <= doubt * walls[6, k]:
+                best = max(best, wall_hit(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
+            elif (h > 0.0) == (after > 0.0):
+                best = max(best, wall_inverse(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
+        following = min(across, up)
+        if following > reach or following * best > 1.0 + MARGIN * best:
+            return best
+        if across < up:
+            column += right
+            across += per_x
+        else:
+            row += ahead
+            up += per_y
+        if column < 0 or column >= columns or row < 0 or row >= rows:
+            return best
+
+
+def fan_in_grid(
+    walls: Floats,
+    starts: Integers,
+    members: Integers,
+    west: float,
+    south: float,
+    cell: float,
+    columns: int,
+    rows: int,
+    circles: Floats,
+    table: Floats,
+    ox: float,
+    oy: float,
+    yaw: float,
+    angle_min: float,
+    per_radian: float,
+    reach: float,
+) -> Floats:
+    """Return the ranges of a fan, as `loops.fan` does, through the grid of `index.Grid`."""
+    s, c = sincos(yaw)
+    count = table.shape[1]
+    directions = np.empty((2, count))
+    best = np.empty(count)
+    for beam in range(count):
+        dx = c * table[0, beam] - s * table[1, beam]
+        dy = s * table[0, beam] + c * table[1, beam]
+        directions[0, beam] = dx
+        directions[1, beam] = dy
+        best[beam] = walk(walls, starts, members, west, south, cell, columns, rows, ox, oy, dx, dy, reach)
+    for k in range(len(circles)):
+        circle_into(
+            best, directions, ox, oy, (circles[k, 0], circles[k, 1], circles[k, 2]), yaw + angle_min, per_radian
+        )
+    for beam in range(count):
+        best[beam] = 1.0 / best[beam]
+    return best

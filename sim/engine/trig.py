@@ -1,0 +1,96 @@
+"""Sine and cosine from correctly rounded operations alone, so that every machine gets the same bits.
+
+A C library may compute sin and cos one way on a processor with fused multiply-add and another way without it, and
+the last bit differs. Addition, multiplication and flooring of doubles are the same everywhere (IEEE 754), and the
+functions here use nothing else. They are plain Python: the compiled engine compiles this very source.
+"""
+
+from __future__ import annotations
+
+import math
+
+TWO_OVER_PI = 0.6366197723675814
+# pi/2 in three parts; multiples below 2**20 of the first two are exact (reduction after Cody and Waite).
+HALF_PI_1 = 1.5707963267341256
+HALF_PI_2 = 6.077100506303966e-11
+HALF_PI_3 = 2.0222662487959506e-21
+
+PI = math.pi
+TAU = math.tau
+
+
+def sine(z: float) -> float:
+    """Return sin(x)/x for z = x², |x| <= pi/4: Taylor's series, cut where it is below 1e-19."""
+    return 1.0 + z * (
+        -1.0 / 6.0
+        + z
+        * (
+            1.0 / 120.0
+            + z
+            * (
+                -1.0 / 5040.0
+                + z
+                * (
+                    1.0 / 362880.0
+                    + z
+                    * (
+                        -1.0 / 39916800.0
+                        + z * (1.0 / 6227020800.0 + z * (-1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0)))
+                    )
+                )
+            )
+        )
+    )
+
+
+def cosine(z: float) -> float:
+    """Return cos(x) for z = x², |x| <= pi/4: Taylor's series, cut where it is below 1e-17."""
+    return 1.0 + z * (
+        -1.0 / 2.0
+        + z
+        * (
+            1.0 / 24.0
+            + z
+            * (
+                -1.0 / 720.0
+                + z
+                * (
+                    1.0 / 40320.0
+                    + z
+                    * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0 + z * (-1.0 / 87178291200.0 + z / 20922789888000.0)))
+                )
+            )
+        )
+    )
+
+
+def sincos(angle: float) -> tuple[float, float]:
+    """Return the sine and the cosine of `angle` radians, each within 2.3e-16, for |angle| up to 1e5."""
+    quadrant = math.floor(angle * TWO_OVER_PI + 0.5)
+    x = ((angle - quadrant * HALF_PI_1) - quadrant * HALF_PI_2) - quadrant * HALF_PI_3
+    z = x * x
+    s = x * sine(z)
+    c = cosine(z)
+    turn = quadrant % 4
+    if turn == 0:
+        return s, c
+    if turn == 1:
+        return c, -s
+    if turn == 2:
+        return -s, -c
+    return -c, s
+
+
+def sinc(x: float) -> float:
+    """Return sin(x)/x, and 1 at 0: the chord of an arc over its length, x being half the turn."""
+    if -0.75 < x < 0.75:
+        return sine(x * x)
+    return sincos(x)[0] / x
+
+
+def wrap(angle: float) -> float:
+    """Return `angle` as the same heading in [-pi, pi)."""
+    if -PI <= angle < PI:
+        return angle
+    wrapped = angle - TAU * math.floor((angle + PI) / TAU)
+    return wrapped if wrapped < PI else -PI

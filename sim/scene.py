@@ -1,0 +1,153 @@
+"""A world and its robots laid out for an engine, once for a run: columns of numbers, tables of beams, keys of noise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.engine import EngineName, engine
+from sim.engine.index import WORTH_A_GRID, Grid, grid_of, layout
+from sim.engine.shapes import distance
+from sim.engine.trig import TAU, sincos
+from sim.lidar import LidarSpec
+from sim.noise import Words, key_of, uniform, words
+from sim.pose import Pose
+from sim.robot import RobotSpec
+from sim.world import Mover, World
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beams:
+    """A lidar's fan: the directions (2, beams) in its frame, beams in a radian, and how far beams are followed."""
+
+    table: Floats
+    per_radian: float
+    reach: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """A robot as the engine wants it: its shape (see `engine.shapes`), its limits, its drift, its streams of noise."""
+
+    shape: Floats
+    reach: float
+    limits: Floats
+    drift: Floats
+    watchdog_ns: int
+    beams: Beams | None
+    range_key: Words
+    dropout_key: Words
+    odometry_key: Words
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A mover's cycle: `legs` of (begin time, x, y, velocity x, velocity y, time in motion), in s, m and m/s."""
+
+    legs: tuple[tuple[float, float, float, float, float, float], ...]
+    period: float
+    ahead: float
+    radius: float
+
+    def at(self, time_ns: int) -> tuple[float, float]:
+        """Return where the mover is at a simulated time."""
+        if self.period <= 0.0:
+            return self.legs[0][1], self.legs[0][2]
+        t = time_ns / 1e9 + self.ahead
+        t -= self.period * math.floor(t / self.period)
+        begin, x, y, vx, vy, moving = self.legs[0]
+        for leg in self.legs:
+            if leg[0] > t:
+                break
+            begin, x, y, vx, vy, moving = leg
+        elapsed = min(t - begin, moving)
+        return x + vx * elapsed, y + vy * elapsed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """What an engine needs to know about a run."""
+
+    engine: Any
+    walls: Floats
+    circles: Floats
+    grid: Grid | None
+    tracks: tuple[Track, ...]
+    bodies: tuple[Body, ...]
+
+    def movers_at(self, time_ns: int) -> list[tuple[float, float, float]]:
+        """Return the movers as circles at a simulated time."""
+        return [(*track.at(time_ns), track.radius) for track in self.tracks]
+
+
+def build(world: World, robots: tuple[RobotSpec, ...], seed: int, name: EngineName) -> Scene:
+    """Lay a run out for the engine of that name."""
+    walls = layout(world.segments)
+    chosen = engine(name)
+    return Scene(
+        engine=chosen,
+        walls=walls,
+        circles=world.circles,
+        grid=grid_of(walls) if walls.shape[1] > WORTH_A_GRID and hasattr(chosen, "fan_in_grid") else None,
+        tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),
+        bodies=tuple(_body(robot, seed) for robot in robots),
+    )
+
+
+def beams_of(lidar: LidarSpec) -> Beams:
+    """Return the fan of a lidar."""
+    angles = [lidar.angle_min + beam * lidar.angle_increment for beam in range(lidar.beams)]
+    sines, cosines = zip(*(sincos(angle) for angle in angles), strict=True)
+    per_radian = 1.0 / lidar.angle_increment if lidar.beams > 1 else 1.0 / TAU
+    return Beams(np.array((cosines, sines)), per_radian, lidar.range_max * 1.000001)
+
+
+def _body(robot: RobotSpec, seed: int) -> Body:
+    corners = robot.footprint or ()
+    reach = max((distance(0.0, 0.0, x, y) for x, y in corners), default=robot.radius)
+    drift = robot.drift
+    return Body(
+        shape=np.array([(robot.radius, reach), *corners]),
+        reach=reach,
+        limits=np.array(
+            (robot.max_linear, robot.max_angular, robot.max_linear_acceleration, robot.max_angular_acceleration)
+        ),
+        drift=np.array((drift.linear**2, drift.angular**2, drift.veer**2)),
+        watchdog_ns=round(min(robot.watchdog, 1e9) * 1e9),
+        beams=None if robot.lidar is None else beams_of(robot.lidar),
+        range_key=key_of(seed, robot.name, "range"),
+        dropout_key=key_of(seed, robot.name, "dropout"),
+        odometry_key=key_of(seed, robot.name, "odometry"),
+    )
+
+
+def _track(mover: Mover, number: int, seed: int) -> Track:
+    points = [*mover.path, mover.path[0]] if mover.loop else [*mover.path, *mover.path[-2::-1]]
+    legs = []
+    begin = 0.0
+    for (x1, y1), (x2, y2) in pairwise(points):
+        length = distance(x1, y1, x2, y2)
+        moving = length / mover.speed
+        speed = mover.speed / length if length > 0.0 else 0.0
+        legs.append((begin, x1, y1, (x2 - x1) * speed, (y2 - y1) * speed, moving))
+        begin += moving + mover.pause
+    share = mover.phase
+    if share is None:
+        share = float(uniform(words(key_of(seed, f"{number}/{mover.name}", "phase"), 0, 1))[0])
+    return Track(tuple(legs) or ((0.0, *mover.path[0], 0.0, 0.0, 0.0),), begin, share * begin, mover.radius)
+
+
+def outline(pose: Pose, robot: RobotSpec) -> list[tuple[float, float, float, float]]:
+    """Return the sides of a polygonal footprint in the frame `map`, none for a round one."""
+    if robot.footprint is None:
+        return []
+    s, c = sincos(pose.theta)
+    corners = [(pose.x + c * x - s * y, pose.y + s * x + c * y) for x, y in robot.footprint]
+    return [(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]

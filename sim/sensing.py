@@ -1,0 +1,184 @@
+"""What a lidar sees in a state: ranges from the engine, then noise, drop-outs and faults, then a scan."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.engine.index import layout
+from sim.engine.motion import along_arc
+from sim.engine.trig import TAU, sincos
+from sim.exceptions import SpecError
+from sim.faults import DeadSector
+from sim.lidar import LidarSpec, Scan
+from sim.noise import normal, uniform, words
+from sim.pose import Pose
+from sim.robot import RobotSpec
+from sim.scene import Body, Scene, beams_of, outline
+from sim.state import Simulation, State
+
+Floats = NDArray[np.float64]
+NO_INTENSITIES = np.empty(0, dtype=np.float32)
+NO_INTENSITIES.flags.writeable = False
+
+
+def observe(simulation: Simulation, state: State, robot: str | None = None) -> Scan | None:
+    """Return what the lidar of `robot` (the first if None) sees now; None when a dead lidar sends nothing.
+
+    The scan depends on the simulation and the state alone: not on who looked before, nor on the engine.
+    Raises SpecError for a robot that does not exist or has no lidar.
+    """
+    index = simulation.number_of(robot)
+    spec = simulation.robots[index]
+    lidar = spec.lidar
+    if lidar is None:
+        raise SpecError(f"robot {spec.name!r} has no lidar; give its RobotSpec one")
+    faults = spec.faults
+    time_ns = state.time_ns
+    if any(window.holds(time_ns) for window in faults.dead):
+        return None
+    source = state.robots[index].held or state
+    body = simulation.scene.bodies[index]
+    ranges = _ranges(simulation, source, index, lidar, body)
+    sectors = [sector for sector in faults.sectors if sector.window.holds(time_ns)] if faults.sectors else ()
+    ranges32 = _finish(ranges, lidar, body, source.tick, sectors)
+    sweep_ns = 0
+    time_increment = 0.0
+    if lidar.skew:
+        time_increment = lidar.time_increment
+        sweep_ns = round((lidar.beams - 1) * time_increment * 1e9)
+    return Scan(
+        max(time_ns - sweep_ns, 0),
+        ranges32,
+        _intensities(ranges32) if lidar.intensities else NO_INTENSITIES,
+        lidar.angle_min,
+        lidar.angle_max,
+        lidar.angle_increment,
+        time_increment,
+        1.0 / lidar.rate,
+        lidar.range_min,
+        lidar.range_max,
+    )
+
+
+def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
+    """Return the exact distances (beams,) in metres, float64, that a lidar at `pose` (frame `map`) would measure.
+
+    Of the world's walls and circles alone, with movers where they are at time 0; `inf` beyond `range_max`. A beam
+    starts at the pose and goes along `directions(pose, lidar)`; a wall is a closed segment and a circle a solid disc.
+    """
+    scene = simulation.scene
+    ranges = _fan(scene, scene.walls, _circles(scene, scene.movers_at(0)), pose, lidar)
+    ranges[ranges > lidar.range_max] = np.inf
+    return ranges
+
+
+def directions(pose: Pose, lidar: LidarSpec) -> Floats:
+    """Return the beams' directions (beams, 2) in the frame `map`, the very doubles that the engines use."""
+    s, c = sincos(pose.theta)
+    x, y = beams_of(lidar).table
+    return np.stack((c * x - s * y, s * x + c * y), axis=1)
+
+
+def mounted(pose: Pose, mount: Pose) -> Pose:
+    """Return where a sensor is whose pose in `base_link` is `mount`, for a robot at `pose`."""
+    s, c = sincos(pose.theta)
+    return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)
+
+
+def _ranges(simulation: Simulation, state: State, index: int, lidar: LidarSpec, body: Body) -> Floats:
+    scene = simulation.scene
+    robot = state.robots[index]
+    walls, circles = scene.walls, scene.circles
+    extra: list[tuple[float, float, float]] = scene.movers_at(state.time_ns) if scene.tracks else []
+    if len(simulation.robots) > 1:
+        sides = []
+        for number, (spec, other) in enumerate(zip(simulation.robots, state.robots, strict=True)):
+            if number != index:
+                sides += outline(other.pose, spec)
+                extra += _disc(other.pose, spec)
+        if sides:
+            walls = np.concatenate((walls, layout(np.array(sides))), axis=1)
+    if extra:
+        circles = _circles(scene, extra)
+    if lidar.skew:
+        return _skewed(scene, walls, circles, robot.pose, robot.velocity.linear, robot.velocity.angular, lidar, body)
+    return _fan(scene, walls, circles, mounted(robot.pose, lidar.mount), lidar, body)
+
+
+def _disc(pose: Pose, spec: RobotSpec) -> list[tuple[float, float, float]]:
+    return [(pose.x, pose.y, spec.radius)] if spec.footprint is None else []
+
+
+def _circles(scene: Scene, extra: Sequence[tuple[float, float, float]]) -> Floats:
+    return np.concatenate((scene.circles, np.array(extra))) if extra else scene.circles
+
+
+def _fan(scene: Scene, walls: Floats, circles: Floats, at: Pose, lidar: LidarSpec, body: Body | None = None) -> Floats:
+    beams = beams_of(lidar) if body is None or body.beams is None else body.beams
+    grid = scene.grid
+    place = (circles, beams.table, at.x, at.y, at.theta, lidar.angle_min, beams.per_radian, beams.reach)
+    ranges: Floats
+    if grid is None or walls is not scene.walls:
+        ranges = scene.engine.fan(walls, *place)
+    else:
+        ranges = scene.engine.fan_in_grid(
+            walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *place
+        )
+    return ranges
+
+
+def _skewed(
+    scene: Scene, walls: Floats, circles: Floats, pose: Pose, v: float, w: float, lidar: LidarSpec, body: Body
+) -> Floats:
+    """Each beam from where the robot was, had it always moved as it does now; the last beam is of this instant."""
+    beams = body.beams or beams_of(lidar)
+    origins = np.empty((lidar.beams, 2))
+    ways = np.empty((lidar.beams, 2))
+    for beam, (bx, by) in enumerate(beams.table.T.tolist()):
+        before = (lidar.beams - 1 - beam) * lidar.time_increment
+        at = mounted(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -before)), lidar.mount)
+        s, c = sincos(at.theta)
+        origins[beam] = at.x, at.y
+        ways[beam] = c * bx - s * by, s * bx + c * by
+    ranges: Floats = scene.engine.rays(walls, circles, origins, ways)
+    return ranges
+
+
+def _finish(
+    ranges: Floats, lidar: LidarSpec, body: Body, tick: int, sectors: Sequence[DeadSector]
+) -> NDArray[np.float32]:
+    """Add noise and turn distances into float32 ranges as REP 117 wants them."""
+    far = ranges > lidar.range_max
+    if lidar.noise > 0.0:
+        ranges = ranges + lidar.noise * normal(words(body.range_key, tick, lidar.beams))
+        far |= ranges > lidar.range_max
+    ranges[far] = np.inf
+    ranges[ranges < lidar.range_min] = -np.inf
+    if lidar.dropout > 0.0:
+        ranges[uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout] = np.nan
+    for sector in sectors:
+        angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment - sector.first
+        ranges[angles - TAU * np.floor(angles / TAU) <= sector.width] = np.nan
+    result = ranges.astype(np.float32)
+    result.flags.writeable = False
+    return result
+
+
+def _intensities(ranges: NDArray[np.float32]) -> NDArray[np.float32]:
+    """A return's strength: 1000 at the sensor, falling with the square of the distance in metres; 0 for no return."""
+    distances = ranges.astype(np.float64)
+    result = (1000.0 / (1.0 + distances * distances)).astype(np.float32)
+    result[~(distances >= 0.0)] = 0.0
+    result.flags.writeable = False
+    return result
+
+
+def scan_angles(scan: Scan) -> Floats:
+    """Return the angle of each beam of a scan in radians, frame `laser`, in [-pi, pi): 0 is straight ahead."""
+    angles = scan.angle_min + np.arange(len(scan.ranges)) * scan.angle_increment
+    wrapped: Floats = angles - TAU * np.floor((angles + math.pi) / TAU)
+    return wrapped
