@@ -5,8 +5,8 @@ from __future__ import annotations
 from rclpy.qos import QoSCompatibility, qos_check_compatible, qos_profile_sensor_data
 
 from autograder.checks import CheckFailed, check, expect
-from autograder.suites.ch02_nodes import contract
-from autograder.suites.ch02_nodes.robot import Robot
+from autograder.visible.ch02_nodes import contract
+from autograder.visible.ch02_nodes.robot import Robot
 
 GROUP = "graph"
 

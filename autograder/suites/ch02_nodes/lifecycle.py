@@ -9,7 +9,7 @@ from geometry_msgs.msg import Twist
 from autograder.checks import check, expect
 from autograder.lab import RealtimeLab, Workspace
 from autograder.lockstep.failures import tail
-from autograder.suites.ch02_nodes.contract import EXECUTABLE, PACKAGE
+from autograder.visible.ch02_nodes.contract import EXECUTABLE, PACKAGE
 
 GROUP = "lifecycle"
 START_SECONDS = 30.0  # of real time

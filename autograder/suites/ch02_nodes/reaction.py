@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 
 from autograder.checks import check
-from autograder.suites.ch02_nodes import contract
-from autograder.suites.ch02_nodes.robot import Robot, expect_forward, expect_turn
-from autograder.suites.ch02_nodes.scans import Part, scan
+from autograder.visible.ch02_nodes import contract
+from autograder.visible.ch02_nodes.robot import Robot, expect_forward, expect_turn
+from autograder.visible.ch02_nodes.scans import Part, scan
 
 GROUP = "reaction"
 TALKS = ("subscribes_scan", "publishes_cmd_vel")

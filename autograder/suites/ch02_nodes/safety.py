@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 
 from autograder.checks import check
-from autograder.suites.ch02_nodes import contract
-from autograder.suites.ch02_nodes.robot import Robot, expect_forward, expect_stop
-from autograder.suites.ch02_nodes.scans import scan
+from autograder.visible.ch02_nodes import contract
+from autograder.visible.ch02_nodes.robot import Robot, expect_forward, expect_stop
+from autograder.visible.ch02_nodes.scans import scan
 
 GROUP = "safety"
 MARGIN = 0.15  # s beyond the time-out that a timer at 10 Hz may need

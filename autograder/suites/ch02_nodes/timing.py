@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import check, expect
-from autograder.suites.ch02_nodes.robot import Robot
-from autograder.suites.ch02_nodes.scans import Part, scan
+from autograder.visible.ch02_nodes.robot import Robot
+from autograder.visible.ch02_nodes.scans import Part, scan
 
 GROUP = "timing"
 SECONDS = 20.0

@@ -11,7 +11,7 @@ from autograder.lab import LockstepLab, Workspace, drive
 from autograder.lab.drive import LISTENS, OFFERS
 from autograder.suites import temporal
 from autograder.suites.ch02_nodes import terrain
-from autograder.suites.ch02_nodes.contract import EXECUTABLE, PACKAGE
+from autograder.visible.ch02_nodes.contract import EXECUTABLE, PACKAGE
 from sim import Clearance, Pose, Recording, RobotSpec, RobotState, Simulation, State, World, clearance
 
 GROUP = "worlds"

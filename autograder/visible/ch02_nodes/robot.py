@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 from autograder.checks import expect
 from autograder.lab import LockstepLab, Stamped, Workspace
-from autograder.suites.ch02_nodes.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
+from autograder.visible.ch02_nodes.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
 
 OFFERS = {"/scan": LaserScan, "/status": String}
 LISTENS = {"/cmd_vel": Twist}

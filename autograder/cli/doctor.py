@@ -1,0 +1,24 @@
+"""`autograder doctor`: what this machine has and lacks."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.cli.options import json_option
+from autograder.doctor import examine, healthy, render
+from autograder.result import write_json
+
+
+@click.command()
+@json_option
+def doctor(json_file: Path | None) -> None:
+    """Say what is found, what is missing, and the one command that mends it."""
+    findings = examine()
+    click.echo(render(findings))
+    if json_file is not None:
+        write_json(json_file, [dataclasses.asdict(finding) for finding in findings])
+    sys.exit(0 if healthy(findings) else 1)

@@ -1,0 +1,94 @@
+"""`autograder grade`: grades submissions."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder import feedback, suites
+from autograder.cli.options import isolation_option, jobs_option, json_option, marks, reason, seed_option, table
+from autograder.grading.batch import discover, grade_all
+from autograder.result import Result, Status, write_json
+from autograder.sandbox import Tier
+
+
+@click.command()
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--assignment", required=True, metavar="ID", help="Which assignment they answer, such as 02_nodes.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("results"),
+    show_default=True,
+    help="Gets a folder a student: result.json, pictures, feedback.html.",
+)
+@click.option("--resume", is_flag=True, help="Keep results whose submission, suite and seed have not changed.")
+@click.option("--require", type=click.FloatRange(0, 100), metavar="PERCENT", help="Exit 1 if a mark is below.")
+@jobs_option
+@seed_option
+@isolation_option
+@json_option
+def grade(
+    paths: tuple[Path, ...],
+    assignment: str,
+    out: Path,
+    resume: bool,
+    require: float | None,
+    jobs: int,
+    seed: int,
+    isolation: str,
+    json_file: Path | None,
+) -> None:
+    """Grade PATHS: each a submission (folder, zip, notebook), or a folder of them, one a student.
+
+    Exit status: 0 when every submission was graded, 1 when one was not (or is below --require), 2 for a wrong call.
+    """
+    suites.load(assignment)
+    entries = discover(paths, assignment)
+    with Progress(len(entries)) as progress:
+        results = grade_all(
+            entries,
+            assignment,
+            seed=seed,
+            out=out,
+            jobs=jobs,
+            isolation=Tier(isolation),
+            resume=resume,
+            on_result=progress.show,
+        )
+    for result in results:
+        feedback.write(result, out / result.student)
+    feedback.write_summary(results, out)
+    click.echo(table([(r.student, marks(r), reason(r)) for r in results], ("submission", "marks", "why")))
+    click.echo(f"\nFeedback: {out / feedback.SUMMARY}")
+    if json_file is not None:
+        write_json(json_file, [result.to_json() for result in results])
+    short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
+    sys.exit(1 if short else 0)
+
+
+class Progress:
+    """A progress bar on a terminal, a plain line a submission elsewhere."""
+
+    def __init__(self, total: int) -> None:
+        self._total, self._done = total, 0
+        self._bar = click.progressbar(length=total, label="grading") if sys.stdout.isatty() else None
+
+    def __enter__(self) -> Progress:
+        if self._bar is not None:
+            self._bar.__enter__()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._bar is not None:
+            self._bar.render_finish()
+
+    def show(self, result: Result) -> None:
+        """Count one more result."""
+        self._done += 1
+        if self._bar is not None:
+            self._bar.update(1)
+        else:
+            click.echo(f"[{self._done}/{self._total}] {result.student}: {marks(result)}")

@@ -1,0 +1,122 @@
+"""Grading a class: many submissions at once, each in a cell of its own, results written one by one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder import suites
+from autograder.exceptions import AutograderError, UsageError
+from autograder.grading import intake
+from autograder.grading.pipeline import RESULT, grade_submission
+from autograder.result import Result, Status, from_json
+from autograder.sandbox import Tier
+
+ARCHIVES = (".zip", ".ipynb")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One submission of a class: whose it is, and where it lies."""
+
+    student: str
+    path: Path
+
+
+def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
+    """Find the submissions at `paths`: each is one, or a folder of them.
+
+    A folder of submissions holds one file or folder a student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
+
+    Raises:
+        UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.
+    """
+    found: list[Entry] = []
+    for path in paths:
+        if not path.exists():
+            raise UsageError(f"{path}: there is no such file or folder")
+        if path.is_file() or _is_submission(path, assignment):
+            found.append(Entry(path.stem if path.is_file() else path.resolve().name, path))
+        else:
+            found += _of_folder(path, assignment)
+    names = [entry.student for entry in found]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise UsageError(
+            f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
+        )
+    return tuple(found)
+
+
+def grade_all(
+    entries: tuple[Entry, ...],
+    assignment: str,
+    *,
+    seed: int,
+    out: Path,
+    jobs: int,
+    isolation: Tier = Tier.BUBBLEWRAP,
+    resume: bool = False,
+    on_result: Callable[[Result], None] = lambda result: None,
+) -> tuple[Result, ...]:
+    """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
+
+    Args:
+        entries: from `discover`.
+        assignment: which assignment they answer.
+        seed: every hidden input is drawn from it, the same for all.
+        out: the folder of the results.
+        jobs: how many are graded at once; the results do not depend on it.
+        isolation: the sandbox's tier.
+        resume: keep a stored result whose submission, suite and seed are the same.
+        on_result: called for each result as it comes, in any order.
+
+    Returns:
+        The results, in the order of `entries`.
+    """
+    results: dict[str, Result] = {}
+
+    def one(entry: Entry) -> Result:
+        stored = _stored(entry, assignment, seed, out / entry.student) if resume else None
+        if stored is not None:
+            return stored
+        graded = grade_submission(
+            entry.path, assignment, student=entry.student, seed=seed, out=out / entry.student, isolation=isolation
+        )
+        return graded.result
+
+    # Threads suffice: each only waits for the worker process of its submission.
+    with ThreadPoolExecutor(max_workers=jobs) as pool:
+        running = {pool.submit(one, entry): entry for entry in entries}
+        for future in as_completed(running):
+            results[running[future].student] = future.result()
+            on_result(future.result())
+    return tuple(results[entry.student] for entry in entries)
+
+
+def _is_submission(folder: Path, assignment: str) -> bool:
+    return any((folder / name).exists() for name in (f"{assignment}.ipynb", "ws", "src"))
+
+
+def _of_folder(folder: Path, assignment: str) -> Iterator[Entry]:
+    children = sorted(child for child in folder.iterdir() if not child.name.startswith("."))
+    students = [child for child in children if child.is_dir() or child.suffix in ARCHIVES]
+    if not students:
+        raise UsageError(f"{folder}: neither a submission of {assignment} nor a folder of submissions")
+    for child in students:
+        inner = child / assignment
+        yield Entry(child.stem if child.is_file() else child.name, inner if inner.is_dir() else child)
+
+
+def _stored(entry: Entry, assignment: str, seed: int, folder: Path) -> Result | None:
+    try:
+        result = from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
+        digest = intake.take(entry.path, assignment).sha256
+    except (OSError, ValueError, AutograderError):
+        return None
+    suite = suites.load(assignment)
+    same = (result.submission_sha256, result.suite_version, result.seed) == (digest, suite.version, seed)
+    return result if same and result.status is Status.GRADED else None

@@ -1,0 +1,114 @@
+"""`check`: the visible checks of an assignment, plain and friendly in the notebook and on the terminal."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from autograder import suite
+from autograder.checks import Outcome
+from autograder.exceptions import UsageError
+from autograder.notebook.desk import grading, send
+from autograder.notebook.errors import INFO, STYLE, TROUBLE, Notice
+
+SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
+WORDS = {Outcome.PASSED: "passed", Outcome.FAILED: "failed", Outcome.NOT_CHECKED: "not checked"}
+COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """One check as a student sees it."""
+
+    title: str
+    outcome: Outcome
+    message: str
+    hints: tuple[str, ...]
+    doc: str | None
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """The visible checks' outcome.
+
+    Attributes:
+        assignment: which assignment's.
+        lines: one a check.
+        trouble: what kept the package from being built or the node from running, or None.
+    """
+
+    assignment: str
+    lines: tuple[Line, ...]
+    trouble: Notice | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(line.outcome is Outcome.PASSED for line in self.lines)
+
+    @property
+    def summary(self) -> str:
+        """The count in words."""
+        good = sum(line.outcome is Outcome.PASSED for line in self.lines)
+        return f"{self.assignment}: {good} of {len(self.lines)} visible checks passed."
+
+    def __repr__(self) -> str:
+        parts = [] if self.trouble is None else [repr(self.trouble), ""]
+        for line in self.lines:
+            parts.append(f"{SYMBOLS[line.outcome]} {WORDS[line.outcome]:<11} {line.title}")
+            parts += [f"    {line.message}"] if line.message else []
+            parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
+            parts += [f"    read: {line.doc}"] if line.doc and line.outcome is Outcome.FAILED else []
+        return "\n".join([*parts, "", self.summary])
+
+    def _repr_html_(self) -> str:
+        trouble = "" if self.trouble is None else self.trouble._repr_html_()
+        colour = COLOURS[Outcome.PASSED] if self.passed else INFO
+        rows = "".join(_row(line) for line in self.lines)
+        return f'{trouble}<div style="{STYLE.format(colour=colour)}"><b>{html.escape(self.summary)}</b>{rows}</div>'
+
+
+def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice:
+    """Run the visible checks on the packages of a workspace.
+
+    The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own.
+
+    Args:
+        assignment: the chapter, such as "02_nodes".
+        workspace: the colcon workspace.
+
+    Raises:
+        UsageError: there is no such assignment or workspace.
+        GraderError: the check itself failed.
+    """
+    if assignment not in (there := suite.names("autograder.visible")):
+        raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
+    if grading():
+        return Notice("The hidden checks run after this notebook has been executed.")
+    with send("check", Path(workspace), assignment=assignment) as (answer, _):
+        diagnosis = answer["diagnosis"]
+        trouble = None
+        if diagnosis["kind"] != "ok":
+            trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
+        found: dict[str, Any] = {result["id"]: result for result in answer.get("checks", [])}
+    lines = []
+    for declared in answer["declared"]:
+        result = found.get(declared["id"], {"outcome": "not_checked", "message": "", "hints": []})
+        outcome = Outcome(result["outcome"])
+        hints = tuple(result["hints"]) if outcome is Outcome.FAILED else ()
+        lines.append(Line(declared["title"], outcome, result["message"], hints, declared["doc"]))
+    return CheckReport(assignment, tuple(lines), trouble)
+
+
+def _row(line: Line) -> str:
+    mark = f'<span style="color:{COLOURS[line.outcome]}">{SYMBOLS[line.outcome]} {WORDS[line.outcome]}</span>'
+    row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
+    if line.message:
+        row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'
+    for number, hint in enumerate(line.hints, 1):
+        row += f'<details style="margin-left:2em"><summary>hint {number}</summary>{html.escape(hint)}</details>'
+    if line.doc and line.outcome is Outcome.FAILED:
+        row += f'<div style="margin-left:2em"><a href="{html.escape(line.doc)}">read about it</a></div>'
+    return row

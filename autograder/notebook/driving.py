@@ -1,0 +1,147 @@
+"""`drive`: a program of the student's workspace steers the simulated robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import layout
+from autograder.diagnosis import Kind
+from autograder.exceptions import UsageError
+from autograder.notebook.desk import RECORDING, grading, send
+from autograder.notebook.errors import TROUBLE, Notice
+from sim import (
+    DeadSector,
+    Faults,
+    Pose,
+    Recording,
+    RobotSpec,
+    Simulation,
+    Window,
+    World,
+    load_recording,
+    load_world,
+)
+from sim.codec import to_json
+
+if TYPE_CHECKING:
+    from sim.view import Picture
+
+FAULTS = {
+    "nan": Faults(sectors=(DeadSector(-0.05, 0.05),)),
+    "dead": Faults(dead=(Window(10.0),)),
+}
+RADIUS = 0.18  # m
+
+
+@dataclass(frozen=True, eq=False)
+class DriveReport:
+    """A drive; shown as the picture of the robot's track.
+
+    Attributes:
+        recording: the run: times, poses, scans, collisions.
+        output: what the program logged and printed.
+        commands: each command as (seconds, linear.x in m/s, angular.z in rad/s).
+    """
+
+    recording: Recording
+    output: str
+    commands: tuple[tuple[float, float, float], ...]
+
+    @property
+    def collided(self) -> bool:
+        """Whether the robot touched anything."""
+        return bool(self.recording.collided.any())
+
+    @property
+    def collided_at(self) -> float | None:
+        """The time of the first collision in seconds, None without one."""
+        rows = self.recording.collided.any(axis=1).nonzero()[0]
+        return float(self.recording.times[rows[0]]) if len(rows) else None
+
+    @property
+    def picture(self) -> Picture:
+        """The robot's track, with its first collision marked."""
+        from sim.view import plot
+
+        note = "" if self.collided_at is None else f"collision at t = {self.collided_at:.1f} s"
+        return plot(self.recording, mark=self.collided_at, note=note)
+
+    def __repr__(self) -> str:
+        return self.picture.alt
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> object:
+        return self.picture._repr_mimebundle_(include, exclude)
+
+
+def drive(
+    package: str,
+    executable: str,
+    world: str | World = "empty_room",
+    seconds: float = 30.0,
+    *,
+    faults: str | Faults | None = None,
+    start: Pose | None = None,
+    seed: int = 0,
+    workspace: str | Path = "ws",
+) -> DriveReport | Notice:
+    """Build the workspace, let a program steer the robot, and show the track.
+
+    The program is the student's own `main()`, with real rclpy over DDS, in a process of its own; its ROS time is
+    stepped, so a minute takes a second or two and comes out the same every time.
+
+    Args:
+        package: the package in `ws/src`.
+        executable: its executable, as `ros2 run PACKAGE EXECUTABLE` names it.
+        world: a name in `assets/worlds`, or a `sim.World`.
+        seconds: of ROS time.
+        faults: what is wrong with the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or
+            a `sim.Faults`.
+        start: where the robot starts; the world's own start pose by default.
+        seed: of the simulator's noise.
+        workspace: the colcon workspace.
+
+    Returns:
+        The drive, or a notice that says in a sentence why the robot could not move.
+
+    Raises:
+        UsageError: there is no such world, fault or workspace.
+    """
+    if grading():
+        return Notice("The robot stays in its dock while the notebook is graded.")
+    robot = RobotSpec(radius=RADIUS, faults=_faults(faults), start=start)
+    simulation = Simulation(_world(world), (robot,), seed=seed)
+    with send(
+        "drive",
+        Path(workspace),
+        package=package,
+        executable=executable,
+        simulation=to_json(simulation),
+        seconds=float(seconds),
+    ) as (answer, folder):
+        diagnosis = answer["diagnosis"]
+        if diagnosis["kind"] != Kind.OK.value:
+            return Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
+        commands = tuple((float(t), float(v), float(w)) for t, v, w in answer["commands"])
+        return DriveReport(load_recording(folder / RECORDING), answer["output"], commands)
+
+
+def _world(world: str | World) -> World:
+    if isinstance(world, World):
+        return world
+    path = layout.WORLDS / f"{world}.yaml"
+    if not path.is_file():
+        there = ", ".join(sorted(file.stem for file in layout.WORLDS.glob("*.yaml")))
+        raise UsageError(f"there is no world {world!r}; there are: {there}")
+    return load_world(path)
+
+
+def _faults(faults: str | Faults | None) -> Faults:
+    if faults is None:
+        return Faults()
+    if isinstance(faults, Faults):
+        return faults
+    if faults not in FAULTS:
+        raise UsageError(f"there is no fault {faults!r}; there are: {', '.join(FAULTS)}, or a sim.Faults of your own")
+    return FAULTS[faults]

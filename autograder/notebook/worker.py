@@ -1,0 +1,106 @@
+"""The worker behind a notebook: builds the workspace and drives or checks, the way grading does.
+
+python -m autograder.notebook.worker ERRAND
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import GraderError, StudentError
+from autograder.notebook.desk import ANSWER, RECORDING
+from autograder.result import write_json
+from autograder.ros import activate
+from autograder.sandbox.launcher import current_tier
+from autograder.sandbox.tiers import Tier
+
+if TYPE_CHECKING:
+    from autograder.lab.workspace import Workspace
+    from autograder.suite import Suite
+
+    Run = Callable[[Workspace, Path], dict[str, Any]]
+
+SEED = 1  # of the visible checks' inputs
+NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
+
+
+def main() -> None:
+    """Run the errand that the command line holds."""
+    errand = json.loads(sys.argv[1])
+    ros = activate()
+    # Imported once ROS is switched on: these reach rclpy.
+    from autograder.grading.build import build, require_packages
+    from autograder.lab.workspace import Workspace
+
+    scratch, out = Path(errand["scratch"]), Path(errand["out"])
+    home = scratch / "home"
+    home.mkdir(parents=True)
+    domain = 0 if current_tier() is Tier.BUBBLEWRAP else 1 + hash(str(scratch)) % 100
+    workspace = Workspace(scratch / "ws", ros, home, domain=domain)
+    shutil.copytree(errand["source"], workspace.root / "src", ignore=NOT_COPIED)
+    packages, run = {"drive": _for_drive, "check": _for_check}[errand["verb"]](errand["arguments"])
+    answer: dict[str, Any] = {"diagnosis": _plain(OK)}
+    try:
+        require_packages(workspace.root / "src", packages)
+        build(workspace)
+        answer |= run(workspace, out)
+    except StudentError as error:
+        answer["diagnosis"] = _plain(error.diagnosis)
+    if errand["verb"] == "check":
+        answer["declared"] = [dataclasses.asdict(check) for check in _visible(errand["arguments"]).checks]
+    write_json(out / ANSWER, answer)
+
+
+def _for_drive(arguments: dict[str, Any]) -> tuple[tuple[str, ...], Run]:
+    def run(workspace: Workspace, out: Path) -> dict[str, Any]:
+        from autograder.lab import LockstepLab, drive
+        from autograder.lab.drive import LISTENS, OFFERS
+        from sim.codec import from_json
+
+        program = arguments["package"], arguments["executable"]
+        with LockstepLab(workspace, *program, offers=OFFERS, listens=LISTENS) as lab:
+            done = drive(lab, from_json(arguments["simulation"]), arguments["seconds"])
+        done.recording.save(out / RECORDING)
+        commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in done.commands]
+        return {"output": done.output, "commands": commands}
+
+    return (arguments["package"],), run
+
+
+def _for_check(arguments: dict[str, Any]) -> tuple[tuple[str, ...], Run]:
+    suite = _visible(arguments)
+
+    def run(workspace: Workspace, out: Path) -> dict[str, Any]:
+        from autograder.grading.gallery import Gallery
+        from autograder.grading.plugin import GradingPlugin
+        from autograder.grading.plugin import run as run_suite
+
+        plugin = GradingPlugin(workspace, SEED, Gallery(out))
+        run_suite(suite.files, plugin)
+        if plugin.failures:
+            raise GraderError("\n".join(plugin.failures))
+        checks = [dataclasses.asdict(result) for result in plugin.results.values()]
+        return {"diagnosis": _plain(plugin.diagnosis), "checks": checks}
+
+    return suite.packages, run
+
+
+def _visible(arguments: dict[str, Any]) -> Suite:
+    from autograder import visible
+
+    return visible.load(arguments["assignment"])
+
+
+def _plain(diagnosis: Diagnosis) -> dict[str, str]:
+    return {"kind": diagnosis.kind.value, "sentence": diagnosis.sentence, "detail": diagnosis.detail}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""A suite: the checks of one assignment, read from the modules of one package.
+
+A suite's package says in `PACKAGES` which ROS 2 packages a submission must bring, and in `MODULES` which of its modules
+hold checks, in the order in which they are run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import inspect
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.checks import Check, declared
+from autograder.exceptions import GraderError, UsageError
+
+
+@dataclass(frozen=True)
+class Suite:
+    """The checks of an assignment, hidden or visible.
+
+    Attributes:
+        assignment: the assignment that it judges.
+        packages: ROS 2 packages that a submission must bring.
+        files: its modules, in the order in which they are run.
+        checks: every check in that order.
+        version: changes whenever a file of the suite does.
+    """
+
+    assignment: str
+    packages: tuple[str, ...]
+    files: tuple[Path, ...]
+    checks: tuple[Check, ...]
+    version: str
+
+    @property
+    def max_score(self) -> float:
+        """The sum of the checks' points."""
+        return sum(check.points for check in self.checks)
+
+    @property
+    def groups(self) -> dict[str, float]:
+        """The points of each group of checks, in the order of the suite."""
+        points: dict[str, float] = {}
+        for check in self.checks:
+            points[check.group] = points.get(check.group, 0.0) + check.points
+        return points
+
+
+def read(home: str, assignment: str) -> Suite:
+    """Read the suite of an assignment from the package `home`.chASSIGNMENT.
+
+    Raises:
+        UsageError: there is none.
+        GraderError: it breaks the contract of a check.
+    """
+    package = f"{home}.ch{assignment}"
+    try:
+        described = importlib.import_module(package)
+    except ModuleNotFoundError as error:
+        if error.name not in (package, home):
+            raise
+        raise UsageError(f"there are no checks for {assignment!r}; there are for: {', '.join(names(home))}") from None
+    modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
+    files = tuple(Path(inspect.getfile(module)) for module in modules)
+    checks = [found for module in modules for value in vars(module).values() if (found := declared(value))]
+    _require_order(assignment, checks)
+    digest = hashlib.sha256()
+    for path in sorted(Path(inspect.getfile(described)).parent.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return Suite(assignment, tuple(described.PACKAGES), files, tuple(checks), digest.hexdigest()[:12])
+
+
+def names(home: str) -> list[str]:
+    """Return the names of the assignments that have a suite in the package `home`."""
+    folder = Path(inspect.getfile(importlib.import_module(home))).parent
+    return sorted(path.parent.name.removeprefix("ch") for path in folder.glob("ch*/__init__.py"))
+
+
+def _require_order(assignment: str, checks: list[Check]) -> None:
+    seen: set[str] = set()
+    for check in checks:
+        if check.id in seen:
+            raise GraderError(f"{assignment}: two checks are called {check.id!r}")
+        unmet = set(check.depends) - seen
+        if unmet:
+            raise GraderError(f"{assignment}: {check.id!r} depends on {sorted(unmet)}, which must stand before it")
+        seen.add(check.id)

@@ -1,0 +1,98 @@
+"""Mutants: the reference solution with one realistic student error each, to prove what the checks see.
+
+A suite's `mutants.yaml` says how each is made from the reference and which checks it loses.
+"""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from autograder import layout
+from autograder.diagnosis import Kind
+from autograder.exceptions import GraderError
+from autograder.suites import load
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One replacement in one file; `find` stands in it exactly once."""
+
+    file: str
+    find: str
+    replace: str
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A flawed version of the reference solution.
+
+    Attributes:
+        id: its name.
+        title: the error in words.
+        edits: how it is made.
+        loses: ids of every check that does not pass.
+        diagnosis: what the result says of bringing its node to life.
+        demo: whether the demonstration grades it.
+        slow: whether grading it waits for a time-out.
+    """
+
+    id: str
+    title: str
+    edits: tuple[Edit, ...]
+    loses: frozenset[str]
+    diagnosis: Kind = Kind.OK
+    demo: bool = False
+    slow: bool = False
+
+
+def mutants(assignment: str) -> tuple[Mutant, ...]:
+    """Return an assignment's mutants.
+
+    Raises:
+        GraderError: the file names a check that the suite does not have.
+    """
+    suite = load(assignment)
+    known = frozenset(check.id for check in suite.checks)
+    data = yaml.safe_load((suite.files[0].parent / "mutants.yaml").read_text())
+    return tuple(_mutant(entry, data["file"], known) for entry in data["mutants"])
+
+
+def lay_down_reference(packages: tuple[str, ...], folder: Path) -> None:
+    """Copy packages of the reference solution to `folder`/src."""
+    for package in packages:
+        shutil.copytree(layout.SOLUTIONS / package, folder / "src" / package)
+
+
+def lay_down(mutant: Mutant, packages: tuple[str, ...], folder: Path) -> None:
+    """Write a mutant as a source tree, `folder`/src.
+
+    Raises:
+        GraderError: an edit no longer fits the reference; the message names it.
+    """
+    lay_down_reference(packages, folder)
+    for edit in mutant.edits:
+        path = folder / "src" / edit.file
+        text = path.read_text()
+        if text.count(edit.find) != 1:
+            raise GraderError(f"mutant {mutant.id}: {edit.find!r} stands {text.count(edit.find)} times in {edit.file}")
+        path.write_text(text.replace(edit.find, edit.replace))
+
+
+def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
+    loses = known if entry["loses"] == "all" else frozenset(entry["loses"])
+    if not loses <= known:
+        raise GraderError(f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}")
+    return Mutant(
+        id=entry["id"],
+        title=entry["title"],
+        edits=tuple(Edit(edit.get("file", file), edit["find"], edit["replace"]) for edit in entry["edits"]),
+        loses=loses,
+        diagnosis=Kind(entry.get("diagnosis", "ok")),
+        demo=entry.get("demo", False),
+        slow=entry.get("slow", False),
+    )

@@ -1,0 +1,4 @@
+"""The visible checks of 02_nodes."""
+
+PACKAGES = ("my_robot_package",)
+MODULES = ("controller",)
