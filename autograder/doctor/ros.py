@@ -54,7 +54,7 @@ def examine(system: System) -> list[Finding]:
 
 def installation(system: System, ros: RosEnvironment) -> Finding:
     """Look at which ROS 2 this is: Jazzy, and only one of wheels and sourced."""
-    manifests = [system.read(prefix / "share" / "rclpy" / "package.xml") for prefix in ros.prefixes]
+    manifests = [system.read(_manifest(prefix)) for prefix in ros.prefixes]
     version = re.search(r"<version>\s*([^<\s]+)", next((text for text in manifests if text), ""))
     if version is None:
         return Finding("ROS 2", Status.MISSING, f"{ros.describe()}, but its rclpy has no package.xml", "make setup")
@@ -62,10 +62,14 @@ def installation(system: System, ros: RosEnvironment) -> Finding:
     if not version[1].startswith(f"{JAZZY_RCLPY}."):
         other = f"rclpy {version[1]} in {ros.prefixes[0]} is not Jazzy's, which is {JAZZY_RCLPY}"
         return Finding("ROS 2", Status.MISSING, other, "make setup")
-    if ros.kind == "sourced" and system.package("ros-rclpy") is not None:
+    if ros.kind == "sourced" and system.read(_manifest(system.prefix)) is not None:
         both = f"{told}; the wheels are installed as well, and the two mix their libraries"
         return Finding("ROS 2", Status.WEAK, both, "make setup")
     return Finding("ROS 2", Status.OK, told)
+
+
+def _manifest(prefix: Path) -> Path:
+    return prefix / "share" / "rclpy" / "package.xml"
 
 
 def cmake_files(system: System, ros: RosEnvironment) -> Finding:

@@ -306,7 +306,7 @@ def test_what_is_weak_does_not_make_a_machine_unfit_and_what_is_missing_does() -
 
 
 def test_a_sourced_jazzy_alone_is_fine_and_has_no_wheels_to_mend() -> None:
-    alone = dataclasses.replace(GOOD, find_ros=lambda: SOURCED, package=lambda n: None if n == "ros-rclpy" else "1")
+    alone = dataclasses.replace(GOOD, find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(alone)
     assert {found.status for found in findings} == {Status.OK}
     assert "CMake files" not in [found.name for found in findings]
