@@ -59,6 +59,8 @@ def nearest_of(simulation: Simulation, time_ns: int, poses: list[Pose], index: i
     scene = simulation.scene
     here = poses[index]
     best = float(scene.engine.nearest(scene.walls, scene.circles, here.x, here.y))
+    if len(poses) == 1 and not scene.tracks:
+        return best
     for x, y, radius in scene.movers_at(time_ns):
         best = min(best, math.hypot(x - here.x, y - here.y) - radius)
     for number, pose in enumerate(poses):

@@ -66,12 +66,13 @@ def words_at(key: Words, counter: list[int], count: int) -> Words:
 def words_of_ticks(key: Words, tick: int, ticks: int) -> Words:
     """Return (ticks, 4) random words: a block for each tick from `tick` on, whether asked for at once or singly."""
     raw = words_at(key, [tick, 0, 0, 0], WORDS_IN_A_BLOCK * ticks)
-    return np.reshape(raw, (ticks, WORDS_IN_A_BLOCK))
+    return raw.reshape(ticks, WORDS_IN_A_BLOCK)
 
 
 def uniform(raw: Words) -> Floats:
     """Return numbers between 0 and 1, both excluded, on a grid of 2**-53."""
-    return ((raw >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
+    numbers: Floats = ((raw >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
+    return numbers
 
 
 def normal(raw: Words) -> Floats:

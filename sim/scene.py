@@ -17,7 +17,7 @@ from sim.engine.trig import TAU, sincos
 from sim.lidar import LidarSpec
 from sim.noise import Words, key_of, uniform, words
 from sim.pose import Pose
-from sim.robot import RobotSpec
+from sim.robot import NO_DRIFT, RobotSpec
 from sim.world import Mover, World
 
 Floats = NDArray[np.float64]
@@ -41,6 +41,8 @@ class Body:
     limits: Floats
     drift: Floats
     watchdog_ns: int
+    most_linear: float
+    drifts: bool
     beams: Beams | None
     range_key: Words
     dropout_key: Words
@@ -81,6 +83,8 @@ class Scene:
     grid: Grid | None
     tracks: tuple[Track, ...]
     bodies: tuple[Body, ...]
+    mover_speed: float
+    may_freeze: bool
 
     def movers_at(self, time_ns: int) -> list[tuple[float, float, float]]:
         """Return the movers as circles at a simulated time."""
@@ -94,10 +98,12 @@ def build(world: World, robots: tuple[RobotSpec, ...], seed: int, name: EngineNa
     return Scene(
         engine=chosen,
         walls=walls,
-        circles=world.circles,
+        circles=world.circles.copy(),
         grid=grid_of(walls) if walls.shape[1] > WORTH_A_GRID and hasattr(chosen, "fan_in_grid") else None,
         tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),
         bodies=tuple(_body(robot, seed) for robot in robots),
+        mover_speed=max((mover.speed for mover in world.movers), default=0.0),
+        may_freeze=any(robot.faults.frozen for robot in robots),
     )
 
 
@@ -121,6 +127,8 @@ def _body(robot: RobotSpec, seed: int) -> Body:
         ),
         drift=np.array((drift.linear**2, drift.angular**2, drift.veer**2)),
         watchdog_ns=round(min(robot.watchdog, 1e9) * 1e9),
+        most_linear=robot.max_linear,
+        drifts=drift != NO_DRIFT,
         beams=None if robot.lidar is None else beams_of(robot.lidar),
         range_key=key_of(seed, robot.name, "range"),
         dropout_key=key_of(seed, robot.name, "dropout"),

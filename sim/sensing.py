@@ -21,8 +21,7 @@ from sim.scene import Body, Scene, beams_of, outline
 from sim.state import Simulation, State
 
 Floats = NDArray[np.float64]
-NO_INTENSITIES = np.empty(0, dtype=np.float32)
-NO_INTENSITIES.flags.writeable = False
+NOTHING = np.empty(0)
 
 
 def observe(simulation: Simulation, state: State, robot: str | None = None) -> Scan | None:
@@ -42,9 +41,18 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
         return None
     source = state.robots[index].held or state
     body = simulation.scene.bodies[index]
-    ranges = _ranges(simulation, source, index, lidar, body)
-    sectors = [sector for sector in faults.sectors if sector.window.holds(time_ns)] if faults.sectors else ()
-    ranges32 = _finish(ranges, lidar, body, source.tick, sectors)
+    distances = _ranges(simulation, source, index, lidar, body)
+    noise = normal(words(body.range_key, source.tick, lidar.beams)) if lidar.noise > 0.0 else NOTHING
+    ranges, intensities = simulation.scene.engine.finish(
+        distances, noise, lidar.noise, lidar.range_min, lidar.range_max, lidar.intensities
+    )
+    if lidar.dropout > 0.0 or faults.sectors:
+        lost = _lost(lidar, body, source.tick, time_ns, faults.sectors)
+        ranges[lost] = np.nan
+        if lidar.intensities:
+            intensities[lost] = 0.0
+    ranges.flags.writeable = False
+    intensities.flags.writeable = False
     sweep_ns = 0
     time_increment = 0.0
     if lidar.skew:
@@ -52,8 +60,8 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
         sweep_ns = round((lidar.beams - 1) * time_increment * 1e9)
     return Scan(
         max(time_ns - sweep_ns, 0),
-        ranges32,
-        _intensities(ranges32) if lidar.intensities else NO_INTENSITIES,
+        ranges,
+        intensities,
         lidar.angle_min,
         lidar.angle_max,
         lidar.angle_increment,
@@ -148,33 +156,16 @@ def _skewed(
     return ranges
 
 
-def _finish(
-    ranges: Floats, lidar: LidarSpec, body: Body, tick: int, sectors: Sequence[DeadSector]
-) -> NDArray[np.float32]:
-    """Add noise and turn distances into float32 ranges as REP 117 wants them."""
-    far = ranges > lidar.range_max
-    if lidar.noise > 0.0:
-        ranges = ranges + lidar.noise * normal(words(body.range_key, tick, lidar.beams))
-        far |= ranges > lidar.range_max
-    ranges[far] = np.inf
-    ranges[ranges < lidar.range_min] = -np.inf
+def _lost(lidar: LidarSpec, body: Body, tick: int, time_ns: int, sectors: Sequence[DeadSector]) -> NDArray[np.bool_]:
+    """Return which beams are lost, by chance or in a dead sector."""
+    lost = np.zeros(lidar.beams, dtype=np.bool_)
     if lidar.dropout > 0.0:
-        ranges[uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout] = np.nan
+        lost |= uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout
     for sector in sectors:
-        angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment - sector.first
-        ranges[angles - TAU * np.floor(angles / TAU) <= sector.width] = np.nan
-    result = ranges.astype(np.float32)
-    result.flags.writeable = False
-    return result
-
-
-def _intensities(ranges: NDArray[np.float32]) -> NDArray[np.float32]:
-    """A return's strength: 1000 at the sensor, falling with the square of the distance in metres; 0 for no return."""
-    distances = ranges.astype(np.float64)
-    result = (1000.0 / (1.0 + distances * distances)).astype(np.float32)
-    result[~(distances >= 0.0)] = 0.0
-    result.flags.writeable = False
-    return result
+        if sector.window.holds(time_ns):
+            angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment - sector.first
+            lost |= angles - TAU * np.floor(angles / TAU) <= sector.width
+    return lost
 
 
 def scan_angles(scan: Scan) -> Floats:

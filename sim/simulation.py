@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.clearance import Around, Clearance, around, clearance, nearest_of
-from sim.engine.motion import STATE
 from sim.engine.trig import wrap
 from sim.exceptions import SpecError
 from sim.noise import normal, words_of_ticks
-from sim.pose import Command, Pose
+from sim.pose import REST, Command, Pose
 from sim.robot import RobotSpec, RobotState
 from sim.scene import Body
 from sim.sensing import observe
@@ -24,6 +22,21 @@ __all__ = ["Clearance", "Commands", "Event", "Simulation", "State", "clearance",
 
 Floats = NDArray[np.float64]
 LONGEST_STEP = 3600.0
+Order = tuple[Command, int]
+
+
+@dataclass(slots=True)
+class Run:
+    """One robot while it is being advanced: what does not change, then what does."""
+
+    spec: RobotSpec
+    body: Body
+    order: Order
+    vector: Floats
+    noise: Floats
+    collided: bool
+    collisions: int
+    name: str
 
 
 def start(simulation: Simulation) -> State:
@@ -33,7 +46,7 @@ def start(simulation: Simulation) -> State:
     for index, spec in enumerate(simulation.robots):
         pose = spec.start or places[index % len(places)]
         robots.append(RobotState(name=spec.name, pose=Pose(pose.x, pose.y, wrap(pose.theta))))
-    return _holding(simulation, State(tick=0, time_ns=0, robots=tuple(robots)), None)
+    return _holding(simulation, State(tick=0, time_ns=0, robots=tuple(robots)))
 
 
 def step(simulation: Simulation, state: State, commands: Commands = None, dt: float | None = None) -> State:
@@ -45,49 +58,48 @@ def step(simulation: Simulation, state: State, commands: Commands = None, dt: fl
 
     Raises SpecError for a robot that does not exist, a command that is not finite, or a `dt` that makes no sense.
     """
-    tick_ns = simulation.tick_ns
     if dt is None:
-        dt_ns = tick_ns
+        dt_ns = simulation.tick_ns
     elif 0.0 < dt <= LONGEST_STEP:
         dt_ns = round(dt * 1e9)
     else:
         raise SpecError(f"dt is {dt!r}; give a step in seconds, above 0 and at most {LONGEST_STEP:.0f}")
-    ticks, rest_ns = divmod(dt_ns, tick_ns)
-    time_ns = state.time_ns
-    robots = state.robots
-    if commands is not None:
-        robots = _commanded(simulation, state, commands)
+    orders = _orders(simulation, state, commands)
+    ticks, rest_ns = divmod(dt_ns, simulation.tick_ns)
     events: list[Event] = []
-    tick = state.tick
+    robots = state.robots
+    time_ns = state.time_ns
     if ticks:
-        robots = _advance(simulation, robots, tick, time_ns, ticks, tick_ns, events)
-        tick += ticks
-        time_ns += ticks * tick_ns
+        robots = _advance(simulation, robots, orders, state.tick, time_ns, ticks, simulation.tick_ns, events)
+        time_ns += ticks * simulation.tick_ns
     if rest_ns:
-        robots = _advance(simulation, robots, tick, time_ns, 1, rest_ns, events)
-        tick += 1
+        robots = _advance(simulation, robots, orders, state.tick + ticks, time_ns, 1, rest_ns, events)
         time_ns += rest_ns
-    return _holding(simulation, State(tick, time_ns, robots, tuple(events)), state)
+        ticks += 1
+    after = State(state.tick + ticks, time_ns, robots, tuple(events))
+    return _holding(simulation, after) if simulation.scene.may_freeze else after
 
 
-def _commanded(simulation: Simulation, state: State, commands: Commands) -> tuple[RobotState, ...]:
+def _orders(simulation: Simulation, state: State, commands: Commands) -> list[Order]:
+    """Return each robot's command and the time it was given, in the robots' order."""
+    orders = [(robot.command, robot.command_ns) for robot in state.robots]
+    if commands is None:
+        return orders
     if isinstance(commands, Command):
-        if len(state.robots) > 1:
+        if len(orders) > 1:
             raise SpecError("one command for several robots; give a mapping from robot names to commands")
-        commands = {state.robots[0].name: commands}
-    assert isinstance(commands, Mapping)
-    robots = list(state.robots)
+        commands = {simulation.robots[0].name: commands}
     for name, command in commands.items():
         if not (math.isfinite(command.linear) and math.isfinite(command.angular)):
             raise SpecError(f"the command for robot {name!r} is not finite: {command}; give m/s and rad/s")
-        index = simulation.number_of(name)
-        robots[index] = replace(robots[index], command=command, command_ns=state.time_ns)
-    return tuple(robots)
+        orders[simulation.number_of(name)] = (command, state.time_ns)
+    return orders
 
 
 def _advance(
     simulation: Simulation,
     robots: tuple[RobotState, ...],
+    orders: list[Order],
     tick: int,
     time_ns: int,
     ticks: int,
@@ -96,86 +108,68 @@ def _advance(
 ) -> tuple[RobotState, ...]:
     """Advance all robots by equal ticks: at once where nothing is near any of them, else tick by tick."""
     scene = simulation.scene
-    vectors = [_vector(robot) for robot in robots]
-    noises = [_noise(body, tick, ticks) for body in scene.bodies]
     seconds = ticks * tick_ns / 1e9
-    strides = [
-        max(spec.max_linear, abs(robot.velocity.linear)) * seconds
-        for spec, robot in zip(simulation.robots, robots, strict=True)
-    ]
     poses = [robot.pose for robot in robots]
-    mover_stride = max((mover.speed for mover in simulation.world.movers), default=0.0) * seconds
-    others = max(strides, default=0.0) if len(robots) > 1 else 0.0
-    near = [
-        nearest_of(simulation, time_ns, poses, index) - body.reach <= stride + max(mover_stride, others) + 1e-3
-        for index, (body, stride) in enumerate(zip(scene.bodies, strides, strict=True))
+    runs = [
+        Run(spec, body, order, _vector(robot), _noise(body, tick, ticks), robot.collided, robot.collisions, robot.name)
+        for spec, body, order, robot in zip(simulation.robots, scene.bodies, orders, robots, strict=True)
     ]
-    flags = [(robot.collided, robot.collisions) for robot in robots]
-    if not any(near):
-        for index, (robot, body) in enumerate(zip(robots, scene.bodies, strict=True)):
-            _coast(simulation, robot, body, vectors[index], time_ns, ticks, tick_ns, noises[index], events)
-        flags = [(False, collisions) for _, collisions in flags]
+    # how far anything may come towards a robot meanwhile
+    strides = [
+        max(body.most_linear, abs(robot.velocity.linear)) * seconds
+        for body, robot in zip(scene.bodies, robots, strict=True)
+    ]
+    theirs = max(strides) if len(robots) > 1 else 0.0
+    theirs = max(theirs, scene.mover_speed * seconds)
+    near = [
+        nearest_of(simulation, time_ns, poses, index) - run.body.reach <= strides[index] + theirs + 1e-3
+        for index, run in enumerate(runs)
+    ]
+    if True not in near:
+        for run in runs:
+            _coast(simulation, run, time_ns, ticks, tick_ns, run.noise, events)
     else:
         for number in range(ticks):
             now_ns = time_ns + number * tick_ns
-            for index, (robot, body) in enumerate(zip(robots, scene.bodies, strict=True)):
-                one = noises[index][number : number + 1]
-                here = [Pose(*vector[:3].tolist()) for vector in vectors]
+            for index, run in enumerate(runs):
+                noise = run.noise[number : number + 1]
                 if near[index]:
-                    within = body.reach + 2.0 * strides[index] + 1e-3
+                    here = [Pose(*other.vector[:3].tolist()) for other in runs]
+                    within = run.body.reach + 2.0 * strides[index] + 1e-3
                     things = around(simulation, now_ns + tick_ns, here, index, within)
-                    flags[index] = _push(
-                        simulation, index, robot, vectors[index], now_ns, tick_ns, one[0], things, flags[index], events
-                    )
+                    _push(simulation, run, now_ns, tick_ns, noise[0], things, events)
                 else:
-                    _coast(simulation, robot, body, vectors[index], now_ns, 1, tick_ns, one, events)
-                    flags[index] = (False, flags[index][1])
-    return tuple(_unpacked(robot, vector, *flag) for robot, vector, flag in zip(robots, vectors, flags, strict=True))
+                    _coast(simulation, run, now_ns, 1, tick_ns, noise, events)
+    return tuple([_unpacked(robot, run) for robot, run in zip(robots, runs, strict=True)])
 
 
 def _coast(
-    simulation: Simulation,
-    robot: RobotState,
-    body: Body,
-    vector: Floats,
-    time_ns: int,
-    ticks: int,
-    tick_ns: int,
-    noise: Floats,
-    events: list[Event],
+    simulation: Simulation, run: Run, time_ns: int, ticks: int, tick_ns: int, noise: Floats, events: list[Event]
 ) -> None:
+    body, vector = run.body, run.vector
+    command, command_ns = run.order
     coast = simulation.scene.engine.coast
     dt = tick_ns / 1e9
-    left_ns = robot.command_ns + body.watchdog_ns - time_ns
-    obeyed = min(max(-(-left_ns // tick_ns), 0), ticks)
+    obeyed = min(max(-((time_ns - command_ns - body.watchdog_ns) // tick_ns), 0), ticks)
     if obeyed:
-        command = robot.command
         coast(vector, command.linear, command.angular, obeyed, dt, body.limits, body.drift, noise)
     if obeyed < ticks:
-        _tell_watchdog(robot, vector, time_ns + obeyed * tick_ns, tick_ns, body, events)
+        _tell_watchdog(run, time_ns + obeyed * tick_ns, tick_ns, events)
         coast(vector, 0.0, 0.0, ticks - obeyed, dt, body.limits, body.drift, noise[obeyed:])
+    run.collided = False
 
 
 def _push(
-    simulation: Simulation,
-    index: int,
-    robot: RobotState,
-    vector: Floats,
-    time_ns: int,
-    tick_ns: int,
-    noise: Floats,
-    things: Around,
-    flag: tuple[bool, int],
-    events: list[Event],
-) -> tuple[bool, int]:
-    spec, body = simulation.robots[index], simulation.scene.bodies[index]
-    command = robot.command
-    if time_ns - robot.command_ns >= body.watchdog_ns:
-        _tell_watchdog(robot, vector, time_ns, tick_ns, body, events)
-        command = Command()
+    simulation: Simulation, run: Run, time_ns: int, tick_ns: int, noise: Floats, things: Around, events: list[Event]
+) -> None:
+    body = run.body
+    command, command_ns = run.order
+    if time_ns - command_ns >= body.watchdog_ns:
+        _tell_watchdog(run, time_ns, tick_ns, events)
+        command = REST
     touch = np.zeros(6)
     hit = simulation.scene.engine.push(
-        vector,
+        run.vector,
         command.linear,
         command.angular,
         tick_ns / 1e9,
@@ -185,88 +179,62 @@ def _push(
         body.shape,
         things.walls,
         things.circles,
-        spec.on_collision == "slide",
+        run.spec.on_collision == "slide",
         touch,
     )
-    collided, collisions = flag
-    if hit and not collided:
-        what, speed = things.names[int(touch[0])], float(touch[5])
-        events.append(
-            Event(
-                time_ns + tick_ns,
-                spec.name,
-                "collision",
-                f"{spec.name} met {what} at {speed:.2f} m/s",
-                float(touch[1]),
-                float(touch[2]),
-                speed,
-            )
-        )
-        collisions += 1
-    return bool(hit), collisions
+    if hit and not run.collided:
+        number, x, y, _, _, speed = touch.tolist()
+        what = f"{run.name} met {things.names[int(number)]} at {speed:.2f} m/s"
+        events.append(Event(time_ns + tick_ns, run.name, "collision", what, x, y, speed))
+        run.collisions += 1
+    run.collided = bool(hit)
 
 
-def _tell_watchdog(
-    robot: RobotState, vector: Floats, time_ns: int, tick_ns: int, body: Body, events: list[Event]
-) -> None:
+def _tell_watchdog(run: Run, time_ns: int, tick_ns: int, events: list[Event]) -> None:
     """Note the first tick at which a command that asks for motion is dropped for its age."""
-    fresh = time_ns - tick_ns - robot.command_ns < body.watchdog_ns
-    if fresh and (robot.command.linear != 0.0 or robot.command.angular != 0.0):
-        x, y = vector[:2].tolist()
-        what = f"{robot.name} had no new command for {body.watchdog_ns / 1e9:g} s and stops"
-        events.append(Event(time_ns, robot.name, "watchdog", what, x, y, abs(float(vector[3]))))
+    command, command_ns = run.order
+    fresh = time_ns - tick_ns - command_ns < run.body.watchdog_ns
+    if fresh and (command.linear != 0.0 or command.angular != 0.0):
+        x, y, _, v = run.vector[:4].tolist()
+        what = f"{run.name} had no new command for {run.body.watchdog_ns / 1e9:g} s and stops"
+        events.append(Event(time_ns, run.name, "watchdog", what, x, y, abs(v)))
 
 
 def _noise(body: Body, tick: int, ticks: int) -> Floats:
-    if body.drift.any():
+    if body.drifts:
         return normal(words_of_ticks(body.odometry_key, tick, ticks)[:, :2])
     return np.zeros((ticks, 2))
 
 
 def _vector(robot: RobotState) -> Floats:
-    pose, velocity, odometry, c = robot.pose, robot.velocity, robot.odometry, robot.covariance
-    vector = np.array(
+    pose, velocity, odometry = robot.pose, robot.velocity, robot.odometry
+    xx, xy, xt, _, yy, yt, _, _, tt = robot.covariance
+    return np.array(
         (
-            pose.x,
-            pose.y,
-            pose.theta,
-            velocity.linear,
-            velocity.angular,
-            odometry.x,
-            odometry.y,
-            odometry.theta,
-            c[0],
-            c[1],
-            c[2],
-            c[4],
-            c[5],
-            c[8],
+            *(pose.x, pose.y, pose.theta, velocity.linear, velocity.angular),
+            *(odometry.x, odometry.y, odometry.theta, xx, xy, xt, yy, yt, tt),
         )
     )
-    assert len(vector) == STATE
-    return vector
 
 
-def _unpacked(robot: RobotState, vector: Floats, collided: bool, collisions: int) -> RobotState:
-    x, y, theta, v, w, ox, oy, ot, xx, xy, xt, yy, yt, tt = vector.tolist()
+def _unpacked(robot: RobotState, run: Run) -> RobotState:
+    x, y, theta, v, w, ox, oy, ot, xx, xy, xt, yy, yt, tt = run.vector.tolist()
     return RobotState(
-        robot.name,
+        run.name,
         Pose(x, y, theta),
         Command(v, w),
-        robot.command,
-        robot.command_ns,
+        run.order[0],
+        run.order[1],
         Pose(ox, oy, ot),
         (xx, xy, xt, xy, yy, yt, xt, yt, tt),
-        collided,
-        collisions,
+        run.collided,
+        run.collisions,
         robot.held,
     )
 
 
-def _holding(simulation: Simulation, state: State, before: State | None) -> State:
+def _holding(simulation: Simulation, state: State) -> State:
     """Keep, for each lidar that is frozen now, the state that it froze in."""
-    if not any(spec.faults.frozen for spec in simulation.robots):
-        return state
     robots = [_held(spec, robot, state) for spec, robot in zip(simulation.robots, state.robots, strict=True)]
     return replace(state, robots=tuple(robots))
 

@@ -62,7 +62,7 @@ class Simulation:
         if self.engine not in ("numpy", "numba", "auto"):
             engine(self.engine)
 
-    @property
+    @cached_property
     def tick_ns(self) -> int:
         """The physics period in nanoseconds."""
         return round(self.tick * 1e9)

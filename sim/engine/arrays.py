@@ -16,12 +16,14 @@ from sim.engine.exact import DOUBT
 from sim.engine.loops import SMALL, wall_into
 from sim.engine.motion import coast, push
 from sim.engine.pairs import LIMIT, NOTHING, TANGENT, TOUCHING, circle_inverse, wall_hit
+from sim.engine.readings import STRENGTH
 from sim.engine.shapes import FAR, gap
 from sim.engine.trig import TAU, sincos
 
 Floats = NDArray[np.float64]
+Float32s = NDArray[np.float32]
 
-__all__ = ["coast", "fan", "gap", "nearest", "push", "rays"]
+__all__ = ["coast", "fan", "finish", "gap", "nearest", "push", "rays"]
 
 # How far, in radians, numpy's arctan2 and the arithmetic after it may be off, with a wide margin.
 BEARING_ERROR = 1e-12
@@ -117,23 +119,30 @@ def _walls_into(
 
 
 def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, oy: float) -> None:
-    vx = circles[:, 0:1] - ox
+    vx = circles[:, :1] - ox
     vy = circles[:, 1:2] - oy
-    radius = circles[:, 2:3]
+    radius = circles[:, 2:]
     squared = vx * vx + vy * vy
     dx, dy = directions
     along = dx * vx + dy * vy
     s = dx * vy - dy * vx
-    gap = (radius - s) * (radius + s)
-    tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
-    meets = (gap > 0.0) & (along > 0.0) & ~tangent
-    distance = np.where(meets, along, 1.0) - np.sqrt(np.where(meets, gap, 0.0))
-    inverse = np.where(meets, 1.0 / np.where(distance > NOTHING, distance, NOTHING), 0.0)
-    for k, beam in np.argwhere(tangent).tolist():
-        cx, cy, r = circles[k].tolist()
-        inverse[k, beam] = circle_inverse(float(dx[beam]), float(dy[beam]), ox, oy, cx, cy, r)
-    inverse[(squared <= radius * radius)[:, 0]] = TOUCHING
-    np.maximum(best, inverse.max(axis=0), out=best)
+    most = (radius * radius) * (1.001 + TANGENT * squared)
+    which, beams = np.nonzero((s * s <= most) & (along > -1e-6 * radius))
+    if len(which):
+        along, s = along[which, beams], s[which, beams]
+        radius, squared = radius[which, 0], squared[which, 0]
+        gap = (radius - s) * (radius + s)
+        tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
+        meets = (gap > 0.0) & (along > 0.0)
+        distance = along - np.sqrt(np.where(meets, gap, 0.0))
+        inverse = np.where(meets, 1.0 / np.where(meets & (distance > NOTHING), distance, NOTHING), 0.0)
+        for at in np.flatnonzero(tangent).tolist():
+            (cx, cy, r), beam = circles[which[at]].tolist(), beams[at]
+            inverse[at] = circle_inverse(float(dx[beam]), float(dy[beam]), ox, oy, cx, cy, r)
+        inverse[squared <= radius * radius] = 0.0
+        np.maximum.at(best, beams, inverse)
+    if (vx * vx + vy * vy <= circles[:, 2:] * circles[:, 2:]).any():
+        best[:] = TOUCHING
 
 
 def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
@@ -191,3 +200,22 @@ def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
     for cx, cy, radius in circles.tolist():
         best = min(best, math.hypot(cx - x, cy - y) - radius)
     return best
+
+
+def finish(
+    ranges: Floats, noise: Floats, sigma: float, range_min: float, range_max: float, strengths: bool
+) -> tuple[Float32s, Float32s]:
+    """Turn distances into float32 ranges and intensities: see `readings.finish`."""
+    far = ranges > range_max
+    if len(noise):
+        ranges = ranges + sigma * noise
+        far |= ranges > range_max
+    ranges[far] = np.inf
+    ranges[ranges < range_min] = -np.inf
+    result = ranges.astype(np.float32)
+    if not strengths:
+        return result, result[:0]
+    distances = result.astype(np.float64)
+    returns = (STRENGTH / (1.0 + distances * distances)).astype(np.float32)
+    returns[~(distances >= 0.0)] = 0.0
+    return result, returns

@@ -15,9 +15,9 @@ from typing import Any
 import numba
 from numba.extending import register_jitable
 
-from sim.engine import exact, loops, motion, pairs, shapes, traverse, trig
+from sim.engine import exact, loops, motion, pairs, readings, shapes, traverse, trig
 
-_SOURCES = (trig, exact, pairs, loops, traverse, shapes, motion)
+_SOURCES = (trig, exact, pairs, loops, traverse, shapes, motion, readings)
 
 
 def _compiler() -> Callable[[Any], Any]:
@@ -52,4 +52,5 @@ rays = _compiled(traverse.rays)
 coast = _compiled(motion.coast)
 push = _compiled(motion.push)
 gap = _compiled(shapes.gap)
+finish = _compiled(readings.finish)
 nearest = _compiled(shapes.nearest)

@@ -33,7 +33,6 @@ def layout(segments: Floats) -> Floats:
     x1, y1, x2, y2 = segments.T
     ex, ey = x2 - x1, y2 - y1
     walls = np.ascontiguousarray(np.stack((x1, x2, y1, y2, ey, ex, np.abs(ex) + np.abs(ey))))
-    walls.flags.writeable = False
     return walls
 
 
