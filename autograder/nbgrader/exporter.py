@@ -1,0 +1,31 @@
+"""Reading a submitted notebook that may hold anything, so that one bad file is a diagnosis and not a dead batch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nbconvert.exporters import NotebookExporter
+from nbformat import NotebookNode
+from nbformat.v4 import new_notebook
+
+from autograder.exceptions import StudentError
+from autograder.grading import hygiene, intake
+
+
+class SubmissionExporter(NotebookExporter):
+    """nbgrader's exporter, for which a file that is no notebook is one without cells; the grader says what is wrong."""
+
+    def from_file(self, file_stream: Any, *args: Any, **kwargs: Any) -> Any:
+        data = file_stream.buffer.read(intake.MAX_FILE + 1)
+        convert: Any = self.from_notebook_node
+        return convert(self._read(data, file_stream.name), *args, **kwargs)
+
+    def _read(self, data: bytes, name: str) -> NotebookNode:
+        if len(data) > intake.MAX_FILE:
+            self.log.warning("%s is larger than %d MiB", name, intake.MAX_FILE // 2**20)
+            return new_notebook()
+        try:
+            return hygiene.read(data, name)
+        except StudentError as error:
+            self.log.warning("%s", error)
+            return new_notebook()

@@ -1,0 +1,94 @@
+"""What stands below the cells of an autograded notebook: the student's own outputs, and the grader's verdict. Pure.
+
+nbgrader takes an output for the grade (its `determine_grade`): an error or anything on stderr is 0, an `execute_result`
+that is a number is that many points, and nothing at all is full marks. So a grade cell gets exactly one
+`execute_result`, a plain float, and the explanation as `display_data`, which nbgrader does not read.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Iterable
+from typing import Any
+
+from nbformat import NotebookNode
+from nbformat.v4 import new_output
+
+from autograder.feedback.model import GroupView, PageView
+from autograder.feedback.pages import environment
+from autograder.feedback.text import clean, number
+
+PICTURES = ("image/png", "image/jpeg")
+
+
+def verdict(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
+    """Return the outputs of a locked grade cell.
+
+    Args:
+        points: what is booked.
+        page: the whole feedback.
+        group: the part of it that the cell stands for.
+        first: this is the notebook's first grade cell, which also tells what holds for all of them.
+    """
+    html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
+    text = "\n".join(f"[{check.outcome}] {check.title} {check.message}".strip() for check in group.checks)
+    outputs = [
+        new_output("execute_result", {"text/plain": str(float(points))}, execution_count=1),
+        new_output("display_data", {"text/html": html, "text/plain": clean(text) or number(points)}),
+    ]
+    for picture in (picture for check in group.checks for picture in check.pictures):
+        if picture.uri is not None:
+            media, _, data = picture.uri.removeprefix("data:").partition(";base64,")
+            alt = {media: {"alt": clean(picture.caption)}}
+            outputs.append(
+                new_output("display_data", {media: data, "text/plain": clean(picture.caption)}, metadata=alt)
+            )
+    return outputs
+
+
+def harmless(outputs: Iterable[Any]) -> list[NotebookNode]:
+    """Return a student's outputs as text and pictures.
+
+    HTML, SVG, scripts, widgets and metadata are left out: feedback and formgrader would put them into their pages.
+    """
+    kept = []
+    for output in outputs:
+        kind = output.get("output_type")
+        if kind == "stream":
+            name = "stderr" if output.get("name") == "stderr" else "stdout"
+            kept.append(new_output("stream", name=name, text=_text(output.get("text"))))
+        elif kind == "error":
+            traceback = output.get("traceback")
+            lines = traceback if isinstance(traceback, list) else []
+            names = {name: _text(output.get(name)) for name in ("ename", "evalue")}
+            kept.append(new_output("error", **names, traceback=[_text(line) for line in lines]))
+        elif kind in ("display_data", "execute_result") and isinstance(output.get("data"), dict):
+            data = _data(output["data"])
+            if data:
+                kept.append(new_output("display_data", data))
+    return kept
+
+
+def _data(bundle: dict[str, Any]) -> dict[str, str]:
+    kept = {media: data for media in PICTURES if (data := _picture(bundle.get(media))) is not None}
+    if "text/plain" in bundle:
+        kept["text/plain"] = _text(bundle["text/plain"])
+    return kept
+
+
+def _picture(value: object) -> str | None:
+    """Return Base64 data in its one canonical form, or None for what is no such data."""
+    if not isinstance(value, str):
+        return None
+    try:
+        return base64.b64encode(base64.b64decode("".join(value.split()), validate=True)).decode("ascii")
+    except (binascii.Error, ValueError):
+        return None
+
+
+def _text(value: object) -> str:
+    """Return a text, its colours kept (pages render them); what is no text becomes none."""
+    if isinstance(value, list):
+        value = "".join(part for part in value if isinstance(part, str))
+    return "\x1b".join(clean(part) for part in value.split("\x1b")) if isinstance(value, str) else ""

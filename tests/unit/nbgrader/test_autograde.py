@@ -1,0 +1,267 @@
+"""Autograding through nbgrader: what is booked, what is shown, and what a hostile notebook changes about it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
+
+from autograder.checks import Check, Outcome
+from autograder.exceptions import IsolationError
+from autograder.grading import Graded
+from autograder.result import Artifact, CheckResult, Status
+
+# nbgrader's own use of SQLAlchemy.
+pytestmark = pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning")
+
+BOOKED = {"grade-graph": (3.0, 3.0, False), "grade-reaction": (1.0, 4.0, False)}
+
+
+def cell(notebook: NotebookNode, id: str) -> NotebookNode:
+    return next(cell for cell in notebook.cells if cell.id == id)
+
+
+def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
+    solve = cell(course.released, "solve")
+    assert "SECRET" not in solve.source
+    assert solve.source.startswith(
+        "%%writefile x.py\ndef answer():\n    # YOUR CODE HERE\n    raise NotImplementedError("
+    )
+
+
+def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]) -> None:
+    seen: list[tuple[Any, ...]] = []
+
+    def grade(path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: str) -> Graded:
+        seen.append((path, assignment, student, seed, out, isolation))
+        out.mkdir(parents=True)
+        return verdict()
+
+    course.grade = grade
+    folder = course.submit("alice", course.released)
+    assert course.autograde("alice")["success"]
+    assert course.grades("alice") == BOOKED
+    out = course.root / ".build" / "nbgrader" / "tiny" / "alice"
+    assert seen == [(folder, "tiny", "alice", 0, out, "bubblewrap")]
+    assert (out / "feedback.html").is_file()
+
+
+def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[..., Graded], tmp_path: Path) -> None:
+    trace = tmp_path / "executed"
+    notebook = course.released
+    cell(notebook, "free").source = f"open({str(trace)!r}, 'w')"
+    course.grade = lambda *a, **k: verdict()
+    course.submit("alice", notebook)
+    assert course.autograde("alice")["success"]
+    assert not trace.exists()
+    assert cell(course.autograded("alice"), "free").outputs == []
+
+
+def test_outputs_of_the_sandboxed_run_are_shown_where_the_source_is_the_same(
+    course: Any, verdict: Callable[..., Graded]
+) -> None:
+    notebook = course.released
+    executed = copy.deepcopy(notebook)
+    cell(executed, "free").outputs = [new_output("stream", text="free\n")]
+    cell(executed, "solve").source += "\n# other"
+    cell(executed, "solve").outputs = [new_output("stream", text="from another source")]
+    course.grade = lambda *a, **k: verdict(executed)
+    course.submit("alice", notebook)
+    assert course.autograde("alice")["success"]
+    assert [output.text for output in cell(course.autograded("alice"), "free").outputs] == ["free\n"]
+    assert cell(course.autograded("alice"), "solve").outputs == []
+
+
+def test_feedback_explains_each_group_and_shows_the_track(
+    course: Any, verdict: Callable[..., Graded], track: Callable[..., Artifact]
+) -> None:
+    course.grade = lambda *a, out, **k: verdict(artifacts=(track(out, check="turns"),))
+    course.submit("alice", course.released)
+    assert course.autograde("alice")["success"]
+    html = course.feedback("alice")
+    for words in ("(Score: 4.0 / 7.0)", "The robot turns.", "it drove on &lt;b&gt;and on&lt;/b&gt;", "Where is 0 rad?"):
+        assert words in html
+    assert 'alt="The robot\'s track: it touches the north wall at t = 12.4 s."' in html
+    assert html.count("data:image/png;base64,") == 1
+
+
+def test_a_student_that_forged_outputs_and_metadata_earns_nothing_by_it(
+    course: Any, verdict: Callable[..., Graded]
+) -> None:
+    notebook = course.released
+    forged = cell(notebook, "g-reaction")
+    forged.outputs = [new_output("execute_result", {"text/plain": "4.0"}, execution_count=1)]
+    forged.source = "4.0"
+    forged.metadata.nbgrader.points = 0.5
+    forged.metadata.course = {"group": "graph"}
+    course.grade = lambda *a, **k: verdict(notebook)
+    course.submit("mallory", notebook)
+    assert course.autograde("mallory")["success"]
+    assert course.grades("mallory") == BOOKED
+
+
+def drop(notebook: NotebookNode) -> None:
+    notebook.cells = [cell for cell in notebook.cells if not cell.id.startswith("g-")]
+
+
+def drop_everything(notebook: NotebookNode) -> None:
+    notebook.cells = []
+
+
+def double(notebook: NotebookNode) -> None:
+    notebook.cells += copy.deepcopy([cell for cell in notebook.cells if cell.id.startswith("g-")])
+
+
+def retype(notebook: NotebookNode) -> None:
+    for index, old in enumerate(notebook.cells):
+        if old.id.startswith("g-"):
+            notebook.cells[index] = new_markdown_cell("pass", id=old.id, metadata=old.metadata)
+
+
+def unmark(notebook: NotebookNode) -> None:
+    for each in notebook.cells:
+        each.metadata.pop("nbgrader", None)
+
+
+def claim_solution(notebook: NotebookNode) -> None:
+    for each in notebook.cells:
+        if "nbgrader" in each.metadata:
+            each.metadata.nbgrader.update(solution=True, locked=False, points=100)
+
+
+def strange_marks(notebook: NotebookNode) -> None:
+    for index, marks in enumerate(({}, [], "x", {"grade": True}, {"grade_id": 7, "grade": True}, {"grade_id": []})):
+        notebook.cells.append(new_code_cell("1", id=f"odd{index}", metadata={"nbgrader": marks}))
+
+
+def extra_grade(notebook: NotebookNode) -> None:
+    extra = copy.deepcopy(cell(notebook, "g-graph"))
+    extra.id, extra.metadata.nbgrader.grade_id = "more", "grade-more"
+    notebook.cells.append(extra)
+
+
+def old_schema(notebook: NotebookNode) -> None:
+    for each in notebook.cells:
+        if "nbgrader" in each.metadata:
+            each.metadata.nbgrader["schema_version"] = 99
+
+
+@pytest.mark.parametrize(
+    "tamper",
+    [drop, drop_everything, double, retype, unmark, claim_solution, strange_marks, extra_grade, old_schema],
+)
+def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
+    tamper: Callable[[NotebookNode], None], course: Any, verdict: Callable[..., Graded]
+) -> None:
+    notebook = course.released
+    tamper(notebook)
+    course.grade = lambda *a, **k: verdict()
+    course.submit("mallory", notebook)
+    done = course.autograde("mallory")
+    assert done["success"], done
+    assert course.grades("mallory") == BOOKED
+    assert "(Score: 4.0 / 7.0)" in course.feedback("mallory")
+    assert "SECRET" not in course.feedback("mallory")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"{", b"\xff\xfe\x00", b"[]", b'{"cells": 7, "nbformat": 4, "nbformat_minor": 5, "metadata": {}}', b"null"],
+    ids=["empty", "cut", "binary", "list", "cells", "null"],
+)
+def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
+    data: bytes, course: Any, verdict: Callable[..., Graded]
+) -> None:
+    course.grade = lambda *a, **k: verdict()
+    course.submit("bob", data)
+    done = course.autograde("bob")
+    assert done["success"], done
+    assert course.grades("bob") == BOOKED
+
+
+def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callable[..., Graded]) -> None:
+    course.grade = lambda *a, **k: verdict(status=Status.NOT_GRADED, checks=())
+    course.submit("carol", course.released)
+    done = course.autograde("carol")
+    assert not done["success"]
+    assert "carol: not graded, nothing is booked." in done["log"]
+    assert course.grades("carol") == {"grade-graph": (None, 3.0, True), "grade-reaction": (None, 4.0, True)}
+    assert not (course.root / "autograded" / "carol" / "tiny").exists()
+
+
+def test_a_failing_grader_leaves_an_earlier_score_and_asks_for_an_eye(
+    course: Any, verdict: Callable[..., Graded]
+) -> None:
+    course.submit("dave", course.released)
+    course.grade = lambda *a, **k: verdict()
+    assert course.autograde("dave")["success"]
+
+    def fail(*args: Any, **kwargs: Any) -> Graded:
+        raise IsolationError("this machine cannot isolate submissions")
+
+    course.grade = fail
+    done = course.autograde("dave", force=True)
+    assert not done["success"]
+    assert "this machine cannot isolate submissions" in done["log"]
+    assert course.grades("dave") == {name: (*grade[:2], True) for name, grade in BOOKED.items()}
+    course.grade = lambda *a, **k: verdict()
+    assert course.autograde("dave", force=True)["success"]
+    assert course.grades("dave") == BOOKED
+
+
+def test_groups_that_do_not_fit_the_cells_are_refused(
+    course: Any, verdict: Callable[..., Graded], make_check: Callable[..., Check]
+) -> None:
+    checks = (CheckResult.of(make_check("starts", "It starts.", 3, "graph"), Outcome.PASSED),)
+    course.grade = lambda *a, **k: verdict(checks=checks, max_score=3.0)
+    course.submit("erin", course.released)
+    done = course.autograde("erin")
+    assert not done["success"]
+    assert "stand for the groups ['graph', 'reaction'], but its suite has ['graph']" in done["log"]
+    assert course.grades("erin")["grade-reaction"] == (None, 4.0, True)
+
+
+def test_points_that_do_not_fit_the_cell_are_refused(
+    course: Any, verdict: Callable[..., Graded], make_check: Callable[..., Check]
+) -> None:
+    checks = tuple(
+        CheckResult.of(make_check(group, "It works.", 5, group), Outcome.PASSED) for group in ("graph", "reaction")
+    )
+    course.grade = lambda *a, **k: verdict(checks=checks, max_score=10.0)
+    course.submit("frank", course.released)
+    done = course.autograde("frank")
+    assert not done["success"]
+    assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
+
+
+def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Graded]) -> None:
+    notebook = course.released
+    notebook.cells += [
+        new_markdown_cell("<script>alert('markdown')</script> [x](javascript:alert('link')) <img src=x onerror=a()>"),
+        new_code_cell("'</pre><script>alert(1)</script>'", id="code", metadata={"tags": ["x'><script>tag"]}),
+    ]
+    executed = copy.deepcopy(notebook)
+    cell(executed, "code").outputs = [
+        new_output("display_data", {"text/html": "<script>html</script>", "text/plain": "<script>plain</script>"}),
+        new_output("display_data", {"application/javascript": "js()", "image/svg+xml": "<svg onload='svg()'/>"}),
+        new_output(
+            "display_data", {"image/png": "'><script>png</script>"}, metadata={"image/png": {"width": "1 on=x"}}
+        ),
+        new_output("error", ename="<script>", evalue="<script>", traceback=["<script>trace</script>"]),
+    ]
+    course.grade = lambda *a, **k: verdict(executed)
+    course.submit("mallory", notebook)
+    assert course.autograde("mallory")["success"]
+    html = course.feedback("mallory")
+    for injected in ("<script>alert", "<script>html", "<script>plain", "<script>tag", "<script>png", "<script>trace"):
+        assert injected not in html
+    assert '<img src="x" onerror' not in html
+    assert "svg()" not in html
+    assert "js()" not in html
+    assert 'href="javascript' not in html
+    assert "&lt;script&gt;plain&lt;/script&gt;" in html
