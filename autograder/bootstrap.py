@@ -207,7 +207,7 @@ class SetUp:
     def _new_environment(self) -> None:
         base = self.interpreter.executable
         shutil.rmtree(self.venv, ignore_errors=True)
-        with_pip = self.run(base, "-c", "import ensurepip", quiet=True) == 0
+        with_pip = self.run(base, "-c", "import ensurepip; ensurepip.version()", quiet=True) == 0
         bare = [] if with_pip else ["--without-pip"]
         self._step("the virtual environment could not be made", base, "-m", "venv", *bare, str(self.venv))
         if not with_pip:

@@ -144,7 +144,7 @@ def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp,
 def test_a_python_without_any_pip_is_told_what_to_install(set_up: SetUp, commands: Any) -> None:
 
     def run(*command: str, quiet: bool = False) -> int:
-        return 1 if "import ensurepip" in command or "--target" in command else commands(*command)
+        return 1 if "import ensurepip; ensurepip.version()" in command or "--target" in command else commands(*command)
 
     with pytest.raises(SetUpError, match=r"neither ensurepip nor pip works .* install python3-venv or python3-pip"):
         replace(set_up, run=run).make(dev=False)
