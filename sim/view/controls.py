@@ -16,10 +16,6 @@ LINEAR, ANGULAR = 0.22, 0.9
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
 
-_ALT = (
-    "The world seen from above with the robot, its track and its lidar beams; beside it the scan in the robot's frame"
-)
-
 
 class Controls:
     """One image, a row to play with time, a pad to drive, and a place for errors."""
@@ -27,12 +23,11 @@ class Controls:
     def __init__(self, view: LiveView, *, growing: bool, has_callback: bool, speed: float) -> None:
         self._view = view
         self._quiet = False
-        self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"}, tooltip=_ALT)
+        self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"})
         self._play = widgets.ToggleButton(value=False, icon="play", tooltip="Play", layout={"width": "44px"})
-        self._play.add_class("sim-play")
         self._slider = widgets.FloatSlider(
             min=0.0,
-            max=0.1,
+            max=10.0,
             step=0.02,
             readout_format=".2f",
             description="t [s]",
@@ -51,20 +46,24 @@ class Controls:
         self._slider.observe(self._on_slider, "value")
         self._speed.observe(lambda change: view.set_speed(change["new"]), "value")
         step = self._button("step-forward", "One step of 0.1 s", lambda: view.step())
-        reset = self._button("undo", "Back to the start", view.reset)
+        reset = self._button("fast-backward", "Back to the start", view.reset)
         time_row = [self._play, step, *([reset] if growing else []), self._slider, self._speed]
-        rows: list[Any] = [widgets.HBox(time_row, layout={"max_width": "980px", "align_items": "center"}), self._image]
+        timing = widgets.HBox(time_row, layout={"max_width": "980px", "align_items": "center"})
+        rows: list[Any] = [timing, self._output, self._image]
         if growing:
             rows.append(self._pad(has_callback))
-        self.box = widgets.VBox([*rows, self._output])
+        self.box = widgets.VBox(rows)
 
     def show(self, jpeg: bytes, now: float, end: float) -> None:
         """Put a frame on show and move the slider, without taking that for a hand on the slider."""
         self._quiet = True
         self._image.value = jpeg
-        if end > self._slider.max:
-            self._slider.max = max(end, 1.5 * self._slider.max)
-        self._slider.value = min(now, self._slider.max)
+        # A slider that is moved forty times a second can't be grabbed: it follows four times a second, and obeys a hand
+        # only while time stands still.
+        if not self._view.playing or abs(now - self._slider.value) >= 0.25 * self._speed.value:
+            if end > self._slider.max:
+                self._slider.max = max(end, 1.5 * self._slider.max)
+            self._slider.value = now
         self._quiet = False
 
     def set_playing(self, playing: bool) -> None:
@@ -73,6 +72,7 @@ class Controls:
         self._play.value = playing
         self._play.icon = "pause" if playing else "play"
         self._play.tooltip = "Pause" if playing else "Play"
+        self._slider.disabled = playing
         self._quiet = False
 
     def set_command(self, command: Command | None) -> None:
@@ -83,7 +83,7 @@ class Controls:
             self._who.value = f"{command.linear:+.2f} m/s  {command.angular:+.2f} rad/s"
 
     def show_error(self, text: str) -> None:
-        """Print what the callback raised below the picture, where cells show errors."""
+        """Print what the callback raised above the picture, where it can't be overlooked."""
         self._output.outputs = ({"output_type": "stream", "name": "stderr", "text": text},)
 
     def clear_error(self) -> None:
@@ -117,6 +117,5 @@ class Controls:
                 self._view.pause()
 
     def _on_slider(self, change: Any) -> None:
-        if not self._quiet:
-            self._view.pause()
+        if not self._quiet and not self._view.playing:
             self._view.seek(change["new"])

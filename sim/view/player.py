@@ -32,8 +32,11 @@ from sim.world import World
 GRADING = "AUTOGRADER_GRADING"
 """The environment variable whose presence says that nobody is looking."""
 
-FPS = 30.0
+FPS = 40.0
 """Frames a second that the view aims at."""
+
+LONGEST_LEAP = 0.1
+"""Seconds that a frame may add at most: while a cell runs long, simulated time waits with the picture."""
 
 
 def live(
@@ -131,6 +134,7 @@ class LiveView:
             self._task.cancel()
             self._task = None
         self._controls.set_playing(False)
+        self._render()
 
     def step(self, seconds: float = 0.1) -> None:
         """Pause, and go on by `seconds` of simulated time."""
@@ -166,15 +170,15 @@ class LiveView:
         self._speed = speed
 
     async def _run(self) -> None:
-        period = 1.0 / FPS
-        due = time.perf_counter()
+        period, last = 1.0 / FPS, time.perf_counter()
         while True:
-            if not self._advance(round(period * self._speed * 1e9)):
+            await asyncio.sleep(max(0.0, last + period - time.perf_counter()))
+            now = time.perf_counter()
+            passed, last = min(now - last, LONGEST_LEAP), now
+            if not self._advance(round(passed * self._speed * 1e9)):
                 self._task = None
                 self._controls.set_playing(False)
                 return
-            due = max(due + period, time.perf_counter() - period)  # late frames are not made up for in a burst
-            await asyncio.sleep(max(0.0, due - time.perf_counter()))
 
     def _advance(self, by_ns: int) -> bool:
         """Move the instant on show by `by_ns`; say whether there is more to come."""
