@@ -16,8 +16,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import jsonschema
-
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import UsageError
@@ -156,6 +154,8 @@ def from_json(data: object, *, source: str = "result") -> Result:
     Raises:
         UsageError: `data` does not follow the published schema; names `source` and the field.
     """
+    import jsonschema  # takes a second to import, which workers need not spend
+
     try:
         jsonschema.validate(data, schema())
     except jsonschema.ValidationError as error:

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
@@ -13,6 +14,7 @@ from nbformat import NotebookNode
 import autograder
 import sim
 from autograder import layout
+from autograder.grading import hygiene
 from autograder.grading.hygiene import STUB
 from autograder.grading.kernel import SandboxedKernelManager
 from autograder.lab.workspace import Workspace
@@ -23,6 +25,24 @@ GRADING_VARIABLE = "AUTOGRADER_GRADING"
 CELL_SECONDS = 60
 MAX_OUTPUT = 4 * 1024 * 1024
 WRITEFILE = "%%writefile "
+
+
+def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, out: Path) -> None:
+    """Mend a submitted notebook after its source notebook, run it, and keep it as it ran.
+
+    Args:
+        submitted: the notebook as it was handed in.
+        original: the path of the source notebook.
+        folder: the assignment's folder, with `ws/` in it; the notebook may write there.
+        workspace: says which ROS 2 and which scratch folder are used.
+        out: where the executed notebook is written.
+
+    Raises:
+        StudentError: what was handed in is no notebook.
+    """
+    source = nbformat.read(original, as_version=4)
+    notebook = hygiene.restore(hygiene.read(submitted, original.name), source)
+    nbformat.write(execute(notebook, folder, workspace), out)
 
 
 def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:

@@ -7,9 +7,7 @@ import sys
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
-
-import nbformat
-from nbformat import NotebookNode
+from typing import TYPE_CHECKING
 
 from autograder import suites
 from autograder.checks import Outcome
@@ -20,6 +18,9 @@ from autograder.result import CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
 from autograder.sandbox.process import Ending
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
 
 RESULT = "result.json"
 NOTEBOOK = "notebook.ipynb"
@@ -85,7 +86,11 @@ def _worker(job: Job) -> list[str]:
 
 
 def _notebook(path: Path) -> NotebookNode | None:
-    return nbformat.read(path, as_version=4) if path.is_file() else None
+    if not path.is_file():
+        return None
+    import nbformat  # slow to import, and a source tree has no notebook
+
+    return nbformat.read(path, as_version=4)
 
 
 def _not_graded(

@@ -17,22 +17,19 @@ from contextlib import contextmanager
 from datetime import datetime, timezone
 from pathlib import Path
 
-import nbformat
-
 from autograder import layout, suites
 from autograder.checks import Outcome
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
 from autograder.grading.gallery import Gallery
 from autograder.grading.job import Job
+from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
-from autograder.result import Artifact, Build, CheckResult, Result, write_json
+from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
 from autograder.sandbox.tiers import Tier
 from autograder.suites import Suite
 
-RESULT = "result.json"
-NOTEBOOK = "notebook.ipynb"
 _NO_DIGEST = "0" * 64
 
 
@@ -88,7 +85,7 @@ class Grading:
         )
 
     def _prepare(self) -> None:
-        from autograder.grading import build, extract, hygiene, intake
+        from autograder.grading import build, intake
 
         with self._phase("intake"):
             submission = intake.take(self._job.path, self._job.assignment)
@@ -100,11 +97,10 @@ class Grading:
         if submission.notebook is not None:
             with self._phase("notebook"):
                 self._give(source)
-                name = f"{self._job.assignment}.ipynb"
-                original = nbformat.read(layout.source_notebook(self._job.assignment), as_version=4)
-                notebook = hygiene.restore(hygiene.read(submission.notebook, name), original)
-                extract.execute(notebook, self._folder, self._workspace)
-                nbformat.write(notebook, self._job.out / NOTEBOOK)
+                from autograder.grading import extract  # Jupyter is slow to import, and not every submission needs it
+
+                original = layout.source_notebook(self._job.assignment)
+                extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
         with self._phase("build"):
             build.require_packages(source, self._suite.packages)
             self._build = build.build(self._workspace)
@@ -145,8 +141,6 @@ def main() -> None:
     result = Grading(job, suites.load(job.assignment)).grade()
     write_json(job.out / RESULT, result.to_json())
 
-
-__all__ = ["NOTEBOOK", "RESULT", "Artifact", "Grading", "main"]
 
 if __name__ == "__main__":
     main()

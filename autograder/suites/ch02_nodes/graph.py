@@ -59,8 +59,8 @@ def test_scan_qos(robot: Robot) -> None:
     for peer in peers:
         verdict, reason = qos_check_compatible(qos_profile_sensor_data, peer.qos_profile)
         expect(
-            verdict is not QoSCompatibility.ERROR,
-            f"The subscription would never get a scan from a best-effort lidar: {reason.strip().rstrip(';')}.",
+            verdict != QoSCompatibility.ERROR,
+            f"The subscription would never get a scan from a best-effort lidar: {reason.removeprefix('ERROR: ').rstrip(';')}.",
         )
 
 
