@@ -8,13 +8,15 @@ that rounding could decide) are left to the scalar code, which is exact.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.engine import motion
 from sim.engine.exact import DOUBT
 from sim.engine.loops import SMALL, wall_into
-from sim.engine.motion import coast, push
+from sim.engine.motion import push
 from sim.engine.pairs import LIMIT, NOTHING, TANGENT, TOUCHING, circle_inverse, wall_hit
 from sim.engine.readings import STRENGTH
 from sim.engine.shapes import FAR, gap
@@ -219,3 +221,12 @@ def finish(
     returns = (STRENGTH / (1.0 + distances * distances)).astype(np.float32)
     returns[~(distances >= 0.0)] = 0.0
     return result, returns
+
+
+def coast(
+    robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
+) -> None:
+    """Advance a robot where nothing is in its way: `motion.coast` on lists, which Python reads faster than arrays."""
+    numbers: Any = robot.tolist()
+    motion.coast(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
+    robot[:] = numbers
