@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from geometry_msgs.msg import Twist
+from rclpy.qos import QoSCompatibility, qos_check_compatible, qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
@@ -43,6 +44,15 @@ class Robot(LockstepLab):
         began = self.seconds
         self.run(seconds)
         return self.messages("/cmd_vel", since=began)
+
+
+def unheard(robot: Robot) -> str:
+    """Say why a best-effort lidar would not reach the robot's scan subscription; an empty string if it does."""
+    for peer in robot.node.get_subscriptions_info_by_topic("/scan"):
+        verdict, reason = qos_check_compatible(qos_profile_sensor_data, peer.qos_profile)
+        if verdict != QoSCompatibility.OK:
+            return str(reason).removeprefix("ERROR: ").rstrip(";").lower()
+    return ""
 
 
 def expect_forward(commands: Sequence[Stamped], situation: str) -> None:
