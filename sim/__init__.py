@@ -13,6 +13,7 @@ from sim.lidar import LDS_01, RPLIDAR_A1, UTM_30LX, LidarSpec, Scan
 from sim.pose import Command, Pose
 from sim.recording import Recorder, Recording, ScanLog, load_recording, replay, run
 from sim.robot import OdometryDrift, RobotSpec, RobotState
+from sim.schema import world_schema
 from sim.sensing import cast, directions, observe, scan_angles
 from sim.simulation import start, step
 from sim.state import Event, Simulation, State
@@ -61,4 +62,5 @@ __all__ = [
     "scan_angles",
     "start",
     "step",
+    "world_schema",
 ]

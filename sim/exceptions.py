@@ -29,7 +29,7 @@ class WorldError(SimError):
         self.path = path
         self.line = line
         where = f"{path or 'world'}:{line}: " if line is not None else f"{path}: " if path else ""
-        super().__init__(f"{where}{problem}" + (f"; {remedy}" if remedy else ""))
+        super().__init__(f"{where}{problem}" + (f". {remedy}." if remedy else ""))
 
 
 class SpecError(SimError, ValueError):

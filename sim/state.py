@@ -72,6 +72,10 @@ class Simulation:
         """The world and the robots as the engine wants them, laid out once."""
         return build(self.world, self.robots, self.seed, self.engine)
 
+    def movers_at(self, time_ns: int) -> list[tuple[float, float, float]]:
+        """Return where the world's movers are at a simulated time: `(x, y, radius)` each, in metres."""
+        return self.scene.movers_at(time_ns)
+
     @cached_property
     def _numbers(self) -> dict[str | None, int]:
         return {None: 0, **{robot.name: number for number, robot in enumerate(self.robots)}}

@@ -15,6 +15,10 @@ from sim.pose import Pose
 Floats = NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
+MOST_METRES = 100_000.0
+# Below this a coordinate is taken for zero: products of smaller ones would leave the range of a double.
+LEAST_METRES = 1e-60
+
 
 @dataclass(frozen=True, slots=True)
 class Goal:
@@ -24,6 +28,12 @@ class Goal:
     y: float
     radius: float = 0.25
     name: str = "goal"
+
+    def __post_init__(self) -> None:
+        if not (_near(self.x) and _near(self.y) and 0.0 < self.radius <= MOST_METRES):
+            raise WorldError(
+                f"a goal at ({self.x}, {self.y}), radius {self.radius}", "Give metres, and a radius above 0"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +51,20 @@ class Mover:
     loop: bool = False
     phase: float | None = None
     name: str = "mover"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "path", tuple((float(x), float(y)) for x, y in self.path))
+        good = (
+            ("path", self.path and all(_near(x) and _near(y) for x, y in self.path), "one point or more, in metres"),
+            ("radius", 0.0 < self.radius <= MOST_METRES, "metres, above 0"),
+            ("speed", 0.0 < self.speed <= 100.0, "m/s, above 0 and at most 100"),
+            ("pause", 0.0 <= self.pause <= 1e6, "seconds, 0 or above"),
+            ("phase", self.phase is None or 0.0 <= self.phase <= 1.0, "a share of the cycle, from 0 to 1"),
+        )
+        for what, right, remedy in good:
+            if not right:
+                value = getattr(self, what)
+                raise WorldError(f"the {what} of the mover {self.name!r} is {value!r}", f"Give {remedy}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +147,10 @@ def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Float
 BOX_NAMES = ("south wall", "east wall", "north wall", "west wall")
 
 
+def _near(value: float) -> bool:
+    return -MOST_METRES <= value <= MOST_METRES
+
+
 def _table(rows: ArrayLike, width: int, what: str) -> Floats:
     try:
         table = np.array(rows, dtype=np.float64, order="C")
@@ -132,8 +160,9 @@ def _table(rows: ArrayLike, width: int, what: str) -> Floats:
         table = np.empty((0, width))
     if table.ndim != 2 or table.shape[1] != width:
         raise WorldError(f"{what} have the shape {table.shape}", f"Give rows of {width} numbers")
-    if not np.isfinite(table).all():
-        raise WorldError(f"{what} hold a number that is not finite", "Give finite numbers in metres")
+    if not (np.abs(table) <= MOST_METRES).all():
+        raise WorldError(f"{what} hold a number that is not within {MOST_METRES:g} m", "Give finite numbers in metres")
+    table[np.abs(table) < LEAST_METRES] = 0.0
     table.flags.writeable = False
     return table
 

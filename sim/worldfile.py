@@ -1,68 +1,171 @@
-"""A world from a YAML file, with errors that name the file, the line, what is wrong and what to do."""
+"""A world from a YAML file, with errors that name the file, the line, what is wrong and what to do.
+
+    name: the room
+    units: {length: m, angle: deg}          # or cm, mm; rad. One number may carry its own: "30 cm"
+    walls:
+      - {name: shelf, from: [0, 0], to: [1.5, 0]}
+      - [0, 0, 1.5, 0]                      # the same wall without a name
+    boxes:                                  # four walls each: south, east, north, west
+      - {center: [0, 0], size: [6, 4]}
+    polygons:
+      - {name: crate, points: [[1, 1], [2, 1], [2, 2]]}
+    circles:
+      - {name: pillar, center: [0, 1], radius: 0.2}
+    starts:
+      - {x: 0, y: 0, theta: 90}
+    goals:
+      - {name: door, center: [2, 1], radius: 0.3}
+    movers:
+      - {name: cart, path: [[0, 0], [2, 0]], radius: 0.2, speed: 0.3, pause: 1, loop: false}
+
+Every section may be left out. The schema is published as `sim.world_schema()`.
+"""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import yaml
 
+from sim.exceptions import WorldError
+from sim.fields import Reader, Units, bad, composed
 from sim.pose import Pose
 from sim.world import BOX_NAMES, Goal, Mover, World, box
+
+MOST_THINGS = 200_000
+MOST_MOVERS = 1000
 
 
 def load_world(path: str | Path) -> World:
     """Read a world file. Raises WorldError, which names the line, for anything that is not a world."""
-    data: dict[str, Any] = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    units = data.get("units", {})
-    scale = {"m": 1.0, "cm": 0.01, "mm": 0.001}[units.get("length", "m")]
-    angle = {"rad": 1.0, "deg": math.pi / 180}[units.get("angle", "rad")]
-    segments: list[list[float]] = []
-    names: list[str] = []
-    for wall in data.get("walls", []):
-        segments.append([*wall["from"], *wall["to"]])
-        names.append(wall.get("name", ""))
-    for room in data.get("boxes", []):
-        x, y = room.get("center", (0.0, 0.0))
-        segments += box(*room["size"], x=x, y=y).tolist()
-        prefix = room.get("name", "")
-        names += [f"{prefix} {side}".strip() for side in BOX_NAMES]
-    for polygon in data.get("polygons", []):
-        points = polygon["points"]
-        for first, second in zip(points, points[1:] + points[:1], strict=True):
-            segments.append([*first, *second])
-            names.append(polygon.get("name", ""))
-    circles = data.get("circles", [])
-    return World.from_segments(
-        [[value * scale for value in row] for row in segments],
-        circles=[[value * scale for value in (*circle["center"], circle["radius"])] for circle in circles],
-        name=data.get("name", Path(path).stem),
-        starts=[
-            Pose(pose["x"] * scale, pose["y"] * scale, pose.get("theta", 0.0) * angle)
-            for pose in data.get("starts", [])
-        ],
-        goals=[
-            Goal(
-                goal["center"][0] * scale,
-                goal["center"][1] * scale,
-                goal.get("radius", 0.25 / scale) * scale,
-                goal.get("name", "goal"),
-            )
-            for goal in data.get("goals", [])
-        ],
-        movers=[
-            Mover(
-                path=tuple((x * scale, y * scale) for x, y in mover["path"]),
-                radius=mover.get("radius", 0.2 / scale) * scale,
-                speed=mover.get("speed", 0.3 / scale) * scale,
-                pause=mover.get("pause", 0.0),
-                loop=mover.get("loop", False),
-                phase=mover.get("phase"),
-                name=mover.get("name", "mover"),
-            )
-            for mover in data.get("movers", [])
-        ],
-        segment_names=names,
-        circle_names=[circle.get("name", "") for circle in circles],
+    where = Path(path)
+    top = composed(where)
+    if any(key.value == "image" for key, _ in top.value if isinstance(key, yaml.ScalarNode)):
+        raise bad(where, top, "this is a map of ROS's map_server, not a world", "Load it with sim.maps.load_map")
+    plain = Reader(where, Units())
+    sections = plain.fields(
+        top,
+        "the world",
+        optional=("name", "units", "walls", "boxes", "polygons", "circles", "starts", "goals", "movers"),
     )
+    read = Reader(where, _units(plain, sections.get("units")))
+    segments: list[tuple[float, float, float, float]] = []
+    names: list[str] = []
+    for node in read.items(sections.get("walls"), "walls", MOST_THINGS):
+        if isinstance(node, yaml.SequenceNode):
+            x1, y1, x2, y2 = read.lengths(node, "a wall", 4)
+            name = ""
+        else:
+            wall = read.fields(node, "a wall", required=("from", "to"), optional=("name",))
+            (x1, y1), (x2, y2) = read.lengths(wall["from"], "from", 2), read.lengths(wall["to"], "to", 2)
+            name = read.text(wall.get("name"), "name")
+        if (x1, y1) == (x2, y2):
+            raise bad(where, node, "the wall has no length: it ends where it begins", "Move one end, or leave it out")
+        segments.append((x1, y1, x2, y2))
+        names.append(name)
+    for node in read.items(sections.get("boxes"), "boxes", MOST_THINGS):
+        room = read.fields(node, "a box", required=("size",), optional=("center", "name"))
+        width, height = (read.above_zero(value, "size") for value in read.items(room["size"], "size", 2, 2))
+        x, y = read.lengths(room["center"], "center", 2) if "center" in room else (0.0, 0.0)
+        prefix = read.text(room.get("name"), "name")
+        segments += [(a, b, c, d) for a, b, c, d in box(width, height, x=x, y=y).tolist()]
+        names += [f"{prefix} {side}".strip() for side in BOX_NAMES]
+    for node in read.items(sections.get("polygons"), "polygons", MOST_THINGS):
+        polygon = read.fields(node, "a polygon", required=("points",), optional=("name",))
+        sides = _sides(read, polygon["points"])
+        segments += sides
+        names += [read.text(polygon.get("name"), "name")] * len(sides)
+    if len(segments) > MOST_THINGS:
+        raise bad(where, top, f"there are {len(segments)} walls in all", f"Keep to {MOST_THINGS}")
+    circles, circle_names = [], []
+    for node in read.items(sections.get("circles"), "circles", MOST_THINGS):
+        circle = read.fields(node, "a circle", required=("center", "radius"), optional=("name",))
+        circles.append((*read.lengths(circle["center"], "center", 2), read.above_zero(circle["radius"], "radius")))
+        circle_names.append(read.text(circle.get("name"), "name"))
+    starts = [_start(read, node, circles) for node in read.items(sections.get("starts"), "starts", MOST_MOVERS)]
+    goals = [_goal(read, node) for node in read.items(sections.get("goals"), "goals", MOST_MOVERS)]
+    movers = [_mover(read, node) for node in read.items(sections.get("movers"), "movers", MOST_MOVERS)]
+    if not (segments or circles or movers):
+        raise bad(where, top, "the world is empty", "Give it walls, boxes, polygons, circles or movers")
+    return World.from_segments(
+        segments,
+        circles=circles,
+        name=read.text(sections.get("name"), "name") or where.stem,
+        starts=starts or (Pose(),),
+        goals=goals,
+        movers=movers,
+        segment_names=names,
+        circle_names=circle_names,
+    )
+
+
+def _units(read: Reader, node: yaml.Node | None) -> Units:
+    if node is None:
+        return Units()
+    given = read.fields(node, "units", optional=("length", "angle"))
+    return Units(
+        length=read.choice(given.get("length"), "length", ("m", "cm", "mm"), "m"),
+        angle=read.choice(given.get("angle"), "angle", ("rad", "deg"), "rad"),
+    )
+
+
+def _sides(read: Reader, node: yaml.Node) -> list[tuple[float, float, float, float]]:
+    nodes = read.items(node, "points", MOST_THINGS, 3)
+    points = [read.lengths(point, "a point", 2) for point in nodes]
+    if points[0] == points[-1]:  # closed by hand
+        points.pop()
+    for point, first, second in zip(nodes, points, points[1:], strict=False):
+        if first == second:
+            raise bad(read.path, point, "two neighbouring points are the same", "Leave one of them out")
+    if len(points) < 3:
+        raise bad(read.path, node, f"a polygon of {len(points)} points", "Give three or more, or use a wall")
+    return [(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+
+
+def _start(read: Reader, node: yaml.Node, circles: list[tuple[float, ...]]) -> Pose:
+    if isinstance(node, yaml.SequenceNode):
+        x_node, y_node, theta_node = read.items(node, "a start pose [x, y, theta]", 3, 3)
+        pose = Pose(read.length(x_node, "x"), read.length(y_node, "y"), read.angle(theta_node, "theta"))
+    else:
+        start = read.fields(node, "a start pose", required=("x", "y"), optional=("theta", "name"))
+        theta = read.angle(start["theta"], "theta") if "theta" in start else 0.0
+        pose = Pose(read.length(start["x"], "x"), read.length(start["y"], "y"), theta)
+    for number, (x, y, radius) in enumerate(circles):
+        if math.hypot(pose.x - x, pose.y - y) < radius:
+            raise bad(read.path, node, f"the start pose is inside the circle {number}", "Move one of the two")
+    return pose
+
+
+def _goal(read: Reader, node: yaml.Node) -> Goal:
+    goal = read.fields(node, "a goal", required=("center",), optional=("radius", "name"))
+    x, y = read.lengths(goal["center"], "center", 2)
+    radius = read.above_zero(goal["radius"], "radius") if "radius" in goal else 0.25
+    return Goal(x, y, radius, read.text(goal.get("name"), "name") or "goal")
+
+
+def _mover(read: Reader, node: yaml.Node) -> Mover:
+    mover = read.fields(
+        node,
+        "a mover",
+        required=("path",),
+        optional=("radius", "speed", "pause", "loop", "phase", "name"),
+    )
+    points = read.items(mover["path"], "path", 10_000, 1)
+    given = {
+        "radius": read.length(mover["radius"], "radius") if "radius" in mover else 0.2,
+        "speed": read.length(mover["speed"], "speed") if "speed" in mover else 0.3,
+        "pause": read.number(mover["pause"], "pause") if "pause" in mover else 0.0,
+        "phase": read.number(mover["phase"], "phase") if "phase" in mover else None,
+    }
+    try:
+        return Mover(
+            path=tuple(read.lengths(point, "a point of the path", 2) for point in points),  # type: ignore[misc]
+            loop=read.truth(mover.get("loop"), "loop"),
+            name=read.text(mover.get("name"), "name") or "mover",
+            **given,  # type: ignore[arg-type]
+        )
+    except WorldError as error:
+        if error.line is not None:
+            raise
+        raise bad(read.path, node, error.problem, error.remedy) from None
