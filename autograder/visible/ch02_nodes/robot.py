@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from geometry_msgs.msg import Twist
-from rclpy.qos import QoSCompatibility, qos_check_compatible, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
@@ -47,11 +47,15 @@ class Robot(LockstepLab):
 
 
 def unheard(robot: Robot) -> str:
-    """Say why a best-effort lidar would not reach the robot's scan subscription; an empty string if it does."""
+    """Say why a best-effort lidar would not reach the robot's scan subscription; an empty string if it does.
+
+    A subscription gets nothing from a publisher that offers less than it requests.
+    """
     for peer in robot.node.get_subscriptions_info_by_topic("/scan"):
-        verdict, reason = qos_check_compatible(qos_profile_sensor_data, peer.qos_profile)
-        if verdict != QoSCompatibility.OK:
-            return str(reason).removeprefix("ERROR: ").rstrip(";").lower()
+        if peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE:
+            return "it requests reliable delivery, a lidar offers best effort"
+        if peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+            return "it requests past messages (transient local), a lidar offers volatile ones"
     return ""
 
 
