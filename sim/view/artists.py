@@ -247,11 +247,11 @@ def draw_crosses(ax: Axes, places: Sequence[tuple[float, float]], theme: Theme) 
     if not places:
         return []
     x, y = zip(*places, strict=True)
-    halo = ax.plot(x, y, linestyle="none", marker="x", markersize=9, mew=4.0, color=theme.paper, zorder=10)
-    cross = ax.plot(x, y, linestyle="none", marker="x", markersize=8, mew=2.0, color=theme.alarm, zorder=11)
+    halo = ax.plot(x, y, linestyle="none", marker="x", markersize=7.5, mew=3.6, color=theme.paper, zorder=10)
+    cross = ax.plot(x, y, linestyle="none", marker="x", markersize=6.5, mew=1.8, color=theme.alarm, zorder=11)
     return [*halo, *cross]
 
 
 def movers_at(simulation: Simulation, time_ns: int) -> list[tuple[float, float]]:
     """Return where the centre of each moving obstacle is at `time_ns`, in metres."""
-    return [mover.path[0] for mover in simulation.world.movers]
+    return [(x, y) for x, y, _ in simulation.scene.movers_at(time_ns)]

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sim.pose import Pose
+from sim.pose import Command, Pose
 from sim.recording import Recording
 from sim.robot import RobotState
 from sim.simulation import Clearance, Simulation, State, clearance, observe
@@ -101,7 +101,14 @@ def state_at(recording: Recording, row: int) -> State:
     """Return what row `row` says of where everything was; the memory of motors and watchdogs is not in it."""
     simulation, time_ns = recording.simulation, int(recording.times_ns[row])
     robots = tuple(
-        RobotState(name=spec.name, pose=Pose(*recording.poses[row, index].tolist()))
+        RobotState(
+            name=spec.name,
+            pose=Pose(*recording.poses[row, index].tolist()),
+            velocity=Command(*recording.velocities[row, index].tolist()),
+            odometry=Pose(*recording.odometry[row, index].tolist()),
+            covariance=tuple(recording.covariances[row, index].tolist()),
+            collided=bool(recording.collided[row, index]),
+        )
         for index, spec in enumerate(simulation.robots)
     )
     return State(tick=round(time_ns / (simulation.tick * 1e9)), time_ns=time_ns, robots=robots)

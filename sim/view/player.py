@@ -184,13 +184,12 @@ class LiveView:
         """Move the instant on show by `by_ns`; say whether there is more to come."""
         wanted = self._now_ns + by_ns
         try:
-            self._session.advance(wanted)
+            self._now_ns = self._session.advance(wanted)
         except Exception as error:  # the student's callback may raise anything; it belongs in the cell
             self._now_ns = self._session.end_ns
             self._render()
             self._controls.show_error(_callback_traceback(error))
             return False
-        self._now_ns = wanted if self._session.growing else min(wanted, self._session.end_ns)
         self._render()
         return self._session.growing or self._now_ns < self._session.end_ns
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sim.lidar import Scan
 from sim.pose import Command, Pose
+from sim.rates import due
 from sim.recording import Recorder, Recording
 from sim.simulation import Simulation, State, observe, start, step
 from sim.view.figures import state_at
@@ -80,10 +81,13 @@ class Session:
         self.automatic = False
         self.command = command
 
-    def advance(self, until_ns: int) -> None:
-        """Step the run until it has reached `until_ns`; what the controller raises is raised here."""
-        tick = self.simulation.tick
-        while self.growing and self._times[-1] + round(tick * 1e9) <= until_ns:
+    def advance(self, until_ns: int) -> int:
+        """Step the run until it has reached `until_ns`; what the controller raises is raised here.
+
+        Returns the instant to be shown.
+        """
+        tick_ns = self.simulation.tick_ns
+        while self.growing and self._times[-1] + tick_ns <= until_ns:
             frame = self.frames[-1]
             if self.automatic and self.controller is not None and _is_new(frame):
                 newest = frame.scans[0]
@@ -91,19 +95,21 @@ class Session:
                 if wanted is not None and not isinstance(wanted, Command):
                     raise TypeError(f"the callback must return a Command or None, not {type(wanted).__name__}")
                 self.command = self.command if wanted is None else wanted
-            state = step(self.simulation, frame.state, {self.simulation.robots[0].name: self.command}, tick)
+            state = step(self.simulation, frame.state, {self.simulation.robots[0].name: self.command})
             self._append(state, frame.scans)
+        return until_ns
 
     def recording(self) -> Recording:
         """Return the run so far as a recording, to be plotted, saved or replayed."""
         return self._recorder.recording()
 
     def _append(self, state: State, scans: tuple[tuple[Scan, Pose] | None, ...]) -> None:
-        if self._times:
+        first = not self._times
+        if not first:
             self._recorder.append(state, {self.simulation.robots[0].name: self.command})
         fresh = list(scans)
         for index, spec in enumerate(self.simulation.robots):
-            if spec.lidar is not None and _due(state, spec.lidar.rate, self.simulation.tick):
+            if spec.lidar is not None and (first or due(self._times[-1], state.time_ns, spec.lidar.rate)):
                 scan = observe(self.simulation, state, spec.name)
                 self._recorder.scan(scan, spec.name)
                 if scan is not None:
@@ -146,8 +152,9 @@ class Replay:
     def drive(self, command: Command) -> None:
         """Do nothing: what has happened can't be steered."""
 
-    def advance(self, until_ns: int) -> None:
-        """Do nothing: there is no more to come."""
+    def advance(self, until_ns: int) -> int:
+        """Return the instant to be shown: `until_ns`, or the end of the recording if that is earlier."""
+        return min(until_ns, self.end_ns)
 
     def recording(self) -> Recording:
         """Return the recording."""
@@ -172,13 +179,6 @@ class Replay:
             range_max=lidar.range_max,
         )
         return scan, Pose(*self._recording.poses[int(log.rows[number]), index].tolist())
-
-
-def _due(state: State, rate: float, tick: float) -> bool:
-    """Say whether a lidar of `rate` scans a second finishes a turn in the tick that ends at `state`."""
-    turns = state.time_ns * 1e-9 * rate
-    before = (state.time_ns * 1e-9 - tick) * rate
-    return state.time_ns == 0 or int(turns + 1e-9) > int(before + 1e-9)
 
 
 def _is_new(frame: Frame) -> bool:

@@ -1,0 +1,173 @@
+"""The node `simulator`: a robot, or several, as a lidar driver and a motor driver would show them to ROS.
+
+Simulated time follows real time by the factor `speed`. It is counted in whole ticks: what is published depends on the
+commands and the seed, and not on when the timer fires.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import rclpy
+from geometry_msgs.msg import Twist, TwistStamped
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.exceptions import ParameterException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock as ClockMessage
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import SetBool, Trigger
+
+from sim.bridge.driver import Driver, Sent
+from sim.bridge.messages import clock_to_msg, odom_to_msg, scan_to_msg, twist_to_command
+from sim.bridge.settings import declare, simulation_of
+from sim.exceptions import SimError
+
+PERIOD = 0.01
+"""Seconds of real time between two looks at the clock."""
+
+LONGEST_LEAP = 0.25
+"""Seconds of real time made up for at once. A machine that sleeps must not make the robot leap."""
+
+CLOCK_QOS = QoSProfile(depth=1, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
+"""Reliable, so that it matches every subscription; one deep, for only the newest time is worth having."""
+
+
+class SimulatorNode(Node):
+    """Publishes `scan`, `odom` and `/clock`, obeys `cmd_vel`; services `~/pause`, `~/step`, `~/reset`."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("simulator", **kwargs)
+        values = declare(self)
+        self._driver = Driver(simulation_of(values), odometry_rate=values["odometry_rate"])
+        self._driver.warm_up()
+        self._speed = float(values["speed"])
+        self._step_time = float(values["step_time"])
+        self._paused = bool(values["start_paused"])
+        self._behind = 0.0
+
+        self._clock_publisher = self.create_publisher(ClockMessage, "/clock", CLOCK_QOS)
+        self._scans: dict[str, Any] = {}
+        self._odometry: dict[str, Any] = {}
+        twist = TwistStamped if values["stamped_cmd_vel"] else Twist
+        for spec in self._driver.simulation.robots:
+            prefix = f"{spec.namespace}/" if spec.namespace else ""
+            self._scans[spec.name] = self.create_publisher(LaserScan, f"{prefix}scan", qos_profile_sensor_data)
+            self._odometry[spec.name] = self.create_publisher(Odometry, f"{prefix}odom", 10)
+            self.create_subscription(twist, f"{prefix}cmd_vel", self._listener(spec.name), 10)
+        self._prefixes = {
+            spec.name: f"{spec.namespace}/" if spec.namespace else "" for spec in self._driver.simulation.robots
+        }
+
+        self.create_service(SetBool, "~/pause", self._on_pause)
+        self.create_service(Trigger, "~/step", self._on_step)
+        self.create_service(Trigger, "~/reset", self._on_reset)
+        self.add_post_set_parameters_callback(self._on_parameters)
+        self.create_timer(PERIOD, self._on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        world = self._driver.simulation.world
+        self._last = time.monotonic()
+        self.get_logger().info(f"world {world.name!r}, {len(self._scans)} robot(s), speed {self._speed:g}")
+
+    @property
+    def driver(self) -> Driver:
+        """The run behind the topics; to look at, not to step."""
+        return self._driver
+
+    @property
+    def paused(self) -> bool:
+        """Whether simulated time stands still."""
+        return self._paused
+
+    def _listener(self, robot: str) -> Any:
+        def on_command(message: Any) -> None:
+            try:
+                self._driver.command(robot, twist_to_command(message))
+            except ValueError as error:
+                self.get_logger().warning(f"{robot}: {error}", throttle_duration_sec=1.0)
+
+        return on_command
+
+    def _on_timer(self) -> None:
+        now = time.monotonic()
+        passed, self._last = now - self._last, now
+        if self._paused:
+            return
+        if passed > LONGEST_LEAP:
+            self.get_logger().warning("this machine can't keep up: lower 'speed'", throttle_duration_sec=5.0)
+            passed = LONGEST_LEAP
+        self._behind += passed * self._speed
+        ticks = self._driver.ticks(self._behind)
+        self._behind -= ticks * self._driver.simulation.tick
+        self._advance(ticks)
+
+    def _advance(self, ticks: int) -> None:
+        for sent in self._driver.run(ticks):
+            self._publish(sent)
+
+    def _publish(self, sent: Sent) -> None:
+        """Send the clock first: whoever gets the data then knows a time that is not before its stamp."""
+        time_ns = sent.state.time_ns
+        self._clock_publisher.publish(clock_to_msg(time_ns))
+        for robot in sent.state.robots:
+            prefix = self._prefixes[robot.name]
+            if robot.name in sent.odometry:
+                self._odometry[robot.name].publish(odom_to_msg(robot, time_ns, f"{prefix}odom", f"{prefix}base_link"))
+            scan = sent.scans.get(robot.name)
+            if scan is not None:
+                self._scans[robot.name].publish(scan_to_msg(scan, f"{prefix}{scan.frame_id}"))
+        for event in sent.state.events:
+            self.get_logger().warning(f"{event.robot}: {event.kind}, {event.what}", throttle_duration_sec=1.0)
+
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._paused = request.data
+        response.success = True
+        response.message = f"{'paused' if self._paused else 'running'} at {self._now():.3f} s"
+        return response
+
+    def _on_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._paused = True
+        self._advance(max(1, self._driver.ticks(self._step_time)))
+        response.success = True
+        response.message = f"paused at {self._now():.3f} s"
+        return response
+
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._driver.reset()
+        self._behind = 0.0
+        response.success = True
+        response.message = f"back at {self._now():.3f} s"
+        return response
+
+    def _now(self) -> float:
+        return self._driver.state.time_ns / 1e9
+
+    def _on_parameters(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == "speed":
+                self._speed = float(parameter.value)
+            elif parameter.name == "step_time":
+                self._step_time = float(parameter.value)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until Ctrl-C or SIGTERM; return 0, or 1 for settings that make no sense."""
+    rclpy.init(args=args)
+    node = None
+    try:
+        node = SimulatorNode()
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (SimError, ParameterException) as error:
+        rclpy.logging.get_logger("simulator").fatal(str(error))
+        return 1
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
