@@ -60,7 +60,7 @@ COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.
 	--no-emit-index-url --no-annotate --no-header pyproject.toml
 lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upgrade for newer versions)
 	@$(PYTHON) -m venv .build/lock
-	@.build/lock/bin/pip install --quiet uv
+	@.build/lock/bin/pip install -qq uv
 	$(COMPILE) $(LOCK_ARGS) -o requirements.lock
 	$(COMPILE) $(LOCK_ARGS) --all-extras -c requirements.lock -o requirements-dev.lock
 

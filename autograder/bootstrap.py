@@ -57,7 +57,7 @@ class Interpreter:
     @classmethod
     def running(cls) -> Interpreter:
         """Describe the interpreter that runs this, or the one under it when that is a virtual environment's."""
-        executable = getattr(sys, "_base_executable", None) or sys.executable
+        executable = os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)
         return cls(executable, sys.version_info[:2], sys.version, str(sysconfig.get_config_var("EXT_SUFFIX")))
 
 

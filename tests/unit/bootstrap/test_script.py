@@ -23,6 +23,16 @@ def test_the_running_interpreter_is_the_one_under_the_virtual_environment() -> N
     assert done.stdout.split() == ["True", interpreter.suffix]
 
 
+def test_an_activated_environment_is_set_up_by_the_same_interpreter_as_before() -> None:
+    code = "from autograder.bootstrap import Interpreter; print(Interpreter.running())"
+    commands = [Interpreter.running().executable, sys.executable, f"{sys.prefix}/bin/python3"]
+    told = {
+        subprocess.run([command, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60).stdout
+        for command in commands
+    }
+    assert told == {f"{Interpreter.running()}\n"}
+
+
 def script(root: Path, *arguments: str, **environ: str) -> subprocess.CompletedProcess[str]:
     """Run a clone's bootstrap as the Makefile does."""
     command = [Interpreter.running().executable, "-I", str(root / "autograder/bootstrap.py"), *arguments]
