@@ -1,4 +1,31 @@
 """The simulator as a ROS 2 robot: `/scan`, `/odom` and `/clock` out, `/cmd_vel` in.
 
-`sim.bridge.messages` holds the pure conversions. Nothing here is imported by `import sim`.
+`sim.bridge.messages` holds the pure conversions, `sim.bridge.node` the node, `Bridge` runs it beside a notebook's own
+nodes. `import sim.bridge` alone imports no ROS; `Bridge` switches ROS on first, where `autograder` is there to do it.
 """
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim.bridge.background import Bridge
+
+__all__ = ["Bridge", "activate"]
+
+
+def activate() -> None:
+    """Make rclpy importable in this process; a machine with a sourced ROS needs nothing."""
+    try:
+        from autograder.ros import activate as switch_on
+    except ModuleNotFoundError:  # the simulator alone: the shell has sourced ROS, or rclpy says what is missing
+        return
+    switch_on()
+
+
+def __getattr__(name: str) -> Any:
+    """Import the node, and rclpy with it, only for those who ask for it."""
+    if name == "Bridge":
+        from importlib import import_module
+
+        activate()
+        return import_module("sim.bridge.background").Bridge
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

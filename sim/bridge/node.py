@@ -123,28 +123,36 @@ class SimulatorNode(Node):
         for event in sent.state.events:
             self.get_logger().warning(f"{event.robot}: {event.kind}, {event.what}", throttle_duration_sec=1.0)
 
-    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        self._paused = request.data
-        response.success = True
-        response.message = f"{'paused' if self._paused else 'running'} at {self._now():.3f} s"
-        return response
+    def pause(self, paused: bool) -> None:
+        """Let simulated time stand still, or go on."""
+        self._paused = paused
 
-    def _on_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def step(self, seconds: float) -> None:
+        """Pause, and go on by `seconds` of simulated time, at least by one tick."""
         self._paused = True
-        self._advance(max(1, self._driver.ticks(self._step_time)))
-        response.success = True
-        response.message = f"paused at {self._now():.3f} s"
-        return response
+        self._advance(max(1, self._driver.ticks(seconds)))
 
-    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def reset(self) -> None:
+        """Go back to the start."""
         self._driver.reset()
         self._behind = 0.0
-        response.success = True
-        response.message = f"back at {self._now():.3f} s"
-        return response
 
-    def _now(self) -> float:
-        return self._driver.state.time_ns / 1e9
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self.pause(request.data)
+        return self._answer(response, "paused" if self._paused else "running")
+
+    def _on_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self.step(self._step_time)
+        return self._answer(response, "paused")
+
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self.reset()
+        return self._answer(response, "reset")
+
+    def _answer(self, response: Any, what: str) -> Any:
+        response.success = True
+        response.message = f"{what} at {self._driver.state.time_ns / 1e9:.3f} s"
+        return response
 
     def _on_parameters(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:

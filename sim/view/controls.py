@@ -10,6 +10,7 @@ from sim.pose import Command
 
 if TYPE_CHECKING:
     from sim.view.player import LiveView
+    from sim.view.session import Source
 
 LINEAR, ANGULAR = 0.22, 0.9
 """What an arrow of the pad asks for, in m/s and rad/s."""
@@ -17,10 +18,13 @@ LINEAR, ANGULAR = 0.22, 0.9
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
 
 
+_SOMEBODY = "your code drives"
+
+
 class Controls:
     """One image, a row to play with time, a pad to drive, and a place for errors."""
 
-    def __init__(self, view: LiveView, *, growing: bool, has_callback: bool, speed: float) -> None:
+    def __init__(self, view: LiveView, source: Source, speed: float) -> None:
         self._view = view
         self._quiet = False
         self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"})
@@ -47,11 +51,13 @@ class Controls:
         self._speed.observe(lambda change: view.set_speed(change["new"]), "value")
         step = self._button("step-forward", "One step of 0.1 s", lambda: view.step())
         reset = self._button("fast-backward", "Back to the start", view.reset)
-        time_row = [self._play, step, *([reset] if growing else []), self._slider, self._speed]
+        time_row = [self._play, step, *([reset] if source.growing else []), self._slider]
+        if source.paced:
+            time_row.append(self._speed)
         timing = widgets.HBox(time_row, layout={"max_width": "980px", "align_items": "center"})
         rows: list[Any] = [timing, self._output, self._image]
-        if growing:
-            rows.append(self._pad(has_callback))
+        if source.growing:
+            rows.append(self._pad(source.can_be_released))
         self.box = widgets.VBox(rows)
 
     def show(self, jpeg: bytes, now: float, end: float) -> None:
@@ -78,7 +84,7 @@ class Controls:
     def set_command(self, command: Command | None) -> None:
         """Say who drives: a command given by hand, or None for the callback."""
         if command is None:
-            self._who.value = "your callback drives"
+            self._who.value = _SOMEBODY
         else:
             self._who.value = f"{command.linear:+.2f} m/s  {command.angular:+.2f} rad/s"
 
@@ -90,8 +96,8 @@ class Controls:
         """Take the error away."""
         self._output.outputs = ()
 
-    def _pad(self, has_callback: bool) -> widgets.Widget:
-        self._who = widgets.Label(value="your callback drives" if has_callback else "drive with the arrows")
+    def _pad(self, releases: bool) -> widgets.Widget:
+        self._who = widgets.Label(value=_SOMEBODY if releases else "drive with the arrows")
         drive = self._view.drive
         buttons = [
             self._button("rotate-left", "Turn left", lambda: drive(Command(0.0, ANGULAR))),
@@ -100,8 +106,8 @@ class Controls:
             self._button("rotate-right", "Turn right", lambda: drive(Command(0.0, -ANGULAR))),
             self._button("stop", "Stop the robot", lambda: drive(Command())),
         ]
-        if has_callback:
-            buttons.append(self._button("magic", "Let the callback drive", self._view.automatic))
+        if releases:
+            buttons.append(self._button("magic", "Let your code drive", self._view.automatic))
         return widgets.HBox([*buttons, self._who], layout={"align_items": "center"})
 
     def _button(self, icon: str, tooltip: str, action: Any) -> widgets.Button:

@@ -14,7 +14,7 @@ import os
 import time
 import traceback
 from collections import deque
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
@@ -25,9 +25,13 @@ from sim.view.controls import Controls
 from sim.view.figures import plot, show
 from sim.view.picture import Picture
 from sim.view.renderer import Renderer
-from sim.view.session import Controller, Replay, Session
+from sim.view.session import Controller, Replay, Session, Source
 from sim.view.theme import Theme, theme_named
+from sim.view.watch import Watch
 from sim.world import World
+
+if TYPE_CHECKING:
+    from sim.bridge.background import Bridge
 
 GRADING = "AUTOGRADER_GRADING"
 """The environment variable whose presence says that nobody is looking."""
@@ -40,7 +44,7 @@ LONGEST_LEAP = 0.1
 
 
 def live(
-    source: World | Simulation | Recording,
+    source: World | Simulation | Recording | Bridge,
     controller: Controller | None = None,
     *,
     speed: float = 1.0,
@@ -48,7 +52,7 @@ def live(
     names: bool = False,
     play: bool = True,
 ) -> LiveView | Picture:
-    """Show a world, a simulation or a recording that moves, with buttons to play, pause, step, seek and drive.
+    """Show a world, a simulation, a recording or a ROS bridge that moves, with buttons to play, pause, seek and drive.
 
     `controller` gets each new scan of the first robot and returns a `Command` (or None: as before); without one the
     robot obeys the pad. `speed` is simulated seconds a second. Whatever `controller` raises pauses the view and is
@@ -62,12 +66,7 @@ def live(
     colours = theme_named(theme)
     if GRADING in os.environ:
         return _still(source, colours)
-    session: Session | Replay
-    if isinstance(source, Recording):
-        session = Replay(source)
-    else:
-        session = Session(source if isinstance(source, Simulation) else Simulation(source), controller)
-    view = LiveView(session, colours, speed=speed, names=names)
+    view = LiveView(_playable(source, controller), colours, speed=speed, names=names)
     if play:
         view.play()
     return view
@@ -76,14 +75,14 @@ def live(
 class LiveView:
     """What `live` returns: shows itself in a notebook; its methods do what its buttons do."""
 
-    def __init__(self, session: Session | Replay, theme: Theme, *, speed: float = 1.0, names: bool = False) -> None:
-        self._session = session
-        self._renderer = Renderer(session.simulation, theme, names=names)
+    def __init__(self, source: Source, theme: Theme, *, speed: float = 1.0, names: bool = False) -> None:
+        self._source = source
+        self._renderer = Renderer(source.simulation, theme, names=names)
         self._speed = speed
         self._now_ns = 0
         self._task: asyncio.Task[None] | None = None
         self._shown: deque[float] = deque(maxlen=60)
-        self._controls = Controls(self, growing=session.growing, has_callback=session.automatic, speed=speed)
+        self._controls = Controls(self, source, speed)
         self._render()
 
     @property
@@ -111,7 +110,7 @@ class LiveView:
     @property
     def recording(self) -> Recording:
         """The run so far, to be plotted, saved or replayed."""
-        return self._session.recording()
+        return self._source.recording()
 
     def play(self) -> None:
         """Let time go on, from the instant on show."""
@@ -122,9 +121,10 @@ class LiveView:
         except RuntimeError:  # a script without a loop: there is nothing that could show a second frame
             self._controls.set_playing(False)
             return
-        if not self._session.growing and self._now_ns >= self._session.end_ns:
+        if not self._source.growing and self._now_ns >= self._source.end_ns:
             self._now_ns = 0
         self._shown.clear()
+        self._source.hold(False)
         self._task = loop.create_task(self._run())
         self._controls.set_playing(True)
 
@@ -133,6 +133,7 @@ class LiveView:
         if self._task is not None:
             self._task.cancel()
             self._task = None
+        self._source.hold(True)
         self._controls.set_playing(False)
         self._render()
 
@@ -143,27 +144,26 @@ class LiveView:
 
     def seek(self, seconds: float) -> None:
         """Show the instant `seconds`, within what has been run so far."""
-        self._now_ns = min(max(0, round(seconds * 1e9)), self._session.end_ns)
+        self._now_ns = min(max(0, round(seconds * 1e9)), self._source.end_ns)
         self._render()
 
     def reset(self) -> None:
         """Go back to the start of the run and forget what came after."""
         self.pause()
-        self._session.reset()
+        self._source.reset()
         self._controls.clear_error()
         self._now_ns = 0
         self._render()
 
     def drive(self, command: Command) -> None:
         """Take the first robot over by hand; `command` holds until the next one."""
-        self._session.drive(command)
+        self._source.drive(command)
         self._controls.set_command(command)
 
     def automatic(self) -> None:
-        """Give the robot back to the callback."""
-        if isinstance(self._session, Session) and self._session.controller is not None:
-            self._session.automatic = True
-            self._controls.set_command(None)
+        """Give the robot back to the callback, or to the node that drives it over ROS."""
+        self._source.drive(None)
+        self._controls.set_command(None)
 
     def set_speed(self, speed: float) -> None:
         """Set how many simulated seconds pass in a second."""
@@ -184,34 +184,46 @@ class LiveView:
         """Move the instant on show by `by_ns`; say whether there is more to come."""
         wanted = self._now_ns + by_ns
         try:
-            self._now_ns = self._session.advance(wanted)
+            self._now_ns = self._source.advance(wanted)
         except Exception as error:  # the student's callback may raise anything; it belongs in the cell
-            self._now_ns = self._session.end_ns
+            self._now_ns = self._source.end_ns
             self._render()
             self._controls.show_error(_callback_traceback(error))
             return False
         self._render()
-        return self._session.growing or self._now_ns < self._session.end_ns
+        return self._source.growing or self._now_ns < self._source.end_ns
 
     def _render(self) -> None:
-        frame, trail = self._session.at(self._now_ns), self._session.trail(self._now_ns)
-        self._controls.show(self._renderer.jpeg(frame, trail), self._now_ns / 1e9, self._session.end_ns / 1e9)
+        frame, trail = self._source.at(self._now_ns), self._source.trail(self._now_ns)
+        self._controls.show(self._renderer.jpeg(frame, trail), self._now_ns / 1e9, self._source.end_ns / 1e9)
         self._shown.append(time.perf_counter())
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         return self._controls.box._repr_mimebundle_(**kwargs)
 
     def __repr__(self) -> str:
-        world = self._session.simulation.world.name
+        world = self._source.simulation.world.name
         return f"<live view of {world!r} at {self.time:.2f} s, {'playing' if self.playing else 'paused'}>"
 
 
-def _still(source: World | Simulation | Recording, theme: Theme) -> Picture:
+def _playable(source: World | Simulation | Recording | Bridge, controller: Controller | None) -> Source:
+    if isinstance(source, Recording):
+        return Replay(source)
+    if isinstance(source, Simulation):
+        return Session(source, controller)
+    if isinstance(source, World):
+        return Session(Simulation(source), controller)
+    return Watch(source)
+
+
+def _still(source: World | Simulation | Recording | Bridge, theme: Theme) -> Picture:
     if isinstance(source, Recording):
         return plot(source, theme=theme)
+    if isinstance(source, World):
+        return show(source, theme=theme)
     if isinstance(source, Simulation):
         return show(source, start(source), theme=theme)
-    return show(source, theme=theme)
+    return show(source.simulation, source.driver.state, theme=theme)
 
 
 def _callback_traceback(error: BaseException) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import bisect
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +39,54 @@ class Frame:
     scans: tuple[tuple[Scan, Pose] | None, ...]
 
 
+class Source(Protocol):
+    """What a live view can play. Times are in nanoseconds of simulated time."""
+
+    paced: bool
+    """Whether the view's speed is the run's speed."""
+
+    @property
+    def simulation(self) -> Simulation:
+        """What the run is made of."""
+
+    @property
+    def end_ns(self) -> int:
+        """How far the run has got."""
+
+    @property
+    def growing(self) -> bool:
+        """Whether there is more to come."""
+
+    @property
+    def can_be_released(self) -> bool:
+        """Whether somebody else drives when the pad does not."""
+
+    def at(self, time_ns: int) -> Frame:
+        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+
+    def trail(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
+
+    def advance(self, until_ns: int) -> int:
+        """Run up to `until_ns` and return the instant to be shown."""
+
+    def hold(self, paused: bool) -> None:
+        """Be told that the view has been paused, or plays again."""
+
+    def reset(self) -> None:
+        """Go back to the start and forget the past."""
+
+    def drive(self, command: Command | None) -> None:
+        """Drive the first robot by hand; None gives it back to whoever drove it before."""
+
+    def recording(self) -> Recording:
+        """Return the run so far as a recording, to be plotted, saved or replayed."""
+
+
 class Session:
     """A run in progress. `frames` is its past, one a physics tick, never empty."""
+
+    paced = True
 
     def __init__(self, simulation: Simulation, controller: Controller | None = None) -> None:
         self.simulation = simulation
@@ -67,6 +114,11 @@ class Session:
         """Whether `advance` can add to the run; a forgotten view must not fill the memory."""
         return self.end_ns < LONGEST_NS
 
+    @property
+    def can_be_released(self) -> bool:
+        """Whether there is a controller."""
+        return self.controller is not None
+
     def at(self, time_ns: int) -> Frame:
         """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
         return self.frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
@@ -76,10 +128,13 @@ class Session:
         count = bisect.bisect_right(self._times, time_ns)
         return np.array(self._track[: count : 1 + count // TRAIL], dtype=np.float64).reshape(-1, 2)
 
-    def drive(self, command: Command) -> None:
-        """Take the first robot over by hand, from the next tick on."""
-        self.automatic = False
-        self.command = command
+    def drive(self, command: Command | None) -> None:
+        """Take the first robot over by hand, from the next tick on; None gives it back to the controller."""
+        self.automatic = command is None
+        self.command = self.command if command is None else command
+
+    def hold(self, paused: bool) -> None:
+        """Do nothing: this run goes on only when it is told to."""
 
     def advance(self, until_ns: int) -> int:
         """Step the run until it has reached `until_ns`; what the controller raises is raised here.
@@ -122,11 +177,12 @@ class Session:
 class Replay:
     """A finished recording, played frame by frame."""
 
+    paced = True
     growing = False
+    can_be_released = False
 
     def __init__(self, recording: Recording) -> None:
         self.simulation = recording.simulation
-        self.automatic = False
         self._recording = recording
         self._times = recording.times_ns.tolist()
 
@@ -149,8 +205,11 @@ class Replay:
     def reset(self) -> None:
         """Do nothing: the past of a recording is fixed."""
 
-    def drive(self, command: Command) -> None:
+    def drive(self, command: Command | None) -> None:
         """Do nothing: what has happened can't be steered."""
+
+    def hold(self, paused: bool) -> None:
+        """Do nothing: this run goes on only when it is told to."""
 
     def advance(self, until_ns: int) -> int:
         """Return the instant to be shown: `until_ns`, or the end of the recording if that is earlier."""

@@ -1,0 +1,121 @@
+"""The bridge inside a notebook: the node on a thread of its own, with its own context, beside the student's node.
+
+    >>> with Bridge("assets/worlds/lab.yaml", speed=2.0) as bridge:
+    ...     view = live(bridge)
+
+Nothing of the caller's rclpy is touched: no default context, no signal handler.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+from sim.bridge.driver import Driver
+from sim.bridge.node import SimulatorNode
+from sim.simulation import Simulation
+
+PATIENCE = 10.0
+"""Seconds that a call waits for the node's thread."""
+
+
+class Bridge:
+    """A running simulator node. `settings` are the node's parameters by name, as in `sim.bridge.settings`.
+
+    Raises:
+        WorldError: for a world that can't be read.
+        SpecError: for settings that make no sense together.
+        rclpy.exceptions.ParameterException: for one out of range, or of the wrong type.
+    """
+
+    def __init__(self, world: str | Path, *, domain_id: int | None = None, **settings: Any) -> None:
+        overrides = [Parameter(name, value=value) for name, value in {"world": str(world), **settings}.items()]
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
+        try:
+            self._node = SimulatorNode(context=self._context, parameter_overrides=overrides)
+        except BaseException:
+            self._context.try_shutdown()
+            raise
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, name="simulator", daemon=True)
+        self._thread.start()
+
+    @property
+    def simulation(self) -> Simulation:
+        """What the run is made of."""
+        return self._node.driver.simulation
+
+    @property
+    def driver(self) -> Driver:
+        """The run; to look at, not to step."""
+        return self._node.driver
+
+    @property
+    def paused(self) -> bool:
+        """Whether simulated time stands still."""
+        return self._node.paused
+
+    @property
+    def running(self) -> bool:
+        """Whether the node is still there."""
+        return self._thread.is_alive()
+
+    def pause(self) -> None:
+        """Let simulated time stand still."""
+        self._on_thread(lambda: self._node.pause(True))
+
+    def resume(self) -> None:
+        """Let simulated time go on."""
+        self._on_thread(lambda: self._node.pause(False))
+
+    def step(self, seconds: float) -> None:
+        """Pause, and go on by `seconds` of simulated time."""
+        self._on_thread(lambda: self._node.step(seconds))
+
+    def reset(self) -> None:
+        """Go back to the start."""
+        self._on_thread(self._node.reset)
+
+    def stop(self) -> None:
+        """End the node and its thread. Safe to call twice."""
+        self._context.try_shutdown()
+        self._thread.join(PATIENCE)
+
+    def __enter__(self) -> Bridge:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, tb: TracebackType | None) -> None:
+        self.stop()
+
+    def _spin(self) -> None:
+        try:
+            self._executor.spin()
+        except ExternalShutdownException:
+            pass
+        finally:
+            self._executor.shutdown(timeout_sec=0.0)
+            self._node.destroy_node()
+
+    def _on_thread(self, action: Callable[[], Any]) -> None:
+        done = threading.Event()
+
+        def act() -> None:
+            try:
+                action()
+            finally:
+                done.set()
+
+        self._executor.create_task(act)
+        if not done.wait(PATIENCE):
+            raise TimeoutError(f"the simulator did not answer within {PATIENCE:.0f} s: has it been stopped?")
