@@ -24,7 +24,11 @@ NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".
 
 # Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
 # (colcon, CMake) are not the notebook's to answer for.
-STRICT = "import warnings\nwarnings.simplefilter('error')"
+STRICT = """import warnings
+warnings.simplefilter('error')
+# ipykernel's word about itself, when it shuts down; as an error it would keep the kernel from ending.
+warnings.filterwarnings('default', message='For consistency across implementations')
+"""
 
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
@@ -92,8 +96,12 @@ def _copy_of(folder: Path) -> Iterator[Path]:
 def _execute(notebook: NotebookNode, folder: Path, timeout: float) -> str | None:
     """Execute in place; return what went wrong, or None."""
     client = NotebookClient(
-        notebook, timeout=timeout, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+        notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
     )
+    # Sockets in a folder of ours: a port can be taken by somebody else between choosing and binding it.
+    manager = client.create_kernel_manager()
+    manager.transport = "ipc"
+    manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
     notebook.cells.insert(0, new_code_cell(STRICT))
     try:
         client.execute()

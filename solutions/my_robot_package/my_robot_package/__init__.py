@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The nodes of a small robot: one that drives by its lidar, one that reports its state."""
+"""The nodes of a small robot."""

@@ -36,6 +36,9 @@ def main(args=None):
         rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except RuntimeError:
+        if rclpy.ok():  # if not, a signal fell between two waits, and rclpy tripped over it
+            raise
     finally:
         if node is not None:
             node.destroy_node()
