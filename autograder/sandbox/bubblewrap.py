@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from autograder import layout
 from autograder.sandbox.limits import Limits
-from autograder.sandbox.spec import Sandbox
+from autograder.sandbox.spec import Mount, Sandbox
 
 # Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
+# Covered wherever a mount would show them: an installed course lies inside the Python that every sandbox sees.
+_PRIVATE = (layout.SUITES, layout.SOLUTIONS)
 
 
 def rlimits(limits: Limits) -> list[str]:
@@ -59,17 +62,21 @@ def sandbox(command: list[str], spec: Sandbox) -> list[str]:
         *("--hostname", "robot"),
         *_system(),
         *("--dev", "/dev", "--proc", "/proc"),
+        *("--size", str(spec.limits.scratch), "--tmpfs", "/dev/shm"),
         *("--size", str(spec.limits.scratch), "--tmpfs", "/tmp"),
     ]
-    for mount in (*python_mounts(), *spec.mounts):
-        path = str(getattr(mount, "path", mount))
-        arguments += ["--bind" if getattr(mount, "writable", False) else "--ro-bind", path, path]
-    for folder in spec.hidden:
-        arguments += ["--tmpfs", str(folder), "--remount-ro", str(folder)]
+    mounts = (*(Mount(folder) for folder in python_mounts()), *spec.mounts)
+    for mount in mounts:
+        arguments += ["--bind" if mount.writable else "--ro-bind", str(mount.path), str(mount.path)]
+    for folder in dict.fromkeys((*spec.hidden, *_PRIVATE)):
+        if folder.is_dir() and any(folder.is_relative_to(mount.path) for mount in mounts):
+            arguments += ["--tmpfs", str(folder), "--remount-ro", str(folder)]
+    # The root and /dev are file systems in memory, too, without a size.
+    arguments += ["--remount-ro", "/dev", "--remount-ro", "/"]
     for name, value in spec.environment.items():
         arguments += ["--setenv", name, value]
-    arguments += ["--chdir", str(spec.workdir), "--", *command]
-    return [*rlimits(spec.limits), *arguments]
+    # The limits are set inside: outside, the number of processes would count those of the whole machine's user.
+    return [*arguments, "--chdir", str(spec.workdir), "--", *rlimits(spec.limits), *command]
 
 
 def python_mounts() -> tuple[Path, ...]:

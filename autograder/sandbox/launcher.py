@@ -21,7 +21,11 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ())
     """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can."""
     if current_tier() is Tier.BUBBLEWRAP:
         return Process(
-            bubblewrap.sandbox(command, spec), spec.limits, environment={"PATH": os.defpath}, pass_fds=pass_fds
+            bubblewrap.sandbox(command, spec),
+            spec.limits,
+            environment={"PATH": os.defpath},
+            pass_fds=pass_fds,
+            contained=True,
         )
     return Process(
         [*bubblewrap.rlimits(spec.limits), *command],

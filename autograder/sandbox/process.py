@@ -6,6 +6,7 @@ import os
 import selectors
 import signal
 import subprocess
+import sys
 import threading
 import time
 from collections.abc import Mapping
@@ -40,12 +41,16 @@ class Tree:
     memory: int
 
 
-def measure(root: int) -> Tree:
-    """Measure the tree below `root`: process ids, threads, resident bytes. Processes that vanish are left out."""
+def measure(root: int, most: int = sys.maxsize) -> Tree:
+    """Measure the tree below `root`: process ids, threads, resident bytes.
+
+    Processes that vanish are left out. A tree of more than `most` threads is not measured to its end: a fork bomb grows
+    faster than it can be counted.
+    """
     pids: list[int] = []
     threads = memory = 0
     pending = [root]
-    while pending:
+    while pending and threads <= most:
         pid = pending.pop()
         folder = Path("/proc") / str(pid)
         try:
@@ -68,6 +73,14 @@ class Process:
     """A started command, watched by a thread of its own until it has ended.
 
     Use it as a context manager: leaving the block kills what is still alive.
+
+    Args:
+        command: what is run.
+        limits: what its tree may use.
+        environment: its environment variables; the present ones when not given.
+        pass_fds: descriptors that it inherits, beside its standard streams.
+        cwd: its working folder; the present one when not given.
+        contained: the end of the outermost process takes the whole tree with it, as in a pid namespace.
     """
 
     def __init__(
@@ -78,7 +91,9 @@ class Process:
         environment: Mapping[str, str] | None = None,
         pass_fds: tuple[int, ...] = (),
         cwd: Path | None = None,
+        contained: bool = False,
     ) -> None:
+        self._contained = contained
         self._limits = limits
         self._output = bytearray()
         self._ending: Ending | None = None
@@ -153,8 +168,9 @@ class Process:
     def _end(self, why: Ending) -> None:
         if self._ending is None and self._popen.poll() is None:
             self._ending = why
-        # In the bubblewrap tier the first kill takes the pid namespace with it; the rest serves the weaker tier.
-        for pid in reversed(measure(self._popen.pid).pids):
+        pids = measure(self._popen.pid, self._limits.threads).pids
+        # A parent that is dead leaves children that are found no more, so children first, unless they die with it.
+        for pid in pids if self._contained else reversed(pids):
             try:
                 os.kill(pid, signal.SIGKILL)
             except ProcessLookupError:
@@ -183,7 +199,7 @@ class Process:
                     self._end(Ending.WALL_TIME)
                 if now - measured > _MEASURE:
                     measured = now
-                    tree = measure(self._popen.pid)
+                    tree = measure(self._popen.pid, self._limits.threads)
                     if tree.memory > self._limits.memory:
                         self._end(Ending.MEMORY)
                     elif tree.threads > self._limits.threads:

@@ -23,7 +23,7 @@ class Sandbox:
 
     Attributes:
         mounts: beyond the read-only system and the Python that runs the grader.
-        hidden: folders inside a mount that are covered by an empty one.
+        hidden: folders inside a mount that are covered by an empty one; suites and solutions always are.
         workdir: the working folder; it must lie in a mount.
         environment: all environment variables that the code gets, nothing is inherited.
         network: True shares the cell's loopback (to meet the grader over DDS), False has none at all.
