@@ -67,6 +67,7 @@ def build(workspace: Workspace) -> Build:
         StudentError: it did not build; the detail holds the end of colcon's output.
     """
     started = time.monotonic()
+    packages = tuple(sorted(find_packages(workspace.root / "src")))
     colcon = str(Path(sys.executable).with_name("colcon"))
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
@@ -93,7 +94,31 @@ def build(workspace: Workspace) -> Build:
     log = tail(output, LOG_LINES)
     if ending is not Ending.EXITED or status != 0:
         raise StudentError(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), log))
-    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(find_packages(workspace.root / "src"))), log)
+    _require_contained(workspace.install)
+    return Build(True, round(time.monotonic() - started, 2), packages, log)
+
+
+def _require_contained(install: Path) -> None:
+    """See that no link leads out of the install space: it is mounted for nodes, and a mount would follow the link.
+
+    Raises:
+        StudentError: one does, or the folders are nested too deep to look at.
+    """
+    pending = [install]
+    while pending:
+        path = pending.pop()
+        try:
+            inside = path.resolve().is_relative_to(install.parent.resolve() / install.name)
+            children = [] if path.is_symlink() or not path.is_dir() else list(path.iterdir())
+        except (OSError, RuntimeError):  # a name too long, a loop of links
+            inside, children = False, []
+        if not inside:
+            sentence = (
+                f"The build left {str(path.relative_to(install.parent))[:200]}, which leads out of the install space: "
+                "setup.py and CMakeLists.txt must install files, not links to other places."
+            )
+            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
+        pending += children
 
 
 def _missing(source: Path, name: str, found: dict[str, Path]) -> str:

@@ -14,10 +14,13 @@ from nbformat import NotebookNode
 import autograder
 import sim
 from autograder import layout
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
 from autograder.grading import hygiene
 from autograder.grading.hygiene import STUB
 from autograder.grading.kernel import SandboxedKernelManager
 from autograder.lab.workspace import Workspace
+from autograder.lockstep.failures import tail
 from autograder.sandbox import Mount, Sandbox
 from autograder.sandbox.limits import KERNEL
 
@@ -38,14 +41,16 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
         out: where the executed notebook is written.
 
     Raises:
-        StudentError: what was handed in is no notebook.
+        StudentError: what was handed in is no notebook, or keeps its kernel from starting.
     """
     source = nbformat.read(original, as_version=4)
     notebook = hygiene.restore(hygiene.read(submitted, original.name), source)
     nbformat.write(execute(notebook, folder, workspace), out)
 
 
-def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:
+def execute(
+    notebook: NotebookNode, folder: Path, workspace: Workspace, *, cell_seconds: int = CELL_SECONDS
+) -> NotebookNode:
     """Run a notebook in `folder`, in a sandboxed kernel; its outputs are filled in, in place.
 
     A cell that raises does not stop the run; a kernel that dies does, and the files written so far count.
@@ -54,16 +59,24 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
         notebook: after hygiene.
         folder: the assignment's folder, with `ws/` in it; the notebook may write there.
         workspace: says which ROS 2 and which scratch folder are used.
+        cell_seconds: how long one cell may run; one that takes longer ends the run.
+
+    Raises:
+        StudentError: something of the submission keeps the kernel from starting.
     """
     connections = workspace.scratch / "jupyter"
     connections.mkdir(exist_ok=True)
     manager = SandboxedKernelManager(_sandbox(folder, workspace), connections)
     skipped = {index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)}
-    client = _Client(notebook, km=manager, timeout=CELL_SECONDS, allow_errors=True, skipped=skipped)
+    client = _Client(notebook, km=manager, timeout=cell_seconds, allow_errors=True, skipped=skipped)
     try:
         client.execute()
     except (DeadKernelError, CellTimeoutError):
         return notebook
+    except RuntimeError as error:  # what nbclient raises when the kernel does not come up
+        raise _no_kernel(manager, error) from error
+    finally:
+        manager.end()
     return notebook
 
 
@@ -87,6 +100,18 @@ class _Client(NotebookClient):
             manager.provisioner.process.kill()
             return None
         return super().process_message(msg, cell, cell_index)
+
+
+def _no_kernel(manager: SandboxedKernelManager, error: RuntimeError) -> Exception:
+    """Tell a kernel that died while it started, which a submitted file can do, from one that was never heard."""
+    process = manager.process
+    if process is None or process.ending is None:
+        return GraderError(f"the sandboxed kernel did not answer: {error}")
+    sentence = (
+        "The notebook's kernel could not start: a file beside the notebook, such as random.py or sitecustomize.py, "
+        "stands in the way of a module of the same name. Rename or remove it."
+    )
+    return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output)))
 
 
 def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:

@@ -21,6 +21,7 @@ class SandboxedProvisioner(KernelProvisionerBase):
 
     sandbox: Sandbox | None = None
     process: Process | None = None
+    started: Process | None = None  # kept when Jupyter forgets the process
 
     @property
     def has_process(self) -> bool:
@@ -52,7 +53,7 @@ class SandboxedProvisioner(KernelProvisionerBase):
 
     async def launch_kernel(self, cmd: list[str], **kwargs: Any) -> Any:
         assert self.sandbox is not None
-        self.process = launch(cmd, self.sandbox)
+        self.process = self.started = launch(cmd, self.sandbox)
         return self.connection_info
 
     async def pre_launch(self, **kwargs: Any) -> dict[str, Any]:
@@ -85,3 +86,13 @@ class SandboxedKernelManager(AsyncKernelManager):
         )
         self.provisioner = SandboxedProvisioner(kernel_id="student", kernel_spec=self.kernel_spec, parent=self)
         self.provisioner.sandbox = sandbox
+
+    @property
+    def process(self) -> Process | None:
+        """The kernel's process, from its start on."""
+        return self.provisioner.started  # type: ignore[no-any-return]
+
+    def end(self) -> None:
+        """Leave nothing of the kernel alive, whatever Jupyter believes of it."""
+        if self.process is not None:
+            self.process.kill()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -22,6 +23,7 @@ from autograder.checks import Outcome
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
 from autograder.grading.gallery import Gallery
+from autograder.grading.intake import lay_down
 from autograder.grading.job import Job
 from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
@@ -46,7 +48,7 @@ class Grading:
         home.mkdir(parents=True)
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.tier is Tier.BUBBLEWRAP else 1 + os.getpid() % 100
-        self._workspace = Workspace(self._folder / "ws", activate(), home, domain=domain)
+        self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._gallery = Gallery(job.out)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
@@ -90,20 +92,29 @@ class Grading:
         with self._phase("intake"):
             submission = intake.take(self._job.path, self._job.assignment)
             self._sha256 = submission.sha256
-            intake.lay_down(submission.extra, self._folder)
-            source = self._workspace.root / "src"
-            source.mkdir(parents=True)
-            intake.lay_down(submission.source, source)
+            packages = submission.source
         if submission.notebook is not None:
             with self._phase("notebook"):
-                self._give(source)
                 from autograder.grading import extract  # Jupyter is slow to import, and not every submission needs it
 
+                lay_down(submission.extra, self._folder)
+                lay_down(packages, self._folder / "ws" / "src")
+                self._give(self._folder / "ws" / "src")
                 original = layout.source_notebook(self._job.assignment)
                 extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
+                # The notebook could write to all of this, links and devices too. Only plain files of it go on.
+                packages = intake.take_source(self._folder / "ws")
+                self._clear()
+        source = self._workspace.root / "src"
+        lay_down(packages, source)
         with self._phase("build"):
             build.require_packages(source, self._suite.packages)
             self._build = build.build(self._workspace)
+
+    def _clear(self) -> None:
+        """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""
+        subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
+        self._workspace.scratch.mkdir()
 
     def _give(self, source: Path) -> None:
         """Lay down the packages that the chapter gives and the submission does not bring."""
