@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 RESULT = "result.json"
+LOG = "grader.log"
 NOTEBOOK = "notebook.ipynb"
 TRIES = 2
 
@@ -51,7 +52,7 @@ def grade_submission(
         assignment: which assignment it answers.
         student: whose it is; stands in the result only.
         seed: every hidden input is drawn from it; the same seed gives the same inputs.
-        out: the folder that gets `result.json` and the pictures.
+        out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed.
         isolation: the sandbox's tier.
 
     Returns:
@@ -65,7 +66,7 @@ def grade_submission(
     if not path.exists():
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)
-    for stale in (RESULT, NOTEBOOK):
+    for stale in (RESULT, NOTEBOOK, LOG):
         (out / stale).unlink(missing_ok=True)
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
@@ -76,7 +77,9 @@ def grade_submission(
         if report.returncode == 0 and (out / RESULT).is_file():
             result = from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
             return Graded(result, _notebook(out / NOTEBOOK))
-    result = _not_graded(suite, path, student, seed, isolation, report)
+    # Never part of the result: its traceback may quote a hidden check, and results become feedback.
+    (out / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
+    result = _not_graded(suite, student, seed, isolation)
     write_json(out / RESULT, result.to_json())
     return Graded(result, None)
 
@@ -93,11 +96,10 @@ def _notebook(path: Path) -> NotebookNode | None:
     return nbformat.read(path, as_version=4)
 
 
-def _not_graded(
-    suite: suites.Suite, path: Path, student: str, seed: int, isolation: Tier, report: CellReport
-) -> Result:
+def _not_graded(suite: suites.Suite, student: str, seed: int, isolation: Tier) -> Result:
     sentence = (
-        f"The grader failed on this submission, {TRIES} times. This is no zero: an instructor has to grade it again."
+        f"The grader failed on this submission, {TRIES} times. This is no zero: an instructor has to grade it again. "
+        f"{LOG}, beside the result, says what happened."
     )
     return Result(
         assignment=suite.assignment,
@@ -111,5 +113,5 @@ def _not_graded(
         started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
         seconds=0.0,
         status=Status.NOT_GRADED,
-        diagnosis=Diagnosis(Kind.NOT_GRADED, sentence, "\n".join(report.output.strip().splitlines()[-40:])),
+        diagnosis=Diagnosis(Kind.NOT_GRADED, sentence),
     )
