@@ -8,9 +8,11 @@ counts and depths are bounded; `build`, `install` and `log` are never looked at.
 from __future__ import annotations
 
 import hashlib
+import lzma
 import os
 import stat
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -22,9 +24,23 @@ MAX_FILES = 2000
 MAX_FILE = 16 * 1024 * 1024
 MAX_TOTAL = 64 * 1024 * 1024
 MAX_DEPTH = 16
-MAX_NAME = 200
-IGNORED = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".git", ".pytest_cache"})
+MAX_NAME = 200  # bytes of a path; file systems take 255 for each part of one
+IGNORED = frozenset(
+    {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".git", ".pytest_cache", "__MACOSX"}
+)
 _EXECUTABLE = 0o100
+# What `zipfile` lets out when an archive is damaged, encrypted or packed in a way that it does not know.
+_DAMAGED = (
+    zipfile.BadZipFile,
+    zipfile.LargeZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    NotImplementedError,
+    EOFError,
+    OSError,
+    RuntimeError,
+    ValueError,
+)
 
 
 @dataclass(frozen=True)
@@ -51,6 +67,23 @@ class Submission:
     source: tuple[Entry, ...]
     extra: tuple[Entry, ...]
     sha256: str
+
+
+def take_source(root: Path) -> tuple[Entry, ...]:
+    """Read the packages of a workspace, `root`/src, that student's code has written to.
+
+    Raises:
+        StudentError: `src` is no folder, or holds what a submission may not hold.
+    """
+    for folder in (root, root / "src"):
+        try:
+            mode = folder.lstat().st_mode
+        except OSError:
+            mode = 0
+        if not stat.S_ISDIR(mode):
+            sentence = "After the notebook has run there is no folder ws/src: create your package there."
+            raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
+    return tuple(_from_folder(root / "src", _Budget()))
 
 
 def take(path: Path, assignment: str) -> Submission:
@@ -82,19 +115,19 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
     for entry in sorted(entries, key=lambda entry: str(entry.path)):
         digest.update(f"{entry.path}\0{len(entry.data)}\0".encode(errors="surrogatepass"))
         digest.update(entry.data)
+    _require_tree(entries)
     root = _root(entries, assignment)
     inside = [
         Entry(entry.path.relative_to(root), entry.data, entry.executable) for entry in entries if _below(entry, root)
     ]
     notebook = next((entry.data for entry in inside if str(entry.path) == f"{assignment}.ipynb"), None)
+    workspace = PurePosixPath("ws/src")
+    home = workspace if any(_below(entry, workspace) for entry in inside) else PurePosixPath("src")
     source, extra = [], []
     for entry in inside:
-        parts = entry.path.parts
-        if parts[:2] == ("ws", "src") and len(parts) > 2:
-            source.append(Entry(PurePosixPath(*parts[2:]), entry.data, entry.executable))
-        elif parts[0] == "src" and len(parts) > 1:
-            source.append(Entry(PurePosixPath(*parts[1:]), entry.data, entry.executable))
-        elif parts[0] != "ws" and str(entry.path) != f"{assignment}.ipynb":
+        if _below(entry, home):
+            source.append(Entry(entry.path.relative_to(home), entry.data, entry.executable))
+        elif entry.path.parts[0] != "ws" and str(entry.path) != f"{assignment}.ipynb":
             extra.append(entry)
     if notebook is None and not source:
         sentence = (
@@ -106,7 +139,8 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
 
 
 def lay_down(entries: tuple[Entry, ...], folder: Path) -> None:
-    """Write files below `folder`."""
+    """Write files below `folder`, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
     for entry in entries:
         target = folder / entry.path
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -133,6 +167,14 @@ def _below(entry: Entry, root: PurePosixPath) -> bool:
     return entry.path.is_relative_to(root) and entry.path != root
 
 
+def _require_tree(entries: list[Entry]) -> None:
+    """Refuse what no file system holds: two files of one name, or a file that is a folder, too."""
+    files = {entry.path for entry in entries}
+    folders = {folder for path in files for folder in path.parents}
+    if len(files) < len(entries) or files & folders:
+        raise _unsafe("two things in it have the same name")
+
+
 class _Budget:
     """Counts bytes before they are read, so that nothing larger than allowed is ever in memory."""
 
@@ -142,8 +184,8 @@ class _Budget:
     def read(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> Entry:
         if len(path.parts) > MAX_DEPTH:
             raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
-        if len(str(path)) > MAX_NAME or "\0" in str(path):
-            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} characters, or no name")
+        if len(os.fsencode(path)) > MAX_NAME:
+            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} bytes")
         if size > MAX_FILE:
             raise _unsafe(f"{path} is larger than {MAX_FILE // 2**20} MiB")
         self._left -= size
@@ -183,26 +225,28 @@ def _walk(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
 
 
 def _from_zip(path: Path, budget: _Budget) -> list[Entry]:
+    if path.stat().st_size > MAX_TOTAL:
+        raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB")
     try:
         with zipfile.ZipFile(path) as archive:
             infos = archive.infolist()
             if len(infos) > MAX_FILES:
                 raise _unsafe(f"it holds more than {MAX_FILES} files and folders")
             return [entry for info in infos if (entry := _zip_entry(archive, info, budget)) is not None]
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, EOFError, RuntimeError, ValueError) as error:
+    except _DAMAGED as error:
         sentence = f"{path.name} is no folder, notebook or readable zip archive ({error}): hand in one of these."
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
 
 
 def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget) -> Entry | None:
     path = PurePosixPath(info.filename.replace("\\", "/"))
-    if path.is_absolute() or ".." in path.parts or ":" in path.parts[0:1]:
+    if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
         raise _unsafe(f"{info.filename} points outside the archive")
-    mode = info.external_attr >> 16
-    if mode and not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_IFMT(mode) == 0):
-        raise _unsafe(f"{info.filename} is no ordinary file")
     if info.is_dir() or IGNORED.intersection(path.parts):
         return None
+    mode = info.external_attr >> 16
+    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
+        raise _unsafe(f"{info.filename} is no ordinary file")
     return budget.read(path, info.file_size, lambda: _inflate(archive, info), bool(mode & _EXECUTABLE))
 
 
