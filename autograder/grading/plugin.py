@@ -95,6 +95,8 @@ class GradingPlugin:
 def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
     """Run a suite's modules under pytest with nothing of the machine's or the submission's configuration."""
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    for variable in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
+        os.environ.pop(variable, None)
     arguments = ["-p", "no:cacheprovider", "-p", "no:terminal", "-p", "no:faulthandler"]
     arguments += ["-c", "/dev/null", "--rootdir", str(files[0].parent), "--confcutdir", str(files[0].parent)]
     arguments += ["--import-mode=importlib", "-W", "default"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from geometry_msgs.msg import Twist
@@ -77,6 +78,8 @@ def expect_stop(commands: Sequence[Stamped], situation: str) -> None:
 def say(command: Twist) -> str:
     """Put a command into words."""
     linear, angular = command.linear.x, command.angular.z
+    if not (math.isfinite(linear) and math.isfinite(angular)):
+        return f"was told to move at {linear} m/s and {angular} rad/s"
     drive = f"drove {'forward' if linear > 0 else 'backward'} at {abs(linear):.2f} m/s" if linear else ""
     turn = f"turned {'left' if angular > 0 else 'right'} at {abs(angular):.2f} rad/s" if angular else ""
     return " and ".join(part for part in (drive, turn) if part) or "stood still"
@@ -87,6 +90,10 @@ def _expect(commands: Sequence[Stamped], linear: float, angular: float, situatio
     wrong = [
         stamped.message
         for stamped in commands
-        if abs(stamped.message.linear.x - linear) > TOLERANCE or abs(stamped.message.angular.z - angular) > TOLERANCE
+        if not (_near(stamped.message.linear.x, linear) and _near(stamped.message.angular.z, angular))
     ]
     expect(not wrong, f"{situation}, the robot {say(wrong[0]) if wrong else ''}: it should {wanted}.")
+
+
+def _near(value: float, wanted: float) -> bool:
+    return abs(value - wanted) <= TOLERANCE  # false for nan
