@@ -13,6 +13,7 @@ from autograder.cli.doctor import doctor
 from autograder.cli.export import export
 from autograder.cli.grade import grade
 from autograder.cli.notebooks import notebooks
+from autograder.cli.verify import verify
 from autograder.exceptions import AutograderError, UsageError
 
 
@@ -22,7 +23,7 @@ def group() -> None:
     """Checks and grades packages for ROS 2 Jazzy that students write in Python."""
 
 
-for verb in (check, demo, doctor, export, grade, notebooks):
+for verb in (check, demo, doctor, export, grade, notebooks, verify):
     group.add_command(verb)
 
 

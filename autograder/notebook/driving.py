@@ -65,7 +65,7 @@ class DriveReport:
         """The robot's track, with its first collision marked."""
         from sim.view import plot
 
-        note = "" if self.collided_at is None else f"collision at t = {self.collided_at:.1f} s"
+        note = "" if self.collided_at is None else "collision"
         return plot(self.recording, mark=self.collided_at, note=note)
 
     def __repr__(self) -> str:

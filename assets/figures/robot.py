@@ -1,0 +1,28 @@
+"""Makes robot.png, the README's picture: the reference controller drives a minute in the lab.
+
+.venv/bin/python assets/figures/robot.py
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from autograder.notebook import DriveReport, drive
+from autograder.suites.mutants import lay_down_reference
+
+OUT = Path(__file__).with_suffix(".png")
+
+
+def main() -> None:
+    """Drive, and save the picture of the track."""
+    with tempfile.TemporaryDirectory() as folder:
+        lay_down_reference(("my_robot_package",), Path(folder))
+        report = drive("my_robot_package", "robot_controller", "lab", 60.0, workspace=folder)
+    assert isinstance(report, DriveReport), report
+    print(report.picture.alt)
+    report.picture.save(OUT, dpi=110)
+
+
+if __name__ == "__main__":
+    main()
