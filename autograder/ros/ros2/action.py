@@ -16,7 +16,7 @@ from rclpy.action import (
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import filled
 from autograder.ros.ros2.parsing import Outcome, Verb
-from autograder.ros.ros2.session import Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
 _STATUS = {
     GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
@@ -61,7 +61,7 @@ def _info(args: argparse.Namespace) -> Outcome:
     with open_session(args) as session:
         name = graph.full_topic_name(session.node, args.action_name)
         session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
-        session.settle()
+        session.settle(longest=NAMED_QUIET)
         ends = [
             ("Action clients", _ends(session, name, get_action_client_names_and_types_by_node)),
             ("Action servers", _ends(session, name, get_action_server_names_and_types_by_node)),

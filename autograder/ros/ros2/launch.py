@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from autograder.ros.ros2 import packages
-from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, NotCoveredError, Ros2Error
+from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, Ros2Error
 from autograder.ros.ros2.parsing import Outcome, Verb
 
 _SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -65,7 +66,8 @@ def _run(args: argparse.Namespace) -> Outcome:
     if args.launch_prefix is not None:
         arguments["launch-prefix"] = args.launch_prefix
     if args.show_all_subprocesses_output:
-        raise NotCoveredError("`ros2 launch --show-all-subprocesses-output`")
+        # The switch that `launch` has for this.
+        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
     try:
         import launch
         from launch.launch_description_sources import AnyLaunchDescriptionSource

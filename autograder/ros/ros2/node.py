@@ -11,7 +11,7 @@ from rclpy.action import (
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.parsing import Outcome, Verb
-from autograder.ros.ros2.session import Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,7 +46,7 @@ def _info(args: argparse.Namespace) -> Outcome:
         wanted = graph.find_node(session, args.node_name)
         if wanted is None:
             return f"Unable to find node '{args.node_name}'"
-        session.settle()
+        session.settle(longest=NAMED_QUIET)
         same = graph.node_names(session, include_hidden=True).count(wanted)
         if same > 1:
             print(

@@ -146,7 +146,7 @@ PYTHON_TESTS = {
 import pytest
 
 
-# Take this mark away once every source file begins with a copyright notice and the licence's header.
+# Take this mark away once each source file begins with a copyright notice and a licence.
 @pytest.mark.skip(reason='The generated source files carry no copyright header yet.')
 @pytest.mark.copyright
 @pytest.mark.linter

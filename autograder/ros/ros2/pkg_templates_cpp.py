@@ -14,7 +14,7 @@ def cmakelists(spec: PackageSpec) -> str:
     tools = ["ament_cmake", *(["ament_cmake_ros"] if spec.library_name else [])]
     finds = "\n".join(f"find_package({name} REQUIRED)" for name in [*tools, *spec.dependencies])
     parts = [
-        f"""cmake_minimum_required(VERSION 3.8)
+        f"""cmake_minimum_required(VERSION 3.10)
 project({spec.name})
 
 if(CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES "Clang")

@@ -8,7 +8,7 @@ import time
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import filled
 from autograder.ros.ros2.parsing import Outcome, Verb, positive_float
-from autograder.ros.ros2.session import add_session_arguments, open_session
+from autograder.ros.ros2.session import NAMED_QUIET, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,7 +56,7 @@ def _info(args: argparse.Namespace) -> Outcome:
         types = graph.types_of_service(session, args.service_name)
         if not types:
             return f"Unknown service '{args.service_name}'"
-        session.settle()
+        session.settle(longest=NAMED_QUIET)
         print(f"Type: {types[0] if len(types) == 1 else types}")
         print(f"Clients count: {session.node.count_clients(args.service_name)}")
         print(f"Services count: {session.node.count_services(args.service_name)}")

@@ -29,8 +29,10 @@ NODE_NAME_PREFIX = "_ros2cli"
 # Seconds without a change after which the graph counts as discovered, and the most to wait for that.
 QUIET = 0.5
 LONGEST_SETTLING = 5.0
-# Seconds to wait for something that was named: a node, a topic's publisher.
+# Seconds to wait for something that was named, such as a node; once that is there, the rest of what belongs to it
+# follows soon, however long `--spin-time` is.
 NAMED = 3.0
+NAMED_QUIET = 2.0
 _STEP = 0.05
 
 
@@ -59,9 +61,9 @@ class Session:
             self.executor.spin_once(timeout_sec=min(_STEP, left))
         return True
 
-    def settle(self) -> None:
-        """Spin until the graph has not changed for `--spin-time` (0.5 s) seconds."""
-        quiet = QUIET if self.spin_time is None else self.spin_time
+    def settle(self, *, longest: float = math.inf) -> None:
+        """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `longest` if that is less."""
+        quiet = min(longest, QUIET if self.spin_time is None else self.spin_time)
         last = self._graph()
         changed = start = time.monotonic()
         while (now := time.monotonic()) - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet):

@@ -6,7 +6,7 @@ import argparse
 
 from autograder.ros.ros2 import graph, topic_echo, topic_pub, topic_rate
 from autograder.ros.ros2.parsing import Outcome, Verb
-from autograder.ros.ros2.session import Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +67,7 @@ def _info(args: argparse.Namespace) -> Outcome:
         types = graph.types_of_topic(session, args.topic_name)
         if not types:
             return f"Unknown topic '{args.topic_name}'"
-        session.settle()
+        session.settle(longest=NAMED_QUIET)
         end = "\n\n" if args.verbose else "\n"
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
         node = session.node

@@ -1,0 +1,111 @@
+"""The nodes that the `ros2` command is tried on: a talker, a helper with services, parameters and an action.
+
+Run as a script: prints `ready` once everything is up, and ends on SIGINT or SIGTERM.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import Any
+
+import rclpy
+from arena_interfaces.action import Count
+from geometry_msgs.msg import Twist
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+
+class Talker(Node):
+    def __init__(self) -> None:
+        super().__init__("talker")
+        self.count = 0
+        self.chatter = self.create_publisher(String, "chatter", 10)
+        self.scan = self.create_publisher(LaserScan, "scan", 10)
+        late = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_publisher(String, "robot_description", late).publish(String(data="a robot"))
+        self.create_publisher(String, "_hidden", 10)
+        self.create_timer(0.05, self.talk)
+
+    def talk(self) -> None:
+        self.count += 1
+        self.chatter.publish(String(data=f"hello {self.count}"))
+        self.scan.publish(LaserScan(ranges=[1.0] * 200, range_max=8.0))
+
+
+class Helper(Node):
+    def __init__(self) -> None:
+        super().__init__("helper", namespace="/lab")
+        limits = FloatingPointRange(from_value=0.0, to_value=2.0, step=0.5)
+        self.declare_parameter(
+            "speed", 1.0, ParameterDescriptor(description="How fast, in m/s", floating_point_range=[limits])
+        )
+        self.declare_parameter("ids", [1, 2, 3])
+        self.declare_parameter("filter.window", 5)
+        self.declare_parameter("frozen", "yes", ParameterDescriptor(read_only=True))
+        self.declare_parameter("anything", "old", ParameterDescriptor(dynamic_typing=True))
+        self.add_on_set_parameters_callback(self.judge)
+        self.create_subscription(Twist, "cmd_vel", lambda _: None, 10)
+        self.create_service(SetBool, "switch", self.switch)
+        self.server = ActionServer(
+            self,
+            Count,
+            "count",
+            self.execute,
+            goal_callback=lambda goal: GoalResponse.REJECT if goal.target < 0 else GoalResponse.ACCEPT,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+            callback_group=ReentrantCallbackGroup(),
+        )
+
+    def judge(self, parameters: list[Parameter]) -> SetParametersResult:
+        bad = [p.name for p in parameters if p.name == "filter.window" and p.value % 2 == 0]
+        return SetParametersResult(successful=not bad, reason="the window must be odd" if bad else "")
+
+    def switch(self, request: Any, response: Any) -> Any:
+        response.success, response.message = True, f"switched {'on' if request.data else 'off'}"
+        return response
+
+    def execute(self, goal: Any) -> Any:
+        """Count to the target; a target above 100 is never reached."""
+        pause = threading.Event()
+        total = 0
+        for now in range(1, goal.request.target + 1):
+            goal.publish_feedback(Count.Feedback(now=now))
+            total += now
+            while goal.request.target > 100 and not goal.is_cancel_requested:
+                pause.wait(0.01)
+            if goal.is_cancel_requested:
+                goal.canceled()
+                print("cancelled", flush=True)
+                return Count.Result(total=total)
+        goal.succeed()
+        return Count.Result(total=total)
+
+
+def main() -> None:
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    done = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: done.set())
+    executor = MultiThreadedExecutor(4)
+    nodes = [Talker(), Helper()]
+    for node in nodes:
+        executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
+    print("ready", flush=True)
+    done.wait()
+    executor.shutdown()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
