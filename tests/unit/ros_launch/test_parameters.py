@@ -276,7 +276,7 @@ def test_single_parameters_are_passed_for_the_named_node(run: Run) -> None:
     named, unnamed = Recorded(name="n", parameters=[Parameter("p", 1)]), Recorded(parameters=[Parameter("p", "x")])
     run(named, unnamed)
     assert named.words[-2:] == ["-p", "n:p:=1"]
-    assert unnamed.words[-2:] == ["-p", "p:=x"]
+    assert unnamed.words[-2:] == ["-p", "p:='x'"]
 
 
 def test_a_parameter_file_that_is_missing_is_warned_of_and_left_out(

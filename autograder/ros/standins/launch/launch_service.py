@@ -120,6 +120,9 @@ class LaunchService:
                             self._process(event)
                     except asyncio.CancelledError as error:
                         logger.error("run task was canceled")
+                        if canceled is not None or next_event.cancelled():
+                            # For the second time, or together with all other tasks: no time for good manners.
+                            raise
                         canceled = error
                         self._fail("run task was canceled")
                     except Exception as error:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import inspect
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -134,9 +133,9 @@ def launch_service(request: pytest.FixtureRequest) -> LaunchService:
 
 
 @pytest.fixture
-def launch_context(request: pytest.FixtureRequest) -> Iterator[LaunchContext]:
+def launch_context(request: pytest.FixtureRequest) -> LaunchContext:
     """The context of the launch of this test."""
-    yield _run_of(request).service.context
+    return _run_of(request).service.context
 
 
 @pytest.fixture

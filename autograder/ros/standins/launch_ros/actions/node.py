@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import yaml
 from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import ExecuteProcess
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
-from .._temporary import temporary_parameter_file
+from .._temporary import parameter_text, temporary_parameter_file
 from ..substitutions import ExecutableInPackage
 from ..utilities import evaluate_parameters, make_namespace_absolute, prefix_namespace
 
@@ -149,9 +148,7 @@ class Node(ExecuteProcess):
 
     def _parameter_file(self, parameters: dict[str, Any]) -> Path:
         key = self.node_name if self.is_node_name_fully_specified() else "/**"
-        return temporary_parameter_file(
-            yaml.safe_dump({key: {"ros__parameters": parameters}}, default_flow_style=False)
-        )
+        return temporary_parameter_file(parameter_text({key: {"ros__parameters": parameters}}))
 
     def _remap_arguments(self, context: LaunchContext) -> list[str]:
         rules = list(context.launch_configurations.get("ros_remaps", ()))
@@ -176,6 +173,5 @@ def _perform(context: LaunchContext, value: SomeSubstitutionsType) -> str:
 
 
 def _rule(name: str, value: Any) -> str:
-    """Return a parameter as an argument of ``-p``, its value as YAML on one line."""
-    text = yaml.safe_dump(value, default_flow_style=True, width=float("inf"))
-    return f"{name}:={text.removesuffix(chr(10)).removesuffix(chr(10) + '...')}"
+    """Return a parameter as an argument of ``-p``."""
+    return f"{name}:={parameter_text(value, one_line=True)}"

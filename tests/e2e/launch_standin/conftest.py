@@ -1,0 +1,147 @@
+"""A package with nodes and launch files, and `ros2 launch` as a process whose output can be waited for.
+
+Each launch has a network of its own, so that nodes of tests that run at the same time do not meet. All
+processes of a launch inherit a mark in their environment, by which those that are left over are found.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import uuid
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from autograder.ros import environment
+
+HERE = Path(__file__).parent
+# Generous, because it only matters when something is wrong.
+PATIENCE = 120.0
+MARK = "COURSE_LAUNCH_MARK"
+OWN_NETWORK = ("unshare", "-rn", "sh", "-c", 'ip link set lo up && exec "$@"', "sh")
+
+
+class Launch:
+    """A running `ros2 launch`."""
+
+    def __init__(self, command: list[str], variables: dict[str, str]) -> None:
+        self._mark = uuid.uuid4().hex
+        self._process = subprocess.Popen(
+            command,
+            env={**os.environ, **variables, MARK: self._mark},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.text = ""
+        self._changed = threading.Condition()
+        self._ended = False
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as stream:
+            for line in stream:
+                with self._changed:
+                    self.text += line
+                    self._changed.notify_all()
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
+    def wait_for(self, pattern: str) -> re.Match[str]:
+        """Wait until the output matches `pattern`; fail if it ends without it."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended or re.search(pattern, self.text), timeout=PATIENCE)
+            found = re.search(pattern, self.text)
+        assert found, f"{pattern!r} is not in the output:\n{self.text}"
+        return found
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal to the launch process alone."""
+        self._process.send_signal(number)
+
+    def finish(self) -> int:
+        """Wait for the end; return the exit code."""
+        code = self._process.wait(timeout=PATIENCE)
+        self._reader.join(timeout=PATIENCE)
+        return code
+
+    def interrupt(self) -> int:
+        """Do what Ctrl-C does and wait for the end; return the exit code."""
+        self.send(signal.SIGINT)
+        return self.finish()
+
+    def members(self) -> dict[int, str]:
+        """Return the command lines of all living processes of this launch, by process id."""
+        found = {}
+        for folder in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if f"{MARK}={self._mark}".encode() in (folder / "environ").read_bytes():
+                    found[int(folder.name)] = (folder / "cmdline").read_text().replace("\0", " ")
+        return found
+
+    def clean_up(self) -> None:
+        """Kill what is left over."""
+        for pid in self.members():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        self.finish()
+
+
+def install_fleet(prefix: Path) -> None:
+    """Install the package `fleet`, as colcon would, into `prefix`."""
+    index = prefix / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "fleet").touch()
+    for folder in ("launch", "config"):
+        shutil.copytree(HERE / "fleet" / folder, prefix / "share/fleet" / folder)
+    executables = prefix / "lib/fleet"
+    executables.mkdir(parents=True)
+    for source in (HERE / "fleet/lib").iterdir():
+        (executables / source.name).write_text(f"#!{sys.executable}\n{source.read_text()}")
+        (executables / source.name).chmod(0o755)
+
+
+@pytest.fixture(scope="session")
+def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The prefix in which the package `fleet` is installed."""
+    prefix = tmp_path_factory.mktemp("fleet") / "install"
+    install_fleet(prefix)
+    return prefix
+
+
+Start = Callable[..., Launch]
+
+
+@pytest.fixture
+def start(fleet: Path, tmp_path: Path) -> Iterator[Start]:
+    """Start `ros2 launch fleet <file> <argument>...`, after sourcing a workspace's `install` if one is given.
+
+    At the end of the test nothing may be left of it.
+    """
+    running: list[Launch] = []
+
+    def start_launch(file: str, *arguments: str, install: Path | None = None) -> Launch:
+        variables = environment.find().variables(overlays=(fleet,), log_dir=tmp_path / "log")
+        ros2 = [sys.executable, "-m", "autograder.ros.ros2", "launch"]
+        sourced = [] if install is None else ["bash", "-c", 'source "$0/setup.bash" && exec "$@"', str(install)]
+        launch = Launch([*OWN_NETWORK, *sourced, *ros2, "fleet", f"{file}.launch.py", *arguments], variables)
+        running.append(launch)
+        return launch
+
+    yield start_launch
+    left = [launch.members() for launch in running]
+    for launch in running:
+        launch.clean_up()
+    assert not any(left), f"processes are left over: {left}"

@@ -1,0 +1,13 @@
+"""One node dies while another one goes on."""
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            Node(package="fleet", executable="crash", name="sensor"),
+            Node(package="fleet", executable="light", output="screen"),
+        ]
+    )

@@ -1,0 +1,8 @@
+"""A process that dies at once and would be started again for ever, after a long pause each time."""
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="fleet", executable="crash", respawn=True, respawn_delay=3600.0)])

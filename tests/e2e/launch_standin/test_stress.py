@@ -1,0 +1,82 @@
+"""Many starts and stops, stopped at different moments: never is anything left over or stuck."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import launch
+import pytest
+from launch.actions import ExecuteProcess, RegisterEventHandler
+from launch.event_handlers import OnProcessIO, OnProcessStart
+
+STARTS = 100
+NODE_STARTS = 3
+MARK = "COURSE_LAUNCH_MARK"
+
+
+def _interrupt(*_: Any) -> None:
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+def _left_over(mark: str) -> list[str]:
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        if int(folder.name) == os.getpid():
+            continue
+        try:
+            if f"{MARK}={mark}".encode() in (folder / "environ").read_bytes():
+                found.append((folder / "cmdline").read_text().replace("\0", " "))
+        except OSError:
+            # It has just ended.
+            continue
+    return found
+
+
+@pytest.fixture
+def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The mark that all processes of this test carry in their environment."""
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    monkeypatch.setenv(MARK, tmp_path.name)
+    launch.logging.reset()
+    yield tmp_path.name
+    launch.logging.reset()
+
+
+@pytest.mark.slow
+def test_a_hundred_launches_of_light_processes_leave_nothing(
+    fleet: Path, mark: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    left, codes = [], set()
+    for number in range(STARTS):
+        service = launch.LaunchService()
+        light = ExecuteProcess(cmd=[str(fleet / "lib/fleet/light")], output="screen")
+        other = ExecuteProcess(cmd=["sleep", "3600"])
+        # A shell with a child in the background, which ignores SIGINT; stopped before it waits, dash misses it too.
+        shell = ExecuteProcess(cmd=["sleep 3600 & echo up; wait"], shell=True)
+        moments = (
+            (other, OnProcessStart(target_action=light, on_start=_interrupt)),
+            (other, OnProcessIO(target_action=light, on_stdout=_interrupt)),
+            (shell, OnProcessIO(target_action=shell, on_stdout=_interrupt)),
+        )
+        second, handler = moments[number % len(moments)]
+        service.include_launch_description(launch.LaunchDescription([RegisterEventHandler(handler), light, second]))
+        codes.add(service.run())
+        left += _left_over(mark)
+    said = capsys.readouterr().out
+    assert (left, codes) == ([], {0})
+    assert "escalating" not in said
+    assert said.count("process started with pid") == 2 * STARTS
+
+
+@pytest.mark.slow
+def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: Callable[..., Any]) -> None:
+    for number in range(NODE_STARTS):
+        running = start("two_robots")
+        running.wait_for("process started with pid" if number % 2 else r"ready: /robot\d/beacon")
+        assert running.interrupt() == 0
+        assert running.members() == {}
+        assert "escalating" not in running.text
