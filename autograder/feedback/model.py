@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from urllib.parse import urlsplit
 
 from autograder.checks import Outcome, Visibility
@@ -105,14 +105,24 @@ def view(result: Result, picture: Callable[[Artifact], Picture | None], *, after
 
 def _group(name: str, checks: Iterable[CheckResult], shown: set[str], pictures: dict[str, list[Picture]]) -> GroupView:
     checks = tuple(checks)
-    views = tuple(_check(check, tuple(pictures.get(check.id, ()))) for check in checks if check.id in shown)
+    views = [_check(check, tuple(pictures.get(check.id, ()))) for check in checks if check.id in shown]
+    views = [
+        replace(after, message="") if _repeats(before, after) else after
+        for before, after in zip([None, *views], views, strict=False)
+    ]
     return GroupView(
         name=name,
         points=sum(check.points for check in checks),
         max_points=sum(check.max_points for check in checks),
-        checks=views,
+        checks=tuple(views),
         withheld=len(checks) - len(views),
     )
+
+
+def _repeats(before: CheckView | None, after: CheckView) -> bool:
+    """Return whether a check was left out for the reason that stands just above it."""
+    idle = after.outcome == WORDS[Outcome.NOT_CHECKED]
+    return before is not None and idle and (before.outcome, before.message) == (after.outcome, after.message)
 
 
 def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:

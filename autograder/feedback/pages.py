@@ -11,13 +11,14 @@ from statistics import mean
 import jinja2
 from markupsafe import Markup
 
+from autograder import layout
 from autograder.checks import Outcome, Visibility
 from autograder.feedback.model import view
 from autograder.feedback.pictures import from_folder
 from autograder.feedback.text import clean, number
 from autograder.result import Result, Status
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "assets" / "templates"
+TEMPLATES = layout.ROOT / "assets" / "templates"
 PAGE = "feedback.html"
 SUMMARY = "index.html"
 

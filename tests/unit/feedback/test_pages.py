@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from autograder import feedback
-from autograder.checks import Outcome
+from autograder.checks import Check, Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.result import Artifact, CheckResult, Result
@@ -68,10 +68,10 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
 
 
 def test_a_link_that_is_no_web_address_is_not_followed(
-    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("bad", "A check.", 1, "graph", doc="javascript:alert(1)")
-    result = make_result(checks=(CheckResult.of(check, Outcome.FAILED, "why"),))  # type: ignore[arg-type]
+    result = make_result(checks=(CheckResult.of(check, Outcome.FAILED, "why"),))
     assert "javascript:alert(1)" not in feedback.write(result, tmp_path).read_text(encoding="utf-8")
 
 
@@ -128,6 +128,19 @@ def test_a_check_for_after_the_due_date_is_shown_only_when_asked(
     assert "A secret for" in Page(feedback.write_summary([result], tmp_path, after_due=True)).text
 
 
+def test_the_same_reason_for_several_checks_is_said_once(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    reasons = ("first A has to pass", "first A has to pass", "first B has to pass")
+    checks = tuple(
+        CheckResult.of(make_check(f"c{index}", f"Check {index}.", 1, "graph"), Outcome.NOT_CHECKED, reason)
+        for index, reason in enumerate(reasons)
+    )
+    text = Page(feedback.write(make_result(checks=checks), tmp_path)).text
+    assert text.count("first A has to pass") == 1
+    assert text.index("Check 0.") < text.index("first A") < text.index("Check 1.") < text.index("first B")
+
+
 def test_a_failed_build_shows_its_log_and_the_diagnosis_on_top(broken_result: Result, tmp_path: Path) -> None:
     page = Page(feedback.write(broken_result, tmp_path))
     assert "Failed <<< my_robot_package" in page.text
@@ -145,10 +158,10 @@ def test_not_graded_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: 
 
 
 def test_full_marks_are_said_in_words(
-    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("a", "It works.", 10, "graph")
-    result = make_result(checks=(CheckResult.of(check, Outcome.PASSED),))  # type: ignore[arg-type]
+    result = make_result(checks=(CheckResult.of(check, Outcome.PASSED),))
     page = Page(feedback.write(result, tmp_path))
     assert "10 of 10 points, 100 %" in page.text
     assert "Everything that was checked works." in page.text
@@ -158,12 +171,12 @@ ATTACK = "</pre><script>alert(1)</script><img src=x onerror=alert(1)>\"'{{7*7}}"
 
 
 def test_nothing_from_the_student_becomes_markup(
-    make_result: MakeResult, make_check: Callable[..., object], tmp_path: Path
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("c", ATTACK, 1, ATTACK, hints=(ATTACK, ATTACK))
     hostile = make_result(
         ATTACK.replace("/", ""),
-        checks=(CheckResult.of(check, Outcome.FAILED, ATTACK),),  # type: ignore[arg-type]
+        checks=(CheckResult.of(check, Outcome.FAILED, ATTACK),),
         diagnosis=Diagnosis(Kind.CRASHED_LATER, ATTACK, ATTACK),
         build=make_result().build.__class__(False, 1.0, (ATTACK,), ATTACK),
         artifacts=(Artifact("x.png", "track", "", "c", ATTACK),),
