@@ -11,10 +11,10 @@ from rclpy.node import Node
 
 from sim.exceptions import SpecError
 from sim.lidar import LDS_01, RPLIDAR_A1, UTM_30LX, LidarSpec
+from sim.maps import load
 from sim.pose import Pose
 from sim.robot import OdometryDrift, RobotSpec
 from sim.simulation import Simulation
-from sim.worldfile import load_world
 
 LIDARS = {"lds_01": LDS_01, "rplidar_a1": RPLIDAR_A1, "utm_30lx": UTM_30LX}
 
@@ -103,7 +103,7 @@ def simulation_of(values: dict[str, Any]) -> Simulation:
     """
     if not values["world"]:
         raise SpecError("parameter 'world' is empty: give the path of a world's YAML file")
-    world = load_world(Path(values["world"]))
+    world = load(Path(values["world"]))
     namespaces = [namespace.strip("/") for namespace in values["robots"]]
     if len(set(namespaces)) != len(namespaces):
         raise SpecError(f"parameter 'robots' names a robot twice: {', '.join(namespaces)}")

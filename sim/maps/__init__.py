@@ -17,15 +17,25 @@ import numpy.typing as npt
 
 from sim.exceptions import WorldError
 from sim.maps.image import Shades, read_image
-from sim.maps.mapfile import MapFile, read_map_file
+from sim.maps.mapfile import MapFile, is_map_file, read_map_file
 from sim.maps.trace import count_edges, loop_segments, roomiest_point, simplify, trace_loops
 from sim.pose import Pose
 from sim.world import Goal, World
+from sim.worldfile import load_world
 
 MAX_EDGES = 400_000
 """Unit edges of an outline. More of them is a photograph or noise, not a floor plan."""
 
-__all__ = ["MAX_EDGES", "MapFile", "load_map", "read_map_file"]
+__all__ = ["MAX_EDGES", "MapFile", "load", "load_map", "read_map_file"]
+
+
+def load(path: str | Path) -> World:
+    """Read a world's YAML file or that of a ROS map, whichever it is.
+
+    Raises:
+        WorldError: naming the file, the line where it is known, what is wrong and what to do.
+    """
+    return load_map(path) if is_map_file(Path(path)) else load_world(path)
 
 
 def load_map(

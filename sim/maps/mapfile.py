@@ -69,6 +69,15 @@ def read_map_file(path: Path) -> MapFile:
     )
 
 
+def is_map_file(path: Path) -> bool:
+    """Say whether `path` is a YAML file with the key that only a map has: 'image'. False for what can't be read."""
+    try:
+        node = _compose(path)
+    except WorldError:
+        return False
+    return any(isinstance(key, yaml.ScalarNode) and key.value == "image" for key, _ in node.value)
+
+
 def _compose(path: Path) -> yaml.MappingNode:
     try:
         if path.stat().st_size > MAX_BYTES:

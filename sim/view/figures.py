@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sim.pose import Command, Pose
+from sim.pose import Pose
 from sim.recording import Recording
-from sim.robot import RobotState
+from sim.rows import newest_scan, row_at, state_at
 from sim.simulation import Clearance, Simulation, State, clearance, observe
 from sim.view import artists
 from sim.view.picture import Picture
@@ -90,28 +90,9 @@ def plot(
     return Picture(_figure(ax), _track_alt(recording, indices, mark, note))
 
 
-def row_at(recording: Recording, time: float) -> int:
-    """Return the row of the recording whose time is nearest to `time`, in seconds."""
-    if not math.isfinite(time):
-        raise ValueError(f"there is no instant t = {time} s in a recording")
-    return int(np.argmin(np.abs(recording.times - time)))
-
-
-def state_at(recording: Recording, row: int) -> State:
-    """Return what row `row` says of where everything was; the memory of motors and watchdogs is not in it."""
-    simulation, time_ns = recording.simulation, int(recording.times_ns[row])
-    robots = tuple(
-        RobotState(
-            name=spec.name,
-            pose=Pose(*recording.poses[row, index].tolist()),
-            velocity=Command(*recording.velocities[row, index].tolist()),
-            odometry=Pose(*recording.odometry[row, index].tolist()),
-            covariance=tuple(recording.covariances[row, index].tolist()),
-            collided=bool(recording.collided[row, index]),
-        )
-        for index, spec in enumerate(simulation.robots)
-    )
-    return State(tick=round(time_ns / (simulation.tick * 1e9)), time_ns=time_ns, robots=robots)
+def describe(recording: Recording) -> str:
+    """Return the sentence that stands for a recording where it can't be seen."""
+    return _track_alt(recording, _robots(recording.simulation, None), None, "")
 
 
 def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, names: bool, starts: bool = True) -> None:
@@ -148,12 +129,9 @@ def _draw_one(
 
 
 def _draw_last_scan(ax: Axes, recording: Recording, index: int, row: int, theme: Theme) -> None:
-    lidar, log = recording.simulation.robots[index].lidar, recording.scans[index]
-    seen = np.flatnonzero(log.rows <= row)
-    if lidar is not None and len(seen):
-        taken = int(log.rows[seen[-1]])
-        pose = Pose(*recording.poses[taken, index].tolist())
-        artists.draw_scan(ax, log.ranges[seen[-1]], lidar, pose, theme)
+    lidar, newest = recording.simulation.robots[index].lidar, newest_scan(recording, index, row)
+    if lidar is not None and newest is not None:
+        artists.draw_scan(ax, newest[0].ranges, lidar, newest[1], theme)
 
 
 def _draw_mark(ax: Axes, recording: Recording, index: int, row: int, note: str, theme: Theme) -> None:

@@ -17,8 +17,8 @@ from sim.lidar import Scan
 from sim.pose import Command, Pose
 from sim.rates import due
 from sim.recording import Recorder, Recording
+from sim.rows import newest_scan, state_at
 from sim.simulation import Simulation, State, observe, start, step
-from sim.view.figures import state_at
 
 Controller = Callable[[Scan], Command | None]
 """A student's callback: it gets each new scan and returns the next command; None keeps the last one."""
@@ -194,7 +194,7 @@ class Replay:
     def at(self, time_ns: int) -> Frame:
         """Return the last row that is not later than `time_ns`."""
         row = max(0, bisect.bisect_right(self._times, time_ns) - 1)
-        scans = tuple(self._scan(index, row) for index in range(len(self.simulation.robots)))
+        scans = tuple(newest_scan(self._recording, index, row) for index in range(len(self.simulation.robots)))
         return Frame(state_at(self._recording, row), scans)
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
@@ -218,26 +218,6 @@ class Replay:
     def recording(self) -> Recording:
         """Return the recording."""
         return self._recording
-
-    def _scan(self, index: int, row: int) -> tuple[Scan, Pose] | None:
-        spec, log = self.simulation.robots[index], self._recording.scans[index]
-        number = int(np.searchsorted(log.rows, row, side="right")) - 1
-        if number < 0 or spec.lidar is None:
-            return None
-        lidar = spec.lidar
-        scan = Scan(
-            stamp_ns=int(log.stamps_ns[number]),
-            ranges=log.ranges[number],
-            intensities=log.intensities[number],
-            angle_min=lidar.angle_min,
-            angle_max=lidar.angle_max,
-            angle_increment=lidar.angle_increment,
-            time_increment=0.0,
-            scan_time=1.0 / lidar.rate,
-            range_min=lidar.range_min,
-            range_max=lidar.range_max,
-        )
-        return scan, Pose(*self._recording.poses[int(log.rows[number]), index].tolist())
 
 
 def _is_new(frame: Frame) -> bool:
