@@ -25,6 +25,7 @@ class Kind(str, Enum):
     ENDED_EARLY = "ended_early"
     NEVER_STARTED = "never_started"
     STUCK = "stuck"
+    RESERVED_NAME = "reserved_name"
     UNUSABLE_COMMAND = "unusable_command"
     NEVER_STOPPED = "never_stopped"
     FLOODED_OUTPUT = "flooded_output"

@@ -91,7 +91,11 @@ class LockstepLab(Lab):
 
     def _connected(self, topics: set[str]) -> bool:
         description, _ = self._stepper.describe()
-        return not topics & set(description.unmatched)
+        matched = all(
+            publisher.get_subscription_count() >= description.subscriptions.get(topic, 0)
+            for topic, publisher in self._publishers.items()
+        )
+        return matched and not topics & set(description.unmatched)
 
     def _arrived(self, published: dict[str, int]) -> bool:
         return all(

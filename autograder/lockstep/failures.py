@@ -55,6 +55,13 @@ def diagnose_ending(process: Process) -> Diagnosis:
     if process.ending in _LIMITS:
         kind, sentence = _LIMITS[process.ending]
         return Diagnosis(kind, sentence, detail)
+    if process.ending is None:
+        return Diagnosis(
+            Kind.STUCK,
+            "Your program runs on, but no longer answers in lockstep: leave rclpy's own functions, and descriptors "
+            "that your program did not open, as they are.",
+            detail,
+        )
     status = process.returncode
     how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
     return Diagnosis(

@@ -19,6 +19,8 @@ import runpy
 import sys
 import time
 import traceback
+import weakref
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +29,13 @@ import rclpy.executors
 import rclpy.publisher
 import rclpy.time_source
 from rclpy.clock import ClockType
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ConditionReachedException, Executor, SingleThreadedExecutor, TimeoutException, TimeoutObject
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.time import Time
 
 START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "time is not known yet"
 PATIENCE = 5.0  # s of real time without any progress, after which messages that were announced count as lost
-POLL = 0.05  # s
 TEXT = 8000  # characters of an exception's texts that are reported
 INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events", "/clock"})
 
@@ -66,8 +69,10 @@ class Host:
         self.link = link
         self.time = START
         self.phase = "import"
-        self.executors: set[Executor] = set()
-        self.taken: dict[str, int] = {}
+        self.nodes: list[weakref.ref[Any]] = []
+        self.clocks: weakref.WeakSet[Any] = weakref.WeakSet()  # time sources
+        self.met: weakref.WeakSet[Any] = weakref.WeakSet()  # subscriptions that the grader was told of
+        self.taken: weakref.WeakKeyDictionary[Any, int] = weakref.WeakKeyDictionary()
         self.published: dict[str, int] = {}
         self.announced: dict[str, int] = {}
         self.delivering = False
@@ -87,7 +92,9 @@ class Host:
         """Let a new node's clock start at the present step's time."""
         _init_time_source(source)
         source._last_time_set = self._ros_time(self.time)
+        self.clocks.add(source)
         if node is not None:
+            self.nodes.append(weakref.ref(node))
             source.attach_node(node)
 
     def publish(self, publisher: Any, message: Any) -> None:
@@ -99,28 +106,27 @@ class Host:
         """Take a message, and count."""
         execute = _take_message(executor, subscription)
         if execute is not None:
-            self.taken[subscription.topic_name] = self.taken.get(subscription.topic_name, 0) + 1
+            self.taken[subscription] = self.taken.get(subscription, 0) + 1
         return execute
 
     def wait(self, executor: Executor, timeout_sec: Any = None, nodes: Any = None, condition: Any = None) -> Any:
         """Return the next callback to run; when there is none left in this step, wait for the next step."""
-        self.executors.add(executor)
         condition = condition or (lambda: False)
         timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
         entered = self.time
         while True:
             if condition():
                 raise ConditionReachedException
-            work = self._ready(executor, 0, nodes, condition)
+            owed = self._owed(executor)
+            self._gather(executor, owed)
+            work = self._ready(executor, nodes, condition)
             if work is not None:
                 return work
+            if owed:
+                continue
             if self.delivering:
-                if self._delivered():
-                    self._run_timers()
-                    continue
-                work = self._ready(executor, POLL, nodes, condition)
-                if work is not None:
-                    return work
+                self.delivering = False
+                self._set_clocks(self.time)
                 continue
             # Nothing is left in this step. A finite time-out is ROS time; one of 0 waits for the next step, too,
             # since a polling loop would never let a step end.
@@ -131,23 +137,39 @@ class Host:
 
     # The steps.
 
-    def _ready(self, executor: Executor, timeout: float, nodes: Any, condition: Any) -> Any:
+    def _ready(self, executor: Executor, nodes: Any, condition: Any) -> Any:
         try:
-            work = _wait_for_work(executor, timeout_sec=timeout, nodes=nodes, condition=condition)
+            work = _wait_for_work(executor, timeout_sec=0, nodes=nodes, condition=condition)
         except TimeoutException:
             return None
         self.progress = time.monotonic()
         return work
 
-    def _delivered(self) -> bool:
-        if all(self.taken.get(topic, 0) >= count for topic, count in self.announced.items()):
-            return True
-        self.late = time.monotonic() - self.progress > PATIENCE
-        return self.late
+    def _owed(self, executor: Executor) -> list[Any]:
+        """Return the executor's subscriptions that have not taken every message they were sent."""
+        if self.late or not self.announced:
+            return []
+        owed = [
+            subscription
+            for node in executor.get_nodes()
+            for subscription in node.subscriptions
+            if subscription in self.met
+            and self.taken.get(subscription, 0) < self.announced.get(subscription.topic_name, 0)
+        ]
+        self.late = bool(owed) and time.monotonic() - self.progress > PATIENCE
+        return [] if self.late else owed
 
-    def _run_timers(self) -> None:
-        self.delivering = False
-        self._set_clocks(self.time)
+    def _gather(self, executor: Executor, owed: list[Any]) -> None:
+        """Wait until each of these subscriptions has a message: they are run in the order of their creation then.
+
+        Without it, the order would be that in which the messages happen to come in.
+        """
+        for subscription in owed:
+            with subscription.handle, executor.context.handle:
+                wait_set = rclpy_implementation.WaitSet(1, 0, 0, 0, 0, 0, executor.context.handle)
+                wait_set.clear_entities()
+                wait_set.add_subscription(subscription.handle)
+                wait_set.wait(int(max(0.0, self.progress + PATIENCE - time.monotonic()) * 1e9))
 
     def _next_step(self) -> None:
         if self.phase != "spin":
@@ -164,8 +186,7 @@ class Host:
                 self.link.send(event="description", **self._describe())
                 continue
             self.time = int(order["t"])
-            topics = {subscription.topic_name for subscription in self._subscriptions()}
-            self.announced = {topic: count for topic, count in order["sent"].items() if topic in topics}
+            self.announced = order["sent"]
             self.stepping = self.delivering = True
             self.late = False
             self.progress = time.monotonic()
@@ -173,35 +194,41 @@ class Host:
             return
 
     def _describe(self) -> dict[str, Any]:
-        publishers = [p for node in self._nodes() for p in node.publishers if p.topic_name not in INFRASTRUCTURE]
+        nodes = self._nodes()
+        publishers = [p for node in nodes for p in node.publishers if p.topic_name not in INFRASTRUCTURE]
+        subscriptions = [(n, s) for n in nodes for s in n.subscriptions if s.topic_name not in INFRASTRUCTURE]
+        self.met.update(subscription for _, subscription in subscriptions)
         unmatched = [p.topic_name for p in publishers if not p.get_subscription_count()]
-        unmatched += [
-            subscription.topic_name
-            for node in self._nodes()
-            for subscription in node.subscriptions
-            if subscription.topic_name not in INFRASTRUCTURE and not node.count_publishers(subscription.topic_name)
-        ]
+        unmatched += [s.topic_name for node, s in subscriptions if not node.count_publishers(s.topic_name)]
         return {
-            "nodes": [node.get_fully_qualified_name() for node in self._nodes()],
-            "timers": [timer.timer_period_ns for node in self._nodes() for timer in node.timers],
+            "nodes": [node.get_fully_qualified_name() for node in nodes],
+            "timers": [timer.timer_period_ns for node in nodes for timer in node.timers],
             "unmatched": sorted(set(unmatched)),
+            "subscriptions": Counter(subscription.topic_name for _, subscription in subscriptions),
             "published": self.published,
         }
 
     def _nodes(self) -> list[Any]:
-        return [node for executor in list(self.executors) for node in executor.get_nodes()]
-
-    def _subscriptions(self) -> list[Any]:
-        return [subscription for node in self._nodes() for subscription in node.subscriptions]
+        """Return the nodes that the program has made and not destroyed."""
+        return [node for ref in self.nodes if (node := ref()) is not None and _is_alive(node)]
 
     def _set_clocks(self, nanoseconds: int) -> None:
-        for node in self._nodes():
-            for clock in node._time_source._associated_clocks:
-                clock.set_ros_time_override(self._ros_time(nanoseconds))
+        now = self._ros_time(nanoseconds)
+        for source in list(self.clocks):
+            for clock in source._associated_clocks:
+                clock.set_ros_time_override(now)
 
     @staticmethod
     def _ros_time(nanoseconds: int) -> Time:
         return Time(nanoseconds=nanoseconds, clock_type=ClockType.ROS_TIME)
+
+
+def _is_alive(node: Any) -> bool:
+    try:
+        with node.handle:
+            return True
+    except InvalidHandle:
+        return False
 
 
 class OneThreadExecutor(SingleThreadedExecutor):

@@ -36,11 +36,13 @@ class Description:
         nodes: fully qualified names.
         timers: periods in nanoseconds.
         unmatched: topics of the student's own publishers and subscriptions that have no peer yet.
+        subscriptions: how many subscriptions there are, by topic.
     """
 
     nodes: tuple[str, ...]
     timers: tuple[int, ...]
     unmatched: tuple[str, ...]
+    subscriptions: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -89,17 +91,13 @@ def description(data: dict[str, Any]) -> Description:
         nodes=tuple(_texts(data.get("nodes"))),
         timers=tuple(p for p in _items(data.get("timers")) if type(p) is int and p > 0),
         unmatched=tuple(_texts(data.get("unmatched"))),
+        subscriptions=_counts(data.get("subscriptions")),
     )
 
 
 def reply(data: dict[str, Any]) -> Reply:
     """Read a `done` event, dropping what is not of the right type."""
-    published = data.get("published")
-    counts = published if isinstance(published, dict) else {}
-    return Reply(
-        published={topic: n for topic, n in list(counts.items())[:MAX_TOPICS] if type(n) is int and n >= 0},
-        late=data.get("late") is True,
-    )
+    return Reply(published=_counts(data.get("published")), late=data.get("late") is True)
 
 
 def crash(data: dict[str, Any]) -> Crash:
@@ -115,6 +113,11 @@ def crash(data: dict[str, Any]) -> Crash:
 
 def _items(value: object) -> list[Any]:
     return value[:MAX_TOPICS] if isinstance(value, list) else []
+
+
+def _counts(value: object) -> dict[str, int]:
+    counts = value if isinstance(value, dict) else {}
+    return {topic: count for topic, count in list(counts.items())[:MAX_TOPICS] if type(count) is int and count >= 0}
 
 
 def _texts(value: object) -> list[str]:
