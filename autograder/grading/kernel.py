@@ -84,13 +84,14 @@ class SandboxedKernelManager(AsyncKernelManager):
             connection_file=str(connections / "k.json"),
             ip=str(connections / "k"),
         )
-        self.provisioner = SandboxedProvisioner(kernel_id="student", kernel_spec=self.kernel_spec, parent=self)
-        self.provisioner.sandbox = sandbox
+        self._place = SandboxedProvisioner(kernel_id="student", kernel_spec=self.kernel_spec, parent=self)
+        self._place.sandbox = sandbox
+        self.provisioner = self._place
 
     @property
     def process(self) -> Process | None:
         """The kernel's process, from its start on."""
-        return self.provisioner.started  # type: ignore[no-any-return]
+        return self._place.started
 
     def end(self) -> None:
         """Leave nothing of the kernel alive, whatever Jupyter believes of it."""
