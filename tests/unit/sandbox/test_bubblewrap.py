@@ -1,0 +1,108 @@
+"""What a sandbox's command line shows, hides and allows."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from pathlib import Path
+
+from autograder import layout
+from autograder.sandbox import Limits, Mount, Sandbox, bubblewrap
+
+
+def _pairs(arguments: list[str], flag: str) -> list[str]:
+    return [value for name, value in itertools.pairwise(arguments) if name == flag]
+
+
+def _options(arguments: list[str]) -> list[str]:
+    return arguments[: arguments.index("--")]
+
+
+def _sandbox(spec: Sandbox) -> list[str]:
+    return bubblewrap.sandbox(["true"], spec)
+
+
+def test_a_sandbox_has_namespaces_of_its_own_and_no_privileges(tmp_path: Path) -> None:
+    options = _options(_sandbox(Sandbox(tmp_path)))
+    for flag in ("--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--new-session"):
+        assert flag in options
+    assert "--die-with-parent" in options
+    assert _pairs(options, "--cap-drop") == ["ALL"]
+
+
+def test_a_sandbox_has_no_network_unless_it_is_asked_for(tmp_path: Path) -> None:
+    assert "--unshare-net" in _options(_sandbox(Sandbox(tmp_path)))
+    assert "--unshare-net" not in _options(_sandbox(Sandbox(tmp_path, network=True)))
+
+
+def test_the_environment_is_cleared_before_it_is_set(tmp_path: Path) -> None:
+    options = _options(_sandbox(Sandbox(tmp_path, environment={"LANG": "C.UTF-8"})))
+    assert options.index("--clearenv") < options.index("--setenv")
+    assert options[options.index("--setenv") + 1 :][:2] == ["LANG", "C.UTF-8"]
+
+
+def test_nothing_of_the_accounts_or_homes_is_shown(tmp_path: Path) -> None:
+    options = _options(_sandbox(Sandbox(tmp_path)))
+    shown = {Path(path) for flag in ("--bind", "--ro-bind", "--dev-bind") for path in _pairs(options, flag)}
+    python = set(bubblewrap.python_mounts())
+    for secret in ("/", "/root", "/home", "/etc", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys"):
+        assert Path(secret) not in shown - python
+    assert not any(layout.ROOT.is_relative_to(path) for path in shown)
+
+
+def test_suites_and_solutions_are_covered_wherever_a_mount_would_show_them(tmp_path: Path) -> None:
+    spec = Sandbox(tmp_path, mounts=(Mount(layout.ROOT),))
+    options = _options(_sandbox(spec))
+    mounted = options.index(str(layout.ROOT))
+    for secret in (layout.SUITES, layout.SOLUTIONS):
+        assert options.index(str(secret)) > mounted
+        assert str(secret) in _pairs(options, "--tmpfs")
+        assert str(secret) in _pairs(options, "--remount-ro")
+
+
+def test_a_hidden_folder_is_covered_after_it_was_mounted(tmp_path: Path) -> None:
+    (tmp_path / "secret").mkdir()
+    options = _options(_sandbox(Sandbox(tmp_path, mounts=(Mount(tmp_path),), hidden=(tmp_path / "secret",))))
+    assert options.index(str(tmp_path)) < options.index(str(tmp_path / "secret"))
+
+
+def test_only_mounts_that_say_so_are_writable(tmp_path: Path) -> None:
+    spec = Sandbox(tmp_path, mounts=(Mount(tmp_path / "in"), Mount(tmp_path / "out", writable=True)))
+    options = _options(_sandbox(spec))
+    assert _pairs(options, "--bind") == [str(tmp_path / "out")]
+    assert str(tmp_path / "in") in _pairs(options, "--ro-bind")
+
+
+def test_every_file_system_in_memory_has_a_size_or_is_read_only(tmp_path: Path) -> None:
+    options = _options(_sandbox(Sandbox(tmp_path, limits=Limits(scratch=4096))))
+    for path in ("/tmp", "/dev/shm"):
+        at = next(i for i, pair in enumerate(itertools.pairwise(options)) if pair == ("--tmpfs", path))
+        assert options[at - 2 : at] == ["--size", "4096"]
+    assert {"/", "/dev"} <= set(_pairs(options, "--remount-ro"))
+
+
+def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
+    limits = Limits(cpu_seconds=7, address_space=2**30, threads=10, file_size=99, open_files=33)
+    arguments = bubblewrap.sandbox(["node", "--flag"], Sandbox(tmp_path, limits=limits))
+    inside = arguments[arguments.index("--") + 1 :]
+    assert inside[0] == "prlimit"
+    assert inside[-2:] == ["node", "--flag"]
+    for limit in ("--cpu=7:12", f"--as={2**30}", "--nproc=40", "--fsize=99", "--nofile=33", "--core=0"):
+        assert limit in inside
+
+
+def test_the_grader_s_own_python_is_shown_read_only(tmp_path: Path) -> None:
+    options = _options(_sandbox(Sandbox(tmp_path)))
+    if not Path(sys.prefix).is_relative_to("/usr"):
+        assert sys.prefix in _pairs(options, "--ro-bind")
+
+
+def test_a_cell_has_its_own_network_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
+    arguments = bubblewrap.cell(["worker"], scratch=tmp_path, size=1234)
+    options = _options(arguments)
+    assert "--unshare-net" in options
+    assert "--unshare-user" in options
+    assert "--unshare-pid" not in options  # a sandbox inside could not mount /proc
+    at = options.index("--tmpfs")
+    assert options[at - 2 : at + 2] == ["--size", "1234", "--tmpfs", str(tmp_path)]
+    assert arguments[-1] == "worker"

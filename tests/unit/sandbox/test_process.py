@@ -1,0 +1,186 @@
+"""A watched process: bounded, measured, and gone when it should be."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.sandbox import Ending, Limits, Process
+from autograder.sandbox.limits import MIB
+from autograder.sandbox.process import measure
+
+LONG = 60.0
+
+
+def _python(code: str, *arguments: str) -> list[str]:
+    return [sys.executable, "-I", "-c", code, *arguments]
+
+
+def _until(condition: Callable[[], bool], seconds: float = LONG) -> bool:
+    deadline = time.monotonic() + seconds
+    pause = threading.Event()
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        pause.wait(0.02)
+    return True
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
+    with Process(_python("print('hello'); raise SystemExit(3)"), Limits()) as process:
+        assert process.wait(LONG)
+        assert (process.ending, process.returncode, process.output) == (Ending.EXITED, 3, "hello\n")
+
+
+def test_while_it_runs_it_has_neither_status_nor_ending() -> None:
+    with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
+        assert _until(lambda: process.output == "up\n")
+        assert (process.ending, process.returncode) == (None, None)
+    assert process.ending is Ending.KILLED
+    assert process.returncode == -signal.SIGKILL
+
+
+def test_it_cannot_read_from_the_grader_s_stdin() -> None:
+    with Process(_python("input()"), Limits()) as process:
+        assert process.wait(LONG)
+        assert "EOFError" in process.output
+
+
+def test_time_is_limited() -> None:
+    with Process(_python("while True: pass"), Limits(wall_seconds=0.5)) as process:
+        assert process.wait(LONG)
+        assert process.ending is Ending.WALL_TIME
+
+
+def test_output_is_limited_and_only_so_much_is_kept() -> None:
+    with Process(_python("while True: print('x' * 999)"), Limits(output=10_000)) as process:
+        assert process.wait(LONG)
+        assert process.ending is Ending.OUTPUT
+        assert len(process.output) == 10_000
+
+
+def test_memory_of_the_whole_tree_is_limited() -> None:
+    code = """
+import subprocess, sys, signal
+eat = "import signal; held = bytearray(b'x') * (60 << 20); signal.pause()"
+children = [subprocess.Popen([sys.executable, "-I", "-c", eat]) for _ in range(3)]
+signal.pause()
+"""
+    with Process(_python(code), Limits(memory=150 * MIB)) as process:
+        assert process.wait(LONG)
+        assert process.ending is Ending.MEMORY
+
+
+def test_threads_of_the_whole_tree_are_limited() -> None:
+    code = "import threading\nfor _ in range(60): threading.Thread(target=threading.Event().wait).start()"
+    with Process(_python(code), Limits(threads=30)) as process:
+        assert process.wait(LONG)
+        assert process.ending is Ending.THREADS
+
+
+def test_a_program_that_ignores_sigterm_is_killed_with_its_children() -> None:
+    code = """
+import signal, subprocess, sys
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+child = subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause()"])
+print(child.pid, flush=True)
+signal.pause()
+"""
+    with Process(_python(code), Limits()) as process:
+        assert _until(lambda: process.output.endswith("\n"))
+        child = int(process.output)
+        process.signal(signal.SIGTERM)
+        assert _alive(child)
+    assert _until(lambda: not _alive(process.pid) and not _alive(child))
+
+
+def test_bytes_that_are_no_utf_8_are_replaced() -> None:
+    with Process(_python(r"import os; os.write(1, b'a\xff\x00b')"), Limits()) as process:
+        assert process.wait(LONG)
+        assert process.output == "a\N{REPLACEMENT CHARACTER}\0b"
+
+
+def test_a_grandchild_that_holds_the_output_open_does_not_hold_up_the_end() -> None:
+    code = """
+import subprocess, sys
+print(subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause()"]).pid, flush=True)
+"""
+    with Process(_python(code), Limits()) as process:
+        assert process.wait(LONG)
+        grandchild = int(process.output)
+        assert process.ending is Ending.EXITED
+        assert _alive(grandchild)
+    os.kill(grandchild, signal.SIGKILL)
+
+
+def test_signals_after_the_end_do_nothing() -> None:
+    with Process(_python("pass"), Limits()) as process:
+        assert process.wait(LONG)
+        process.signal(signal.SIGINT)
+        process.kill()
+        assert (process.ending, process.returncode) == (Ending.EXITED, 0)
+
+
+def test_its_environment_is_the_one_that_is_given() -> None:
+    environment = {"ONLY": "this"}
+    with Process(
+        _python("import os; print(os.environ.get('HOME'), os.environ['ONLY'])"), Limits(), environment=environment
+    ) as process:
+        assert process.wait(LONG)
+        assert process.output == "None this\n"
+
+
+def test_measuring_finds_the_whole_tree() -> None:
+    code = """
+import subprocess, sys, threading, signal
+child = subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause()"])
+threading.Thread(target=threading.Event().wait, daemon=True).start()
+print(child.pid, flush=True)
+signal.pause()
+"""
+    with Process(_python(code), Limits()) as process:
+        assert _until(lambda: process.output.endswith("\n"))
+        tree = measure(process.pid)
+        assert set(tree.pids) == {process.pid, int(process.output)}
+        assert tree.threads == 3
+        assert tree.memory > 5 * MIB
+
+
+def test_measuring_stops_when_there_are_far_too_many() -> None:
+    assert len(measure(os.getpid()).pids) >= 1
+    assert len(measure(1, most=0).pids) <= 1
+
+
+def test_measuring_a_process_that_is_gone_finds_nothing() -> None:
+    with Process(_python("pass"), Limits()) as process:
+        assert process.wait(LONG)
+    assert measure(process.pid).pids == ()
+
+
+def test_a_program_that_is_not_there_is_an_error_at_once() -> None:
+    with pytest.raises(FileNotFoundError):
+        Process(["/no/such/program"], Limits())
+
+
+def test_many_processes_at_once_are_each_watched() -> None:
+    running = [Process(_python(f"print({number})"), Limits()) for number in range(12)]
+    try:
+        assert all(process.wait(LONG) for process in running)
+        assert [process.output for process in running] == [f"{number}\n" for number in range(12)]
+    finally:
+        for process in running:
+            process.__exit__()
