@@ -113,14 +113,19 @@ class ChildProcess:
         await self.exited
         await self._end_leftovers()
         await asyncio.wait([reader.ended for _, reader in self._readers], timeout=_DRAIN_SECONDS)
-        self.close()
+        self._close()
         code = self.returncode
         assert code is not None
         return code
 
-    def close(self) -> None:
-        """Kill whatever of the group still lives, and let go of the pipes."""
+    async def kill(self) -> None:
+        """Kill the process and all it started."""
         self._signal_group(signal.SIGKILL)
+        await self.exited
+        self._close()
+
+    def _close(self) -> None:
+        """Let go of the pipes."""
         for transport, _ in self._readers:
             transport.close()
         while self._outputs:

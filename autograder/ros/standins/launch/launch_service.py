@@ -17,7 +17,7 @@ from typing import Any
 from . import logging as launch_logging
 from .action import as_list
 from .event import Event
-from .event_handlers import OnIncludeLaunchDescription, OnShutdown
+from .event_handlers import OnIncludeLaunchDescription
 from .events import IncludeLaunchDescription, Shutdown
 from .launch_context import LaunchContext
 from .launch_description import LaunchDescription
@@ -34,7 +34,6 @@ class LaunchService:
             launch_logging.launch_config.level = 10
         self.context = LaunchContext(argv=argv, noninteractive=noninteractive)
         self.context.register_event_handler(OnIncludeLaunchDescription())
-        self.context.register_event_handler(OnShutdown(on_shutdown=self._on_shutdown))
         self._debug = debug
         self._lock = threading.RLock()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -147,10 +146,6 @@ class LaunchService:
             self.context.emit_event_sync(Shutdown(reason=reason, due_to_sigint=due_to_sigint))
         self.context.is_shutdown = True
 
-    def _on_shutdown(self, event: Event, context: LaunchContext) -> None:
-        self._shutting_down = True
-        context.is_shutdown = True
-
     def _pending(self) -> list[asyncio.Future[None]]:
         """Return the futures of entities that are not done."""
         self._futures = [future for future in self._futures if not future.done()]
@@ -171,6 +166,9 @@ class LaunchService:
 
     def _process(self, event: Event) -> None:
         """Let each handler that matches handle `event`, and execute what it yields."""
+        if isinstance(event, Shutdown):
+            # Before all handlers: what they yield must not start anything that nobody would end.
+            self._shutting_down = self.context.is_shutdown = True
         for handler in tuple(self.context._event_handlers):
             if not handler.matches(event):
                 continue

@@ -239,8 +239,9 @@ class ExecuteLocal(Action):
             await child.read(on_output)
             await self._wait_or_end(context, child)
             returncode = await child.finish()
-        finally:
-            child.close()
+        except BaseException:
+            await child.kill()
+            raise
         for source, stream in self._streams.items():
             self._log(source, stream.last_line())
         if returncode == 0:

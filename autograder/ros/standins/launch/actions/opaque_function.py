@@ -59,7 +59,9 @@ class OpaqueCoroutine(Action):
         self._done: asyncio.Future[None] | None = None
 
     def execute(self, context: LaunchContext) -> None:
-        """Start the coroutine."""
+        """Start the coroutine, unless the launch is ending already."""
+        if context.is_shutdown:
+            return
         arguments = self._args if self._ignore_context else (context, *self._args)
         task = the_loop(context).create_task(self._coroutine(*arguments, **self._kwargs))
 

@@ -62,11 +62,12 @@ class TimerAction(Action):
         loop = the_loop(context)
         self._completed = loop.create_future()
         self._cancel_asked = loop.create_future()
-        if self._canceled:
+        ends_with_launch = self._cancels_on_shutdown(context)
+        if self._canceled or (ends_with_launch and context.is_shutdown):
             self._completed.set_result(None)
             return
         self._locals = dict(context.get_locals_as_dict())
-        if self._cancels_on_shutdown(context):
+        if ends_with_launch:
             context.register_event_handler(OnShutdown(on_shutdown=lambda event, context: self.cancel()))
         context.register_event_handler(
             EventHandler(matcher=self._is_mine, entities=OpaqueFunction(function=self._fire), handle_once=True)

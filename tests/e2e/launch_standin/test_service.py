@@ -1,0 +1,331 @@
+"""The launch service as other programs use it: threads, event loops, errors, cancellation."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import launch
+import pytest
+from launch.actions import (
+    EmitEvent,
+    ExecuteProcess,
+    LogInfo,
+    OpaqueCoroutine,
+    OpaqueFunction,
+    RegisterEventHandler,
+    Shutdown,
+    TimerAction,
+    UnregisterEventHandler,
+)
+from launch.event_handlers import OnProcessExit, OnProcessStart, OnShutdown
+from launch.events.process import SignalProcess, matches_executable, matches_name, matches_pid
+
+
+@pytest.fixture(autouse=True)
+def _log_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    launch.logging.reset()
+    yield
+    launch.logging.reset()
+
+
+def sleeper(**more: Any) -> ExecuteProcess:
+    return ExecuteProcess(cmd=["sleep", "3600"], **more)
+
+
+def service_with(*entities: Any) -> launch.LaunchService:
+    service = launch.LaunchService()
+    service.include_launch_description(launch.LaunchDescription(entities))
+    return service
+
+
+def when_started(action: ExecuteProcess, do: Callable[[], Any]) -> RegisterEventHandler:
+    return RegisterEventHandler(OnProcessStart(target_action=action, on_start=lambda event, context: do()))
+
+
+def is_gone(action: ExecuteProcess) -> bool:
+    assert action.process_details is not None
+    return not Path("/proc", str(action.process_details["pid"])).exists()
+
+
+def test_another_thread_can_shut_the_launch_down() -> None:
+    action = sleeper()
+    service = service_with(action, when_started(action, lambda: threading.Thread(target=service.shutdown).start()))
+    assert service.run() == 0
+    assert action.return_code == -signal.SIGINT
+    assert is_gone(action)
+
+
+def test_another_thread_can_add_to_a_running_launch(capsys: pytest.CaptureFixture[str]) -> None:
+    action = sleeper()
+
+    def add() -> None:
+        service.include_launch_description(launch.LaunchDescription([LogInfo(msg="added"), Shutdown()]))
+
+    service = service_with(action, when_started(action, lambda: threading.Thread(target=add).start()))
+    assert service.run() == 0
+    assert "[launch.user]: added" in capsys.readouterr().out
+
+
+def test_shutdown_of_a_launch_that_does_not_run_does_nothing() -> None:
+    assert launch.LaunchService().shutdown() is None
+
+
+def test_shutdown_within_the_loop_returns_a_coroutine() -> None:
+    action = sleeper()
+
+    async def stop(context: launch.LaunchContext) -> None:
+        coroutine = service.shutdown()
+        assert coroutine is not None
+        await coroutine
+
+    service = service_with(action, OpaqueCoroutine(coroutine=stop))
+    assert service.run() == 0
+    assert is_gone(action)
+
+
+def test_a_launch_can_run_within_a_loop_that_runs_already() -> None:
+    async def main() -> tuple[int, bool]:
+        action = sleeper()
+        service = service_with(action, when_started(action, lambda: service.shutdown(force_sync=True)))
+        return await service.run_async(), is_gone(action)
+
+    assert asyncio.run(main()) == (0, True)
+
+
+def test_a_launch_outside_of_the_main_thread_is_refused() -> None:
+    caught: list[Exception] = []
+
+    def work() -> None:
+        try:
+            launch.LaunchService().run()
+        except RuntimeError as error:
+            caught.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert [str(error) for error in caught] == ["LaunchService can only be run in the main thread."]
+
+
+def test_a_service_runs_once_at_a_time() -> None:
+    async def again(context: launch.LaunchContext) -> None:
+        with pytest.raises(RuntimeError, match="called from multiple threads concurrently"):
+            await service.run_async()
+
+    service = service_with(OpaqueCoroutine(coroutine=again))
+    assert service.run() == 0
+
+
+def test_a_cancelled_launch_ends_its_processes_before_the_cancellation_goes_on() -> None:
+    action = sleeper()
+
+    async def main() -> None:
+        service = service_with(action, when_started(action, lambda: task.cancel()))
+        task = asyncio.ensure_future(service.run_async())
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        assert is_gone(action)
+
+    asyncio.run(main())
+    assert action.return_code == -signal.SIGINT
+
+
+@pytest.mark.parametrize("error", [SystemExit, KeyboardInterrupt])
+def test_an_exit_out_of_a_launch_file_leaves_no_process(error: type[BaseException]) -> None:
+    action = sleeper()
+
+    def leave() -> None:
+        raise error
+
+    with pytest.raises(error):
+        service_with(action, when_started(action, leave)).run()
+    assert is_gone(action)
+
+
+def test_an_error_in_a_handler_ends_the_launch_with_it(capsys: pytest.CaptureFixture[str]) -> None:
+    action = sleeper()
+
+    def fail() -> None:
+        raise ValueError("what a pity")
+
+    assert service_with(action, when_started(action, fail)).run() == 1
+    assert "Caught exception in launch (see debug for traceback): what a pity" in capsys.readouterr().out
+    assert is_gone(action)
+
+
+def test_an_error_in_a_coroutine_ends_the_launch_with_it(capsys: pytest.CaptureFixture[str]) -> None:
+    async def fail(context: launch.LaunchContext) -> None:
+        raise ValueError("what a pity")
+
+    action = sleeper()
+    assert service_with(action, OpaqueCoroutine(coroutine=fail)).run() == 1
+    assert "Caught exception in launch (see debug for traceback): what a pity" in capsys.readouterr().out
+    assert is_gone(action)
+
+
+def test_the_end_of_the_launch_cancels_coroutines_and_timers() -> None:
+    done: list[str] = []
+
+    async def wait_long(context: launch.LaunchContext) -> None:
+        try:
+            await asyncio.sleep(3600)
+        except asyncio.CancelledError:
+            done.append("cancelled")
+            raise
+
+    never = TimerAction(period=3600.0, actions=[OpaqueFunction(function=lambda context: done.append("never"))])
+    soon = TimerAction(period=0.05, actions=[Shutdown()])
+    assert service_with(never, OpaqueCoroutine(coroutine=wait_long), soon).run() == 0
+    assert done == ["cancelled"]
+
+
+def test_signal_handlers_are_as_before_after_a_launch() -> None:
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+    before = [signal.getsignal(number) for number in numbers]
+    service_with(LogInfo(msg="short")).run()
+    assert [signal.getsignal(number) for number in numbers] == before
+
+
+def test_a_service_that_is_not_to_end_when_idle_waits_for_its_shutdown() -> None:
+    service = service_with(LogInfo(msg="nothing more to do"))
+    timer = threading.Timer(0.2, service.shutdown)
+    timer.start()
+    assert service.run(shutdown_when_idle=False) == 0
+    timer.join()
+
+
+def test_a_signal_goes_to_the_processes_that_match() -> None:
+    ended: list[int] = []
+    actions = [sleeper(), sleeper(), sleeper(name="third")]
+
+    def send() -> Any:
+        details = [action.process_details or {} for action in actions]
+        return [
+            EmitEvent(event=SignalProcess(signal_number="SIGUSR1", process_matcher=matches_pid(details[0]["pid"]))),
+            EmitEvent(event=SignalProcess(signal_number=12, process_matcher=matches_name(details[1]["name"]))),
+            EmitEvent(event=SignalProcess(signal_number=15, process_matcher=lambda action: action is actions[2])),
+        ]
+
+    exits = [
+        RegisterEventHandler(OnProcessExit(target_action=action, on_exit=lambda e, c: ended.append(e.returncode)))
+        for action in actions
+    ]
+    service = service_with(*exits, *actions, when_started(actions[2], send))
+    assert service.run() == 0
+    assert sorted(ended) == [-15, -12, -10]
+    assert matches_executable("sleep")(actions[0])
+    assert not matches_executable("sheep")(actions[0])
+
+
+def test_an_action_is_executed_once(capsys: pytest.CaptureFixture[str]) -> None:
+    action = ExecuteProcess(cmd=["true"])
+    assert service_with(action, action).run() == 1
+    assert re_executed in capsys.readouterr().out
+
+
+re_executed = "executed more than once: ExecuteProcess(cmd=['true'], cwd=None, env=None, shell=False)"
+
+
+def test_nothing_is_started_once_the_launch_ends() -> None:
+    late = ExecuteProcess(cmd=["true"])
+    handler = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: late))
+    assert service_with(handler, Shutdown()).run() == 0
+    assert late.return_code is None
+
+
+def test_a_timer_that_begins_at_the_end_does_not_hold_it_up() -> None:
+    late = TimerAction(period=3600.0, actions=[LogInfo(msg="never")])
+    assert service_with(RegisterEventHandler(OnShutdown(on_shutdown=[late])), Shutdown()).run() == 0
+
+
+def test_a_handler_can_be_removed_and_can_be_meant_for_once(capsys: pytest.CaptureFixture[str]) -> None:
+    removed = OnProcessStart(on_start=[LogInfo(msg="removed")])
+    once = OnProcessStart(on_start=lambda event, context: LogInfo(msg="once"), handle_once=True)
+    actions = [RegisterEventHandler(removed), RegisterEventHandler(once), UnregisterEventHandler(removed)]
+    service_with(*actions, ExecuteProcess(cmd=["true"]), ExecuteProcess(cmd=["true"])).run()
+    out = capsys.readouterr().out
+    assert (out.count("[launch.user]: once"), out.count("[launch.user]: removed")) == (1, 0)
+
+
+def test_output_is_kept_if_it_is_asked_for() -> None:
+    kept = ExecuteProcess(cmd=["sh", "-c", "echo out; printf err >&2"], cached_output=True)
+    other = ExecuteProcess(cmd=["true"], name="other")
+    service_with(kept, other).run()
+    assert (kept.get_stdout(), kept.get_stderr(), kept.return_code) == ("out\n", "err", 0)
+    with pytest.raises(RuntimeError, match=r"cached output must be true to be able to get stdout, proc 'other-\d+'"):
+        other.get_stdout()
+
+
+def test_much_output_arrives_whole_and_in_order() -> None:
+    action = ExecuteProcess(cmd=["seq", "20000"], cached_output=True)
+    service_with(action).run()
+    assert action.get_stdout().split() == [str(number) for number in range(1, 20001)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"cmd": "echo hello"}, TypeError, r"cmd must be a list such as \['echo', 'hello'\], got str: 'echo hello'"),
+        ({"cmd": ["true"], "respawn": 3}, TypeError, "value='3' is not an instance of <class 'bool'>"),
+        ({"cmd": ["sleep", 5]}, TypeError, "Failed to normalize given item of type '<class 'int'>'"),
+    ],
+)
+def test_arguments_of_the_wrong_type_are_refused_at_once(
+    arguments: dict[str, Any], error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message):
+        ExecuteProcess(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("scren", 'scren is not a valid standard output config i.e. "screen", "log" or "both"'),
+        ({"out": "screen"}, 'out is not a valid output source i.e. "stdout", "stderr" or "both"'),
+        ({"stdout": "scren"}, "['scren'] is not a valid output destination i.e. "),
+    ],
+)
+def test_an_output_that_there_is_not_ends_the_launch(
+    capsys: pytest.CaptureFixture[str], output: Any, message: str
+) -> None:
+    assert service_with(ExecuteProcess(cmd=["true"], output=output)).run() == 1
+    assert message in capsys.readouterr().out
+
+
+def test_a_handler_needs_an_action_and_something_to_do() -> None:
+    with pytest.raises(TypeError, match="action_matcher must be an 'ExecuteLocal' instance or a callable, got LogInfo"):
+        OnProcessExit(target_action=LogInfo(msg=""), on_exit=[])
+    with pytest.raises(
+        TypeError, match="expected all items in 'on_event' iterable to be of type 'LaunchDescriptionEnt"
+    ):
+        OnProcessExit(on_exit=["not an action"])
+    with pytest.raises(TypeError, match="expected entities or a callable to handle an event with, got '<class 'int'>'"):
+        OnShutdown(on_shutdown=5)  # type: ignore[arg-type]
+
+
+def test_a_coroutine_and_a_function_must_be_such() -> None:
+    with pytest.raises(TypeError, match="OpaqueFunction expected a callable for 'function', got '<class 'str'>'"):
+        OpaqueFunction(function="f")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="OpaqueCoroutine expected a coroutine function for 'coroutine'"):
+        OpaqueCoroutine(coroutine=print)  # type: ignore[arg-type]
+
+
+def test_each_child_leads_a_process_group_of_its_own() -> None:
+    groups: list[int] = []
+    action = sleeper()
+
+    def look() -> Shutdown:
+        assert action.process_details is not None
+        groups.append(os.getpgid(action.process_details["pid"]))
+        return Shutdown()
+
+    service_with(action, when_started(action, look)).run()
+    assert action.process_details is not None
+    assert groups == [action.process_details["pid"]]
