@@ -34,10 +34,12 @@ isolation_option = click.option(
 
 
 def reason(result: Result) -> str:
-    """Say in one sentence why a result is not full."""
+    """Say in one sentence why a result is not full: what a picture shows comes before what only words say."""
     if result.status is Status.NOT_GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
     failed = [check for check in result.checks if check.outcome is Outcome.FAILED]
+    pictured = {artifact.check for artifact in result.artifacts}
+    failed.sort(key=lambda check: check.id not in pictured)
     more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
     return f"{failed[0].message}{more}" if failed else ""
 

@@ -8,13 +8,14 @@ import random
 from sim import BOX_NAMES, Pose, World, box
 
 FREE = 1.2  # m around the start without anything in it
+WALLS = [f"the {name}" for name in BOX_NAMES]
 GAP = 1.4  # m between two obstacles, so that no two make a trap
 
 
 def furnished_room(draw: random.Random) -> World:
     """A rectangular room with a few pieces of furniture."""
     width, height = draw.uniform(6.5, 8.0), draw.uniform(5.0, 6.5)
-    segments, names = box(width, height).tolist(), list(BOX_NAMES)
+    segments, names = box(width, height).tolist(), list(WALLS)
     for x, y in _places(draw, 3, width / 2 - 1.2, height / 2 - 1.2):
         wide, deep, name = draw.uniform(0.4, 0.9), draw.uniform(0.4, 0.9), draw.choice(("a table", "a shelf", "a sofa"))
         segments += box(wide, deep, x=x, y=y).tolist()
@@ -31,7 +32,7 @@ def hall_of_pillars(draw: random.Random) -> World:
         circles=circles,
         name="a hall of pillars",
         starts=[_start(draw)],
-        segment_names=BOX_NAMES,
+        segment_names=WALLS,
         circle_names=["a pillar"] * len(circles),
     )
 

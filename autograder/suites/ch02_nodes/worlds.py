@@ -12,33 +12,33 @@ from autograder.lab.drive import LISTENS, OFFERS
 from autograder.suites import temporal
 from autograder.suites.ch02_nodes import terrain
 from autograder.visible.ch02_nodes.contract import EXECUTABLE, PACKAGE
-from sim import Clearance, Pose, Recording, RobotSpec, RobotState, Simulation, State, World, clearance
+from sim import Pose, Recording, RobotSpec, RobotState, Simulation, State, World, clearance
 
 GROUP = "worlds"
 SECONDS = 60.0
 RADIUS = 0.18  # m
 LEAST_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
-REACTS = ("forward_when_clear", "turns_when_blocked")
+DRIVES = ("forward_when_clear",)  # not on turning: a collision shows more than a failed reaction, and earns its share
 HINTS = (
     "Look at the picture: what did the lidar see at the marked instant, and at which bearing?",
     "Drive the same kind of world in the notebook, with drive(...), and print what control_loop decides.",
 )
 
 
-@check(points=3, group=GROUP, depends=REACTS, hints=HINTS)
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
 def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
     _expect_safe_drive(workspace, terrain.furnished_room(draw), draw, gallery)
 
 
-@check(points=3, group=GROUP, depends=REACTS, hints=HINTS)
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
 def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
     _expect_safe_drive(workspace, terrain.hall_of_pillars(draw), draw, gallery)
 
 
-@check(points=3, group=GROUP, depends=REACTS, hints=HINTS)
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
 def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""
     _expect_safe_drive(workspace, terrain.bent_corridor(draw), draw, gallery)
@@ -51,11 +51,11 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
     if verdict.violated_at is not None:
         when = verdict.violated_at
-        near = _nearest(recording, when)
-        sentence = (
-            f"It came within {max(near.distance, 0.0):.2f} m of {near.what} at t = {when:.1f} s: that is a collision."
+        what = _nearest(recording, when)
+        sentence = f"It touched {what} at t = {when:.1f} s."
+        gallery.track(
+            "track", recording, f"The robot's track in {world.name}. {sentence}", mark=when, note=f"touches {what}"
         )
-        gallery.track("track", recording, f"The robot's track in {world.name}. {sentence}", mark=when, note=near.what)
         raise CheckFailed(sentence, fraction=round(when / SECONDS, 2))
     path = _path_length(recording)
     caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
@@ -68,8 +68,8 @@ def _path_length(recording: Recording) -> float:
     return float(sum(math.hypot(dx, dy) for dx, dy in steps.tolist()))
 
 
-def _nearest(recording: Recording, when: float) -> Clearance:
+def _nearest(recording: Recording, when: float) -> str:
     row = int(abs(recording.times - when).argmin())
     simulation, pose = recording.simulation, Pose(*recording.poses[row, 0].tolist())
     robot = RobotState(simulation.robots[0].name, pose)
-    return clearance(simulation, State(0, int(recording.times_ns[row]), (robot,)))
+    return clearance(simulation, State(0, int(recording.times_ns[row]), (robot,))).what
