@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
+from sim.exceptions import SpecError
 from sim.faults import NO_FAULTS, Faults
 from sim.lidar import LDS_01, LidarSpec
 from sim.pose import ORIGIN, REST, Command, Pose
+
+CONVEX = "three points or more of a convex polygon round (0, 0), anticlockwise, in metres"
 
 if TYPE_CHECKING:
     from sim.state import State
@@ -26,6 +31,11 @@ class OdometryDrift:
     linear: float = 0.0
     angular: float = 0.0
     veer: float = 0.0
+
+    def __post_init__(self) -> None:
+        for what in ("linear", "angular", "veer"):
+            if not 0.0 <= getattr(self, what) <= 10.0:
+                raise SpecError(f"drift: {what} is {getattr(self, what)}; give a standard deviation from 0 to 10")
 
 
 NO_DRIFT = OdometryDrift()
@@ -56,12 +66,29 @@ class RobotSpec:
     on_collision: Literal["stop", "slide"] = "stop"
     start: Pose | None = None
 
+    def __post_init__(self) -> None:
+        for what, good, remedy in (
+            ("name", bool(self.name) and self.name.isprintable(), "a short text"),
+            ("radius", 0.01 <= self.radius <= 10.0, "metres, from 0.01 to 10"),
+            ("max_linear", 0.0 <= self.max_linear <= 100.0, "m/s, from 0 to 100"),
+            ("max_angular", 0.0 <= self.max_angular <= 100.0, "rad/s, from 0 to 100"),
+            ("max_linear_acceleration", self.max_linear_acceleration > 0.0, "m/s², above 0; inf for none"),
+            ("max_angular_acceleration", self.max_angular_acceleration > 0.0, "rad/s², above 0; inf for none"),
+            ("watchdog", self.watchdog > 0.0, "seconds, above 0; inf for none"),
+            ("on_collision", self.on_collision in ("stop", "slide"), "'stop' or 'slide'"),
+            ("start", self.start is None or _finite(self.start), "a pose of finite numbers"),
+            ("footprint", self.footprint is None or _convex(self.footprint), CONVEX),
+        ):
+            if not good:
+                raise SpecError(f"robot {self.name!r}: {what} is {getattr(self, what)!r}; give {remedy}")
+
 
 @dataclass(frozen=True, slots=True)
 class RobotState:
     """One robot at one instant.
 
-    `pose` is the truth in the frame `map`; `velocity` what it does now, in m/s and rad/s; `command` the last one
+    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on
+    turning while it slides along something); `command` the last one
     received, at `command_ns`; `odometry` the pose by its wheels in the frame `odom` (which starts at the start
     pose), with `covariance` over (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while
     something blocks it; `collisions` counts the contacts so far. `held` is the state in which a frozen lidar froze.
@@ -77,3 +104,18 @@ class RobotState:
     collided: bool = False
     collisions: int = 0
     held: State | None = None
+
+
+def _finite(pose: Pose) -> bool:
+    return all(map(math.isfinite, (pose.x, pose.y, pose.theta)))
+
+
+def _convex(points: tuple[tuple[float, float], ...]) -> bool:
+    """Return whether each side turns left of the one before, with the origin on its left, once around."""
+    if len(points) < 3 or not all(math.isfinite(x) and math.isfinite(y) for x, y in points):
+        return False
+    sides = list(pairwise([*points, points[0]]))
+    ways = [(b[0] - a[0], b[1] - a[1]) for a, b in sides]
+    turns = [math.atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]) for p, q in pairwise([*ways, ways[0]])]
+    left_of_all = all(a[0] * b[1] - a[1] * b[0] > 0.0 for a, b in sides)
+    return left_of_all and all(turn > 0.0 for turn in turns) and sum(turns) < 1.01 * math.tau

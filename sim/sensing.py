@@ -19,6 +19,7 @@ from sim.pose import Pose
 from sim.robot import RobotSpec
 from sim.scene import Body, Scene, beams_of, outline
 from sim.state import Simulation, State
+from sim.world import LEAST_METRES
 
 Floats = NDArray[np.float64]
 NOTHING = np.empty(0)
@@ -77,6 +78,7 @@ def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
 
     Of the world's walls and circles alone, with movers where they are at time 0; `inf` beyond `range_max`. A beam
     starts at the pose and goes along `directions(pose, lidar)`; a wall is a closed segment and a circle a solid disc.
+    Numbers nearer to zero than 1e-60 are taken for zero.
     """
     scene = simulation.scene
     ranges = _fan(scene, scene.walls, _circles(scene, scene.movers_at(0)), pose, lidar)
@@ -86,7 +88,7 @@ def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
 
 def directions(pose: Pose, lidar: LidarSpec) -> Floats:
     """Return the beams' directions (beams, 2) in the frame `map`, the very doubles that the engines use."""
-    s, c = sincos(pose.theta)
+    s, c = sincos(clean(pose.theta))
     x, y = beams_of(lidar).table
     return np.stack((c * x - s * y, s * x + c * y), axis=1)
 
@@ -95,6 +97,11 @@ def mounted(pose: Pose, mount: Pose) -> Pose:
     """Return where a sensor is whose pose in `base_link` is `mount`, for a robot at `pose`."""
     s, c = sincos(pose.theta)
     return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)
+
+
+def clean(value: float) -> float:
+    """Return 0 for numbers so small that their products would leave the range of a double."""
+    return value if abs(value) >= LEAST_METRES else 0.0
 
 
 def _ranges(simulation: Simulation, state: State, index: int, lidar: LidarSpec, body: Body) -> Floats:
@@ -128,7 +135,7 @@ def _circles(scene: Scene, extra: Sequence[tuple[float, float, float]]) -> Float
 def _fan(scene: Scene, walls: Floats, circles: Floats, at: Pose, lidar: LidarSpec, body: Body | None = None) -> Floats:
     beams = beams_of(lidar) if body is None or body.beams is None else body.beams
     grid = scene.grid
-    place = (circles, beams.table, at.x, at.y, at.theta, lidar.angle_min, beams.per_radian, beams.reach)
+    place = (circles, beams.table, clean(at.x), clean(at.y), clean(at.theta), lidar.angle_min, beams.per_radian, beams.reach)
     ranges: Floats
     if grid is None or walls is not scene.walls:
         ranges = scene.engine.fan(walls, *place)
@@ -150,7 +157,7 @@ def _skewed(
         before = (lidar.beams - 1 - beam) * lidar.time_increment
         at = mounted(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -before)), lidar.mount)
         s, c = sincos(at.theta)
-        origins[beam] = at.x, at.y
+        origins[beam] = clean(at.x), clean(at.y)
         ways[beam] = c * bx - s * by, s * bx + c * by
     ranges: Floats = scene.engine.rays(walls, circles, origins, ways)
     return ranges

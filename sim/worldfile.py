@@ -120,7 +120,7 @@ def _sides(read: Reader, node: yaml.Node) -> list[tuple[float, float, float, flo
             raise bad(read.path, point, "two neighbouring points are the same", "Leave one of them out")
     if len(points) < 3:
         raise bad(read.path, node, f"a polygon of {len(points)} points", "Give three or more, or use a wall")
-    return [(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+    return [(a[0], a[1], b[0], b[1]) for a, b in zip(points, points[1:] + points[:1], strict=True)]
 
 
 def _start(read: Reader, node: yaml.Node, circles: list[tuple[float, ...]]) -> Pose:

@@ -101,7 +101,7 @@ def _walls_into(
     np.maximum(counts, 0.0, out=counts)
     if (unsure | hard).any():
         # a hard wall that no beam meets is left out, unless the sensor may stand on it
-        hard &= (counts[0] + counts[1] > 0.0) | (np.abs(swing) > 0.4 * full)
+        hard &= (counts[0] + counts[1] > 0.0) | (np.abs(swing) > 0.4 * full) | (h == 0.0)
         hard |= unsure.any(axis=(0, 1))
         counts[:, hard] = 0.0
         for k in np.flatnonzero(hard):

@@ -182,8 +182,8 @@ def push(
         more = sweep(pose, 0.0, w, 0.0, 0.0, rest * (1.0 - more), SKIN, body, walls, circles, spare)
         sx = 0.0
         sy = 0.0
-    robot[3] = c * sx + s * sy
+    robot[3] = v if slide else 0.0
     robot[4] = w if more == 1.0 else 0.0
-    measure(robot, ds + robot[3] * rest, turn + robot[4] * rest, drift, noise)
+    measure(robot, ds + (c * sx + s * sy) * rest, turn + robot[4] * rest, drift, noise)
     touch[5] = abs(v)
     return True

@@ -1,0 +1,211 @@
+"""Both engines, any order of calls, any cut of the time: the same bits."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy._core import _multiarray_umath
+
+from sim import (
+    LDS_01,
+    UTM_30LX,
+    Command,
+    EngineError,
+    LidarSpec,
+    OdometryDrift,
+    Pose,
+    RobotSpec,
+    Simulation,
+    State,
+    World,
+    cast,
+    directions,
+    observe,
+    run,
+    start,
+    step,
+)
+from sim.engine import arrays, engine, loops, motion, shapes, traverse
+from sim.engine.index import grid_of, layout
+from sim.scene import beams_of
+from tests.unit.sim.worlds import ENGINES, FULL_TURN, at, random_pose, random_world, wander
+
+SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
+# Of the scans of `golden`, found once and the same on every machine; see `test_the_scans_are_those_of_every_machine`.
+GOLDEN = "fce9484f7817df2924302ac482de20974748198a9b9bce93149d1ea2a170cb3b"
+
+
+def simulation(name: str, **robot: Any) -> Simulation:
+    lidar = replace(LDS_01, noise=0.01, dropout=0.02, mount=Pose(0.03, 0.01, 0.2))
+    robots = [
+        RobotSpec(name=f"r{number}", lidar=lidar, drift=OdometryDrift(0.02, 0.03, 0.01), **robot) for number in range(2)
+    ]
+    return Simulation(random_world(5, movers=2), tuple(robots), seed=7, engine=name)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("robot", [{}, {"on_collision": "slide"}, {"footprint": SQUARE}])
+def test_both_engines_record_the_same_run_bit_for_bit(robot: dict[str, Any]) -> None:
+    hashes = {run(simulation(name, **robot), wander(3, ("r0", "r1")), 20.0).sha256() for name in ENGINES}
+    assert len(hashes) == 1
+
+
+def golden(name: str) -> str:
+    """The hash of the float32 scans of a run with everything in it."""
+    recording = run(simulation(name), wander(11, ("r0", "r1")), 10.0)
+    digest = hashlib.sha256()
+    for log in recording.scans:
+        digest.update(log.ranges.astype("<f4").tobytes())
+    return digest.hexdigest()
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_scans_are_those_of_every_machine(name: str) -> None:
+    """Only correctly rounded operations stand between the seed and the scan, so that no processor can tell."""
+    assert golden(name) == GOLDEN
+
+
+@pytest.mark.parametrize("name", ["numpy", pytest.param("numba", marks=pytest.mark.slow)])
+def test_a_processor_without_vector_units_or_fused_multiply_add_finds_the_same_scans(
+    name: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    """numpy's, numba's and the C library's fast paths are switched off in a process of its own."""
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(request.config.rootpath),
+        "NPY_DISABLE_CPU_FEATURES": " ".join(_multiarray_umath.__cpu_dispatch__),
+        "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F",
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }
+    script = f"from tests.unit.sim.test_engines import golden; print(golden({name!r}))"
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", script], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip() == GOLDEN, done.stderr
+
+
+@pytest.mark.parametrize("lidar", [LDS_01, UTM_30LX, LidarSpec(beams=7, angle_min=-1.0, angle_increment=0.11)])
+def test_both_engines_cast_the_same_fans(lidar: LidarSpec) -> None:
+    random = np.random.default_rng(9)
+    world = random_world(1, walls=40)
+    for number in range(150):
+        pose = random_pose(random)
+        if number % 3 == 0:  # in line with walls, at beams through corners
+            pose = Pose(float(round(pose.x)), float(round(pose.y)), 0.0)
+        ranges = [cast(at(pose, world, name), pose, lidar) for name in ENGINES]
+        np.testing.assert_array_equal(ranges[0], ranges[1])
+
+
+def test_single_beams_and_fans_agree_bit_for_bit() -> None:
+    random = np.random.default_rng(10)
+    world = random_world(2)
+    walls, beams = layout(world.segments), beams_of(FULL_TURN)
+    for _ in range(20):
+        pose = random_pose(random)
+        fan = cast(at(pose, world), pose, FULL_TURN)
+        origins = np.tile([pose.x, pose.y], (FULL_TURN.beams, 1))
+        for name in ENGINES:
+            singles = engine(name).rays(walls, world.circles.copy(), origins, directions(pose, FULL_TURN))  # type: ignore[arg-type]
+            np.testing.assert_array_equal(np.where(singles > FULL_TURN.range_max, np.inf, singles), fan)
+        plain = loops.fan(walls, world.circles, beams.table, pose.x, pose.y, pose.theta, 0.0, beams.per_radian, 30.0)
+        np.testing.assert_array_equal(np.where(plain > FULL_TURN.range_max, np.inf, plain), fan)
+
+
+@pytest.mark.parametrize("walls", [301, 3000])
+def test_the_grid_changes_the_cost_and_not_a_bit(walls: int) -> None:
+    world = random_world(3, walls=walls, size=30.0)
+    assert at(Pose(), world, "numba").scene.grid is not None
+    assert at(Pose(), world, "numpy").scene.grid is None
+    random = np.random.default_rng(4)
+    simulations = [at(Pose(), world, name) for name in ENGINES]
+    for number in range(60):
+        pose = random_pose(random, 34.0)  # from outside, too
+        if number % 3 == 0:
+            pose = Pose(float(round(pose.x)), float(round(pose.y)), 0.0)
+        first, second = (cast(simulation, pose, FULL_TURN) for simulation in simulations)
+        np.testing.assert_array_equal(first, second)
+
+
+def test_every_cell_of_the_grid_holds_the_walls_that_pass_through_it() -> None:
+    walls = layout(random_world(8, walls=400).segments)
+    grid = grid_of(walls)
+    for wall in range(walls.shape[1]):
+        x1, x2, y1, y2 = walls[:4, wall].tolist()
+        for t in np.linspace(0.0, 1.0, 50).tolist():
+            column = int((x1 + t * (x2 - x1) - grid.west) / grid.cell)
+            row = int((y1 + t * (y2 - y1) - grid.south) / grid.cell)
+            cell = row * grid.columns + column
+            assert wall in grid.members[grid.starts[cell] : grid.starts[cell + 1]]
+
+
+def test_the_order_of_observations_does_not_matter() -> None:
+    subject = simulation("numpy")
+    states = [start(subject)]
+    for _ in range(5):
+        states.append(step(subject, states[-1], {"r0": Command(0.3, 0.5)}, 0.1))
+
+    def bits(state: State, robot: str) -> bytes:
+        scan = observe(subject, state, robot)
+        assert scan is not None
+        return scan.ranges.tobytes()
+
+    forth = {(index, robot): bits(states[index], robot) for index in range(6) for robot in ("r0", "r1")}
+    back = {(index, robot): bits(states[index], robot) for robot in ("r1", "r0") for index in reversed(range(6))}
+    assert forth == back
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_one_long_step_ends_where_many_short_ones_do(name: str) -> None:
+    subject = simulation(name)
+    commands = {"r0": Command(0.4, 0.7), "r1": Command(0.3, -0.2)}
+    long = step(subject, start(subject), commands, 1.0)
+    short = step(subject, start(subject), commands)
+    while short.time_ns < long.time_ns:
+        short = step(subject, short)
+    assert short.robots == long.robots
+    assert short.tick == long.tick == 50
+
+
+def test_the_compiled_sources_run_interpreted_too() -> None:
+    walls = layout(random_world(6).segments)
+    grid = grid_of(walls)
+    circles = np.array([[1.0, 1.0, 0.3]])
+    beams = beams_of(FULL_TURN)
+    place = (circles, beams.table, 0.3, 0.4, 0.5, 0.0, beams.per_radian, beams.reach)
+    through = traverse.fan_in_grid(
+        walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *place
+    )
+    np.testing.assert_array_equal(through, arrays.fan(walls, *place))
+    assert math.isclose(shapes.nearest(walls, circles, 0.3, 0.4), arrays.nearest(walls, circles, 0.3, 0.4))
+    robot = np.zeros(motion.STATE)
+    other = robot.copy()
+    limits, drift, noise = np.array([1.0, 1.0, 9.0, 9.0]), np.zeros(3), np.zeros((4, 2))
+    motion.coast(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    arrays.coast(other, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    np.testing.assert_array_equal(robot, other)
+
+
+def test_an_unknown_engine_is_refused_by_name() -> None:
+    with pytest.raises(EngineError, match="no engine 'cuda'; use 'numpy', 'numba' or 'auto'"):
+        Simulation(World(), engine="cuda")  # type: ignore[arg-type]
+
+
+def test_an_engine_that_is_not_installed_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "sim.engine.compiled", None)
+    monkeypatch.delattr("sim.engine.compiled", raising=False)
+    with pytest.raises(EngineError, match=r"pip install .*fast.*, or use engine='numpy'"):
+        engine("numba")
+
+
+def test_auto_takes_numba_where_it_is_installed() -> None:
+    assert engine("auto") is engine("numba")
