@@ -19,6 +19,16 @@ DISTRO = "jazzy"
 WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
 
 
+def without_wheel_bootstrap(environ: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables for a Python that has to run the wheels' start-up hook again.
+
+    A sourced ROS's own LD_LIBRARY_PATH stays: only the hook's is taken away.
+    """
+    marker = WHEEL_BOOTSTRAP_VARIABLES[0]
+    dropped = WHEEL_BOOTSTRAP_VARIABLES if environ.get(marker) else ()
+    return {name: value for name, value in environ.items() if name not in dropped}
+
+
 @dataclass(frozen=True)
 class RosEnvironment:
     """A ROS 2 installation that this interpreter can import.

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.ros import RosEnvironment, find
+from autograder.ros.environment import without_wheel_bootstrap
 
 ROOT = Path(__file__).parents[3]
 ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
@@ -105,6 +106,12 @@ def test_children_get_overlays_first_and_only_what_was_asked_for() -> None:
     assert variables["AMENT_PREFIX_PATH"] == variables["CMAKE_PREFIX_PATH"] == "/near:/far:/venv"
     assert (variables["ROS_DOMAIN_ID"], variables["ROS_LOG_DIR"]) == ("232", "/logs")
     assert "ROS_DOMAIN_ID" not in ROS.variables()
+
+
+def test_crossing_into_another_environment_drops_the_wheels_libraries_and_keeps_a_sourced_ones() -> None:
+    sourced = {"LD_LIBRARY_PATH": "/opt/ros/jazzy/lib", "HOME": "/home/me"}
+    assert without_wheel_bootstrap(sourced) == sourced
+    assert without_wheel_bootstrap({**sourced, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}) == {"HOME": "/home/me"}
 
 
 @pytest.mark.parametrize("domain", [-1, 233])
