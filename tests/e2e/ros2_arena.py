@@ -45,6 +45,7 @@ class Talker(Node):
 class Helper(Node):
     def __init__(self) -> None:
         super().__init__("helper", namespace="/lab")
+        self.ending = threading.Event()
         limits = FloatingPointRange(from_value=0.0, to_value=2.0, step=0.5)
         self.declare_parameter(
             "speed", 1.0, ParameterDescriptor(description="How fast, in m/s", floating_point_range=[limits])
@@ -76,13 +77,12 @@ class Helper(Node):
 
     def execute(self, goal: Any) -> Any:
         """Count to the target; a target above 100 is never reached."""
-        pause = threading.Event()
         total = 0
         for now in range(1, goal.request.target + 1):
             goal.publish_feedback(Count.Feedback(now=now))
             total += now
-            while goal.request.target > 100 and not goal.is_cancel_requested:
-                pause.wait(0.01)
+            while goal.request.target > 100 and not goal.is_cancel_requested and not self.ending.wait(0.01):
+                pass
             if goal.is_cancel_requested:
                 goal.canceled()
                 print("cancelled", flush=True)
@@ -93,16 +93,15 @@ class Helper(Node):
 
 def main() -> None:
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    done = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: done.set())
     executor = MultiThreadedExecutor(4)
-    nodes = [Talker(), Helper()]
-    for node in nodes:
+    talker, helper = Talker(), Helper()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: helper.ending.set())
+    for node in (talker, helper):
         executor.add_node(node)
     threading.Thread(target=executor.spin, daemon=True).start()
     print("ready", flush=True)
-    done.wait()
+    helper.ending.wait()
     executor.shutdown()
     rclpy.try_shutdown()
 

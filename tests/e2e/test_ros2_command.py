@@ -125,7 +125,10 @@ class Arena:
                 if seen(line):
                     process.send_signal(number)
                     break
-            rest, err = process.communicate(timeout=PATIENCE)
+            try:
+                rest, err = process.communicate(timeout=PATIENCE)
+            finally:
+                process.kill()
         return Answer("".join(lines) + rest, err, process.returncode)
 
 
@@ -168,9 +171,12 @@ def arena(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Arena]:
     with subprocess.Popen([sys.executable, str(ARENA)], env=env, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
-        yield Arena(env, process)
-        process.terminate()
-        process.communicate(timeout=PATIENCE)
+        try:
+            yield Arena(env, process)
+            process.terminate()
+            process.communicate(timeout=PATIENCE)
+        finally:
+            process.kill()
     assert process.returncode == 0
 
 

@@ -128,11 +128,11 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         if not handle.accepted:
             print("Goal was rejected.")
             return None
-        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
-        finishing = handle.get_result_async()
         try:
+            print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+            finishing = handle.get_result_async()
             session.spin_until(finishing)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemExit):
             _cancel(session, handle)
             raise
         answer = finishing.result()

@@ -177,4 +177,5 @@ def test_pep257():
 
 def _quoted(text: str) -> str:
     """Return a Python literal in single quotes, as ROS's style wants it, whatever the text holds."""
-    return "'" + text.replace("\\", "\\\\").replace("'", "\\'").replace("\n", "\\n") + "'"
+    literal = repr(text)
+    return literal if literal[0] == "'" else "'" + literal[1:-1].replace("'", "\\'") + "'"

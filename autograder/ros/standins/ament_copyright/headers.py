@@ -13,7 +13,11 @@ UNKNOWN = "<unknown>"
 _PHRASES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("Apache-2.0", ("licensed under the apache license, version 2.0", "apache license version 2.0, january 2004")),
     ("BSL-1.0", ("boost software license, version 1.0", "boost software license - version 1.0")),
-    ("LGPL-3.0-only", ("gnu lesser general public license",)),
+    # The GPL's text ends with a word on the LGPL, so the name alone will not do.
+    (
+        "LGPL-3.0-only",
+        ("gnu lesser general public license version 3", "terms of the gnu lesser general public license"),
+    ),
     ("GPL-3.0-only", ("gnu general public license",)),
     (
         "BSD-3-Clause",

@@ -1,0 +1,215 @@
+"""What `ros2 pkg create` writes is built, tested, linted, run and launched, as a user would do it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from autograder.ros import activate
+
+ROS2 = [sys.executable, "-m", "autograder.ros.ros2"]
+PATIENCE = 120.0
+
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, LogInfo
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument('who', default_value='world', description='Whom to greet'),
+        LogInfo(msg=['greeting ', LaunchConfiguration('who')]),
+        Node(package='py_pkg', executable='hello', output='screen'),
+    ])
+"""
+# Ends only when told to, with an exit code of its own.
+STUBBORN = """import signal
+import sys
+import threading
+
+
+def main():
+    done = threading.Event()
+    signal.signal(signal.SIGINT, lambda *_: done.set())
+    print('arguments', *sys.argv[1:], flush=True)
+    done.wait()
+    sys.exit(7)
+"""
+
+
+@dataclass
+class Workspace:
+    """A colcon workspace and the environment in which it is sourced."""
+
+    folder: Path
+    env: dict[str, str]
+
+    def run(self, *command: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            command, cwd=cwd or self.folder, env=self.env, capture_output=True, text=True, timeout=2 * PATIENCE
+        )
+
+    def ros2(self, *words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return self.run(*ROS2, *words, cwd=cwd)
+
+    def colcon(self, *words: str) -> subprocess.CompletedProcess[str]:
+        return self.run(sys.executable, "-m", "colcon", *words)
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+    """Create two packages, add a launch file and a second executable to one of them, and build both."""
+    folder = tmp_path_factory.mktemp("created")
+    source = folder / "src"
+    source.mkdir()
+    install = folder / "install"
+    env = {**os.environ, **activate().variables(overlays=(install,))}
+    env["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{env['PATH']}"
+    env["PYTHONPATH"] = str(install / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")
+    env["LD_LIBRARY_PATH"] = os.pathsep.join([str(install / "lib"), env.get("LD_LIBRARY_PATH", "")])
+    space = Workspace(folder, env)
+    who = ("--license", "Apache-2.0", "--maintainer-name", "Ada O'Neil", "--maintainer-email", "ada@example.com")
+    python = ("--build-type", "ament_python", "--node-name", "hello", "--dependencies", "rclpy", "std_msgs")
+    about = ("--description", 'Says "hello" & it\'s <polite>')
+    cpp = ("--node-name", "talk", "--library-name", "voice")
+    assert space.ros2("pkg", "create", "py_pkg", *who, *python, *about, cwd=source).returncode == 0
+    assert space.ros2("pkg", "create", "cpp_pkg", *who, *cpp, cwd=source).returncode == 0
+    package = source / "py_pkg"
+    (package / "launch").mkdir()
+    (package / "launch" / "hello.launch.py").write_text(LAUNCH)
+    (package / "py_pkg" / "stubborn.py").write_text(STUBBORN)
+    setup = (package / "setup.py").read_text()
+    setup = setup.replace("['package.xml']),", "['package.xml', 'launch/hello.launch.py']),")
+    setup = setup.replace("hello:main',", "hello:main',\n            'stubborn = py_pkg.stubborn:main',")
+    (package / "setup.py").write_text(setup)
+    built = space.colcon("build", "--merge-install")
+    assert built.returncode == 0, built.stdout + built.stderr
+    return space
+
+
+def test_colcon_tests_and_lints_the_packages_clean(workspace: Workspace) -> None:
+    tested = workspace.colcon("test", "--merge-install")
+    assert tested.returncode == 0, tested.stdout + tested.stderr
+    result = workspace.colcon("test-result", "--all", "--verbose")
+    assert result.returncode == 0, result.stdout
+    # flake8 and pep257 really ran; the copyright check waits for headers to be written.
+    assert "Summary: 3 tests, 0 errors, 0 failures, 1 skipped" in result.stdout
+
+
+def test_the_copyright_check_passes_once_its_mark_is_gone_and_headers_are_there(workspace: Workspace) -> None:
+    package = workspace.folder / "src" / "py_pkg"
+    header = "# Copyright 2026 Ada O'Neil\n# SPDX-License-Identifier: Apache-2.0\n\n"
+    command = (sys.executable, "-m", "ament_copyright", str(package))
+    before = workspace.run(*command)
+    assert before.returncode == 1
+    assert "hello.py: could not find copyright notice" in before.stderr
+    for path in [*package.glob("py_pkg/*.py"), *package.glob("test/*.py"), *package.glob("launch/*.py")]:
+        if path.read_text():
+            path.write_text(header + path.read_text())
+    after = workspace.run(*command)
+    assert (after.returncode, after.stderr) == (0, "")
+
+
+def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
+    assert workspace.ros2("pkg", "executables", "py_pkg").stdout == "py_pkg hello\npy_pkg stubborn\n"
+    install = workspace.folder / "install"
+    assert workspace.ros2("pkg", "prefix", "py_pkg").stdout == f"{install}\n"
+    assert workspace.ros2("pkg", "prefix", "--share", "cpp_pkg").stdout == f"{install}/share/cpp_pkg\n"
+    assert {"py_pkg", "cpp_pkg", "rclpy"} <= set(workspace.ros2("pkg", "list").stdout.split())
+    described = workspace.ros2("pkg", "xml", "py_pkg", "--tag", "description").stdout
+    assert described == 'Says "hello" & it\'s <polite>\n'
+    assert "<license>Apache-2.0</license>" in workspace.ros2("pkg", "xml", "py_pkg").stdout
+    missing = workspace.ros2("pkg", "prefix", "nothing")
+    assert (missing.returncode, missing.stderr) == (1, "Package not found\n")
+    untagged = workspace.ros2("pkg", "xml", "py_pkg", "--tag", "url")
+    assert untagged.stderr == "No value for tag 'url' in package.xml for package 'py_pkg'\n"
+
+
+def test_run_starts_the_executables_of_both_packages(workspace: Workspace) -> None:
+    assert workspace.ros2("run", "py_pkg", "hello").stdout == "Hi from py_pkg.\n"
+    assert workspace.ros2("run", "cpp_pkg", "talk").stdout == "hello world cpp_pkg package\n"
+    assert workspace.ros2("run", "--prefix", "echo would run", "py_pkg", "hello", "-x").stdout.startswith("would run /")
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (("nothing", "hello"), "Package 'nothing' not found\n"),
+        (("py_pkg", "nothing"), "No executable found\n"),
+    ],
+)
+def test_run_says_what_is_missing(workspace: Workspace, words: tuple[str, str], error: str) -> None:
+    answer = workspace.ros2("run", *words)
+    assert (answer.returncode, answer.stderr) == (1, error)
+
+
+def test_run_passes_arguments_signals_and_the_exit_code(workspace: Workspace) -> None:
+    command = [*ROS2, "run", "py_pkg", "stubborn", "--ros-args", "-p", "speed:=1.0"]
+    with subprocess.Popen(
+        command, env=workspace.env, stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "arguments --ros-args -p speed:=1.0\n"
+        # As a terminal does it: the whole group hears Ctrl-C, and the executable decides.
+        os.killpg(process.pid, signal.SIGINT)
+        out, _ = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 7
+    assert out == "[ros2run]: Process exited with failure 7\n"
+
+
+def test_terminating_run_does_not_leave_the_executable_behind(workspace: Workspace) -> None:
+    command = [*ROS2, "run", "py_pkg", "stubborn"]
+    with subprocess.Popen(command, env=workspace.env, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "arguments\n"
+        process.terminate()
+        # The pipe ends only when the executable, which holds it too, is gone.
+        out, _ = process.communicate(timeout=PATIENCE)
+    assert out == "[ros2run]: Terminated\n"
+
+
+def test_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspace) -> None:
+    answer = workspace.ros2("launch", "py_pkg", "hello.launch.py", "who:=everyone")
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    printed = answer.stdout + answer.stderr
+    assert "greeting everyone" in printed
+    assert "Hi from py_pkg." in printed
+
+
+def test_launch_shows_arguments_and_the_description(workspace: Workspace) -> None:
+    path = workspace.folder / "src/py_pkg/launch/hello.launch.py"
+    shown = workspace.ros2("launch", str(path), "--show-args")
+    assert shown.stdout == (
+        "Arguments (pass arguments as '<name>:=<value>'):\n\n"
+        "    'who':\n        Whom to greet\n        (default: 'world')\n"
+    )
+    described = workspace.ros2("launch", "py_pkg", "hello.launch.py", "--print-description")
+    assert described.returncode == 0
+    assert "LogInfo(" in described.stdout
+    assert "Hi from" not in described.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (("nothing", "x.launch.py"), "Package 'nothing' not found"),
+        (("py_pkg", "x.launch.py"), "file 'x.launch.py' was not found in the share directory of package 'py_pkg'"),
+        (
+            ("py_pkg", "hello.launch.py", "who=me"),
+            "malformed launch argument 'who=me', expected format '<name>:=<value>'",
+        ),
+        (("py_pkg",), "launch_file_name is required"),
+        (("./gone.launch.py",), "File './gone.launch.py' not found"),
+    ],
+)
+def test_launch_says_what_is_wrong(workspace: Workspace, words: tuple[str, ...], error: str) -> None:
+    answer = workspace.ros2("launch", *words)
+    assert answer.returncode == 1
+    assert answer.stderr.startswith(error)

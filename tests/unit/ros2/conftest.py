@@ -1,0 +1,10 @@
+"""The stand-ins are importable here, whether or not the environment was set up with them."""
+
+from __future__ import annotations
+
+import sys
+
+from autograder.ros.ros2.main import STAND_INS
+
+if str(STAND_INS) not in sys.path:
+    sys.path.append(str(STAND_INS))

@@ -1,0 +1,118 @@
+"""The command line: which words lead where, what is not covered, and what comes back."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.ros.ros2 import main
+from autograder.ros.ros2.exceptions import NotCoveredError
+from autograder.ros.ros2.main import COMMANDS
+from autograder.ros.ros2.parsing import Verb, parse, positive_float, positive_int, unsigned_int
+
+COVERED = {name: command for name, command in COMMANDS.items() if command.module}
+VERBS = [
+    (name, verb.name)
+    for name, command in COVERED.items()
+    if not isinstance(loaded := command.load(), Verb)
+    for verb in loaded
+]
+
+
+@pytest.mark.parametrize("words", [(), *((name,) for name in COVERED), *VERBS], ids=" ".join)
+def test_every_help_says_that_this_is_a_stand_in(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        parse(COMMANDS, [*words, "--help"])
+    assert ended.value.code == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith(" ".join(["usage: ros2", *words]))
+    assert "This is a stand-in for ros2cli" in printed
+    assert "make real-launch" in printed
+
+
+@pytest.mark.parametrize("words", [(), ("topic",), ("pkg",)])
+def test_a_command_alone_prints_its_help(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 0
+    assert capsys.readouterr().out.startswith(" ".join(["usage: ros2", *words]))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("bag", "record"), ("daemon", "stop"), ("lifecycle", "list"), ("topic", "delay", "/x"), ("service", "echo", "/x")],
+)
+def test_what_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
+    outcome = main(words)
+    assert isinstance(outcome, str)
+    thing = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
+    assert outcome.startswith(f"`ros2 {thing}` is not covered by this stand-in")
+    assert "works with the real ros2cli: install it with `make real-launch`, or source a ROS 2 Jazzy" in outcome
+
+
+@pytest.mark.parametrize("words", [("tpoic", "list"), ("topic", "lst"), ("topic", "echo"), ("topic", "pub", "-r", "0")])
+def test_a_mistyped_word_is_an_error_of_argparse(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith("usage: ros2")
+
+
+def test_a_verb_gets_its_own_arguments() -> None:
+    run, args = parse(COMMANDS, ["param", "set", "/robot", "speed", "-1.5"])
+    assert (args.node_name, args.parameter_name, args.value) == ("/robot", "speed", "-1.5")
+    assert run.__module__ == "autograder.ros.ros2.param"
+    _, args = parse(COMMANDS, ["run", "pkg", "exe", "--ros-args", "-p", "a:=1"])
+    assert args.argv == ["--ros-args", "-p", "a:=1"]
+    _, args = parse(COMMANDS, ["topic", "pub", "-1", "/cmd_vel", "geometry_msgs/msg/Twist"])
+    assert (args.once, args.values) == (True, "{}")
+    for words in (["topic", "list", "--no-daemon", "--spin-time", "2"], ["node", "list", "--no-daemon"]):
+        assert parse(COMMANDS, words)[1].no_daemon
+
+
+def test_a_command_that_is_not_covered_raises_when_parsed() -> None:
+    with pytest.raises(NotCoveredError, match="`ros2 bag`"):
+        parse(COMMANDS, ["bag", "play"])
+
+
+@pytest.mark.parametrize(
+    ("kind", "good", "bad"),
+    [
+        (positive_int, {"3": 3}, ("0", "-1", "x", "1.5")),
+        (unsigned_int, {"0": 0, "3": 3}, ("-1", "x")),
+        (positive_float, {"0.5": 0.5}, ("0", "-1", "inf", "nan", "x")),
+    ],
+)
+def test_numbers_are_checked(kind: type, good: dict[str, float], bad: tuple[str, ...]) -> None:
+    assert {text: kind(text) for text in good} == good
+    for text in bad:
+        with pytest.raises(argparse.ArgumentTypeError, match="value must be"):
+            kind(text)
+
+
+def test_the_real_ros2cli_takes_over_when_it_is_there(tmp_path: Path) -> None:
+    package = tmp_path / "ros2cli"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "cli.py").write_text("def main(*, argv):\n    print('the real one', argv)\n    return 3\n")
+    code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from autograder.ros.ros2 import main; sys.exit(main())"
+    command = [sys.executable, "-c", code, str(tmp_path), "topic", "list"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (3, "the real one ['topic', 'list']\n")
+
+
+def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
+    code = (
+        "import sys; from autograder.ros.ros2 import main; main(['pkg', 'prefix', 'rclpy']); "
+        "main(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.endswith("\nFalse\n"), done.stderr
+
+
+def test_a_reader_that_stops_listening_is_no_traceback() -> None:
+    shell = f"{sys.executable} -m autograder.ros.ros2 interface list | head -1"
+    done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("Messages:\n", "")

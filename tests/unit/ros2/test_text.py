@@ -1,0 +1,228 @@
+"""What the verbs print, and what they make of files and numbers, without any node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from geometry_msgs.msg import Twist
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from autograder.ros.ros2.exceptions import Ros2Error
+from autograder.ros.ros2.filling import filled
+from autograder.ros.ros2.graph import NodeName, has_hidden_part, warn_of_duplicates
+from autograder.ros.ros2.interface_text import nested_type, unfold
+from autograder.ros.ros2.launch import find_launch_file, launch_arguments
+from autograder.ros.ros2.param_client import nested, parameters_in_file
+from autograder.ros.ros2.pkg_create import files
+from autograder.ros.ros2.pkg_templates import PackageSpec, licence_text, setup_py
+from autograder.ros.ros2.topic_echo import message_filter
+from autograder.ros.ros2.topic_rate import Bandwidth, Rate
+
+INTERFACES = {
+    "a_msgs/msg/Outer": "# About it.\n\nInner inner  # one\nb_msgs/Other[3] others\n"
+    "uint8 KIND=1\nstring<=5 name 'a # b'\n",
+    "a_msgs/msg/Inner": "# Hidden.\nfloat64 x # metres\n\nint32[<=4] ids\n",
+    "b_msgs/msg/Other": "bool flag\n",
+}
+
+
+def test_nested_interfaces_unfold_below_their_field() -> None:
+    assert list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__)) == [
+        "# About it.",
+        "",
+        "Inner inner  # one",
+        "\tfloat64 x",
+        "\tint32[<=4] ids",
+        "b_msgs/Other[3] others",
+        "\tbool flag",
+        "uint8 KIND=1",
+        "string<=5 name 'a # b'",
+    ]
+
+
+def test_comments_can_be_kept_everywhere_or_nowhere() -> None:
+    every = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, nested_comments=True))
+    assert "\t# Hidden." in every
+    assert "\tfloat64 x # metres" in every
+    none = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, comments=False))
+    assert none[0] == "Inner inner"
+    assert "string<=5 name 'a # b'" in none
+
+
+@pytest.mark.parametrize(
+    ("line", "inner"),
+    [
+        ("std_msgs/Header header", "std_msgs/msg/Header"),
+        ("geometry_msgs/msg/Point[] points", "geometry_msgs/msg/Point"),
+        ("Point[<=3] points", "pkg/msg/Point"),
+        ("float64 x 1.0", None),
+        ("uint8 OK=0", None),
+        ("---", None),
+        ("# std_msgs/Header header", None),
+        ("", None),
+    ],
+)
+def test_a_field_names_the_message_in_it(line: str, inner: str | None) -> None:
+    assert nested_type(line, "pkg") == inner
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("talker", "/talker"), ("/talker", "/talker"), ("lab/helper", "/lab/helper"), ("/a/b/c", "/a/b/c")],
+)
+def test_a_node_has_one_full_name_however_it_is_typed(text: str, name: str) -> None:
+    assert NodeName.parse(text).full_name == name
+
+
+def test_hidden_names_begin_with_an_underscore() -> None:
+    assert NodeName.parse("/_ros2cli_1").hidden
+    assert [has_hidden_part(name) for name in ("/a/_action/status", "/a_b", "/_x")] == [True, False, True]
+
+
+def test_two_nodes_of_one_name_are_worth_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
+    warn_of_duplicates([NodeName("a", "/"), NodeName("b", "/")])
+    assert capsys.readouterr().err == ""
+    warn_of_duplicates([NodeName("a", "/"), NodeName("a", "/")])
+    assert capsys.readouterr().err.startswith("WARNING: Be aware that there are nodes in the graph that share")
+
+
+def test_a_rate_is_what_the_gaps_say() -> None:
+    assert Rate.of([5]) is None
+    assert str(Rate.of([0, 100_000_000, 300_000_000])) == (
+        "average rate: 6.667\n\tmin: 0.100s max: 0.200s std dev: 0.05000s window: 2"
+    )
+    assert Rate.of([7, 7]) == Rate(0.0, 0.0, 0.0, 0.0, 1)
+
+
+@settings(deadline=None)
+@given(st.lists(st.integers(0, 10**12), min_size=2).map(sorted))
+def test_the_mean_gap_lies_between_the_shortest_and_the_longest(arrivals: list[int]) -> None:
+    rate = Rate.of(arrivals)
+    assert rate is not None
+    if rate.rate:
+        assert rate.shortest <= 1 / rate.rate * (1 + 1e-9)
+        assert 1 / rate.rate <= rate.longest * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "text"),
+    [
+        ((10, 20), "30 B/s from 2 messages\n\tMessage size mean: 15 B min: 10 B max: 20 B"),
+        ((1000, 2000), "3.00 KB/s from 2 messages\n\tMessage size mean: 1.50 KB min: 1.00 KB max: 2.00 KB"),
+        ((10**6, 10**6), "2.00 MB/s from 2 messages\n\tMessage size mean: 1.00 MB min: 1.00 MB max: 1.00 MB"),
+    ],
+)
+def test_bandwidth_is_printed_in_a_fitting_unit(sizes: tuple[int, int], text: str) -> None:
+    assert str(Bandwidth.of([(0, sizes[0]), (10, sizes[1])], now=1_000_000_000)) == text
+    assert Bandwidth.of([(0, 1)], now=5) is None
+
+
+def test_a_filter_is_a_python_expression_over_m() -> None:
+    accept = message_filter("m.linear.x > 0")
+    fast = Twist()
+    fast.linear.x = 1.0
+    assert (accept(fast), accept(Twist()), message_filter(None)(Twist())) == (True, False, True)
+    with pytest.raises(Ros2Error, match="Invalid filter expression 'm >'"):
+        message_filter("m >")
+
+
+def test_a_goal_does_not_take_stamps() -> None:
+    with pytest.raises(Ros2Error, match="Failed to populate request: Value 'now'"):
+        filled(Twist, "{linear: now}", "request", stamps=False)
+
+
+PARAMETERS = """
+/**:
+  ros__parameters: {speed: 1.0, deep: {er: {x: 1}}}
+/lab/helper:
+  ros__parameters: {speed: 2.0, names: [a, b]}
+broken: 5
+"""
+
+
+def test_a_parameter_file_gives_a_node_its_own_values_over_those_for_all(tmp_path: Path) -> None:
+    path = tmp_path / "p.yaml"
+    path.write_text(PARAMETERS)
+    found = parameters_in_file(path, "/lab/helper", True)
+    assert found["speed"].value.double_value == 2.0
+    assert found["deep.er.x"].value.integer_value == 1
+    assert list(found["names"].value.string_array_value) == ["a", "b"]
+    assert set(parameters_in_file(path, "/lab/helper", False)) == {"speed", "names"}
+    assert set(parameters_in_file(path, "/other", True)) == {"speed", "deep.er.x"}
+
+
+@pytest.mark.parametrize(
+    ("text", "node", "error"),
+    [
+        (PARAMETERS, "/broken", "broken has no mapping named ros__parameters"),
+        ("- 1", "/a", "it has no node names at its top level"),
+        ("/b: {ros__parameters: {}}", "/a", "does not contain parameters for /a, only for nodes: /b"),
+        ("a: [", "/a", "Cannot read the parameter file"),
+    ],
+)
+def test_a_wrong_parameter_file_is_an_error(tmp_path: Path, text: str, node: str, error: str) -> None:
+    path = tmp_path / "p.yaml"
+    path.write_text(text)
+    with pytest.raises(Ros2Error, match=error):
+        parameters_in_file(path, node, True)
+    with pytest.raises(Ros2Error, match="Cannot read the parameter file"):
+        parameters_in_file(tmp_path / "none.yaml", node, True)
+
+
+def test_dotted_names_nest() -> None:
+    assert nested({"a": 1, "b.c": 2, "b.d.e": 3}) == {"a": 1, "b": {"c": 2, "d": {"e": 3}}}
+
+
+def test_launch_arguments_are_names_and_values() -> None:
+    assert launch_arguments(["a:=1", "b:=x:=y", "a:=2", "c:="]) == {"a": "2", "b": "x:=y", "c": ""}
+    with pytest.raises(Ros2Error, match="malformed launch argument 'a=1', expected format '<name>:=<value>'"):
+        launch_arguments(["a=1"])
+
+
+def test_a_path_of_a_launch_file_takes_all_other_words_as_arguments(tmp_path: Path) -> None:
+    path = tmp_path / "x.launch.py"
+    path.touch()
+    assert find_launch_file(str(path), "a:=1", ["b:=2"]) == (path, ["a:=1", "b:=2"])
+
+
+def spec(**fields: str) -> PackageSpec:
+    return PackageSpec(
+        name="p",
+        build_type=fields.get("build_type", "ament_python"),
+        package_format=3,
+        description=fields.get("description", "d"),
+        licence="MIT",
+        maintainer_name="A",
+        maintainer_email="a@example.com",
+        node_name=fields.get("node_name"),
+        library_name=fields.get("library_name"),
+    )
+
+
+@settings(deadline=None)
+@given(st.text())
+def test_any_description_survives_setup_py(description: str) -> None:
+    line = next(
+        line for line in setup_py(spec(description=description)).split("\n") if line.startswith("    description=")
+    )
+    assert eval(line.strip().removeprefix("description=").rstrip(",")) == description
+
+
+def test_each_build_type_has_its_files() -> None:
+    python = dict(files(spec(node_name="n", library_name="l"), "licence"))
+    assert set(python) == {
+        "package.xml", "LICENSE", "setup.py", "setup.cfg", "resource/p", "p/__init__.py", "p/n.py", "p/l/__init__.py",
+        "test/test_copyright.py", "test/test_flake8.py", "test/test_pep257.py",
+    }  # fmt: skip
+    assert "extras_require={'test': ['pytest']}" in python["setup.py"]
+    assert "script_dir=$base/lib/p" in python["setup.cfg"]
+    cmake = dict(files(spec(build_type="ament_cmake"), None))
+    assert set(cmake) == {"package.xml", "CMakeLists.txt", "src/", "include/p/"}
+    assert "LICENSE" not in cmake
+
+
+def test_a_licence_text_names_the_holder() -> None:
+    assert "Copyright (c) 2026 Ada" in (licence_text("BSD-3-Clause", "Ada", 2026) or "")
+    assert licence_text("Mine", "Ada", 2026) is None
