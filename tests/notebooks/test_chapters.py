@@ -1,0 +1,90 @@
+"""Every chapter runs to its end in all three forms, and is as a notebook of the course must be."""
+
+from __future__ import annotations
+
+import ast
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from nbformat import NotebookNode
+
+from autograder.course import Chapter, Form, chapters, in_form, run_notebook
+from autograder.course.hygiene import images_without_alt
+from autograder.layout import ROOT
+
+CHAPTERS = chapters()
+STILL_TO_BE_WRITTEN = "still to be written"
+each_chapter = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.assignment)
+
+
+def said(notebook: NotebookNode) -> str:
+    """Return all text that an executed notebook shows."""
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    return "\n".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in outputs)
+
+
+def test_there_are_chapters() -> None:
+    assert CHAPTERS
+
+
+def test_the_chapters_are_up_to_date_clean_and_worth_what_their_suites_say() -> None:
+    checked = subprocess.run(
+        [sys.executable, "-m", "autograder.course", "check"], cwd=ROOT, text=True, capture_output=True
+    )
+    assert (checked.returncode, checked.stdout) == (0, ""), checked.stdout + checked.stderr
+
+
+@each_chapter
+def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
+    source, released = chapter.read(), in_form(chapter.read(), Form.RELEASED)
+    for before, after in zip(source.cells, released.cells, strict=True):
+        for answer in re.findall(r"### BEGIN SOLUTION\n(.*?)### END SOLUTION", before.source, re.DOTALL):
+            assert answer.rstrip() not in after.source
+
+
+@each_chapter
+def test_a_given_package_installs_only_executables_that_the_chapter_has(chapter: Chapter) -> None:
+    written = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
+    there = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
+    for setup in chapter.folder.glob("ws/src/*/setup.py"):
+        scripts = re.findall(r"'\w+ = ([\w.]+):main'", setup.read_text())
+        assert scripts
+        for script in scripts:
+            module = setup.parent.relative_to(chapter.folder) / (script.replace(".", "/") + ".py")
+            assert str(module) in there
+
+
+@pytest.mark.slow
+@each_chapter
+@pytest.mark.parametrize("form", list(Form))
+def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
+    result = run_notebook(chapter.path, form, report=tmp_path / chapter.path.name)
+    assert result.ok, result.failure
+    assert images_without_alt(result.notebook) == []
+    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook))
+    solved = form is not Form.RELEASED
+    assert all((passed == every) is solved for passed, every in counts)
+    if counts:
+        assert (STILL_TO_BE_WRITTEN in said(result.notebook)) is not solved
+
+
+@pytest.mark.parametrize("script", sorted(ROOT.glob("assets/figures/*/make.py")), ids=lambda path: path.parent.name)
+def test_a_chapters_figures_are_what_their_script_draws(script: Path, tmp_path: Path) -> None:
+    runpy.run_path(str(script))["main"](tmp_path)
+    committed = ROOT / "chapters" / script.parent.name / "figures"
+    names = {path.name for path in committed.iterdir()}
+    assert names == {path.name for path in tmp_path.iterdir()}
+    for name in names:
+        assert (committed / name).read_bytes() == (tmp_path / name).read_bytes(), name
+
+
+@each_chapter
+def test_the_cells_that_write_python_write_something_that_parses(chapter: Chapter) -> None:
+    for form in Form:
+        for cell in in_form(chapter.read(), form).cells:
+            if re.match(r"%%writefile \S+\.py\n", cell.source):
+                assert ast.parse(cell.source.split("\n", 1)[1]).body

@@ -1,0 +1,58 @@
+"""The command line: `python -m autograder.course sync|check`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from autograder.checks import Check, Visibility
+from autograder.course import __main__ as command
+
+from .notebooks import chapter, code, grade, notebook, prose, solution
+
+CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, ()),)
+
+
+@pytest.fixture
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(command, "manifest", lambda assignment: CHECKS)
+    (tmp_path / "solutions").mkdir()
+    (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
+    origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"]}
+    chapter(
+        tmp_path,
+        notebook(
+            prose("# Title", "title"),
+            code("", "node", course=origin, nbgrader=solution("node")),
+            code("grade()", "g", course={"group": "graph"}, nbgrader=grade("g", 1)),
+        ),
+    )
+    return tmp_path
+
+
+def run(course: Path, verb: str) -> Result:
+    folders = ["--chapters", str(course / "chapters"), "--solutions", str(course / "solutions")]
+    return CliRunner().invoke(command.main, [verb, *folders])
+
+
+def test_check_names_everything_that_is_wrong_and_ends_with_1(course: Path) -> None:
+    result = run(course, "check")
+    assert result.exit_code == 1
+    assert "cell 'node': differs from solutions/node.py" in result.output
+    assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in result.output
+
+
+def test_after_sync_nothing_is_wrong(course: Path) -> None:
+    assert run(course, "sync").output == "01_small: 2 brought up to date\n"
+    checked = run(course, "check")
+    assert (checked.exit_code, checked.output) == (0, "")
+    assert run(course, "sync").output == "01_small: as it was\n"
+
+
+def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
+    (course / "solutions/node.py").write_text("def mian():\n    return 0\n")
+    result = run(course, "sync")
+    assert result.exit_code == 1
+    assert "01_small.ipynb, cell 'node': node.py: function 'main' occurs 0 times" in result.output
