@@ -1,0 +1,110 @@
+"""Why a program came to an end, in sentences that a student can act on."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from autograder.diagnosis import Kind
+from autograder.lockstep.failures import diagnose_crash, diagnose_ending, diagnose_output, stuck, tail
+from autograder.lockstep.protocol import Crash
+from autograder.sandbox import Limits, Process
+
+
+def _ended(code: str, **limits: float) -> Process:
+    process = Process([sys.executable, "-I", "-c", code], Limits(**limits))  # type: ignore[arg-type]
+    with process:
+        assert process.wait(60.0)
+    return process
+
+
+@pytest.mark.parametrize(
+    ("phase", "kind", "words"),
+    [
+        ("import", Kind.CRASHED_AT_IMPORT, "Your module could not be imported: KeyError: 'x'."),
+        ("start", Kind.CRASHED_AT_START, "while it was being set up, before it started to spin: KeyError: 'x'."),
+        ("spin", Kind.CRASHED_LATER, "Your node crashed while it was running: KeyError: 'x'."),
+    ],
+)
+def test_a_crash_is_named_by_its_phase(phase: str, kind: Kind, words: str) -> None:
+    diagnosis = diagnose_crash(Crash(phase, "KeyError", "'x'", "Traceback\n  line 3\nKeyError: 'x'"))
+    assert diagnosis.kind is kind
+    assert words in diagnosis.sentence
+    assert "line 3" in diagnosis.detail
+
+
+@pytest.mark.parametrize("kind", ["SyntaxError", "IndentationError", "TabError"])
+def test_a_syntax_error_is_told_apart(kind: str) -> None:
+    diagnosis = diagnose_crash(Crash("import", kind, "expected ':' (robot.py, line 7)", "..."))
+    assert diagnosis.kind is Kind.SYNTAX_ERROR
+    assert "Python cannot read your file: expected ':' (robot.py, line 7). Mend that line" in diagnosis.sentence
+
+
+def test_an_exception_without_a_message_is_named_by_its_type_alone() -> None:
+    assert "running: AssertionError. The last" in diagnose_crash(Crash("spin", "AssertionError", "", "")).sentence
+
+
+def test_a_program_that_just_ends_is_told_to_spin() -> None:
+    diagnosis = diagnose_ending(_ended("print('bye')"))
+    assert diagnosis.kind is Kind.ENDED_EARLY
+    assert "(exit status 0)" in diagnosis.sentence
+    assert "rclpy.spin(node)" in diagnosis.sentence
+    assert diagnosis.detail == "bye"
+
+
+def test_a_program_that_a_signal_ended_is_told_which() -> None:
+    diagnosis = diagnose_ending(_ended("import os; os.kill(os.getpid(), 11)"))
+    assert "(signal 11)" in diagnosis.sentence
+
+
+@pytest.mark.parametrize(
+    ("code", "limits", "kind", "words"),
+    [
+        ("while True: pass", {"wall_seconds": 0.3}, Kind.TIMED_OUT, "look for a loop that never ends"),
+        ("while True: print('x' * 999)", {"output": 9999}, Kind.FLOODED_OUTPUT, "throttle_duration_sec=1.0"),
+        (
+            "held = []\nwhile True: held.append(bytearray(b'x') * 2**20)",
+            {"memory": 60 * 2**20},
+            Kind.OUT_OF_MEMORY,
+            "a list that only ever grows",
+        ),
+        (
+            "import threading\nwhile True: threading.Thread(target=threading.Event().wait).start()",
+            {"threads": 20},
+            Kind.OUT_OF_MEMORY,
+            "start them once, not in a callback",
+        ),
+    ],
+)
+def test_a_program_over_a_limit_is_told_which(code: str, limits: dict[str, float], kind: Kind, words: str) -> None:
+    diagnosis = diagnose_ending(_ended(code, **limits))
+    assert diagnosis.kind is kind
+    assert words in diagnosis.sentence
+
+
+def test_a_program_that_runs_but_no_longer_answers_is_no_ended_one() -> None:
+    with Process([sys.executable, "-I", "-c", "import signal; signal.pause()"], Limits()) as process:
+        diagnosis = diagnose_ending(process)
+    assert diagnosis.kind is Kind.STUCK
+    assert "no longer answers in lockstep" in diagnosis.sentence
+
+
+def test_a_node_that_never_spins_and_one_that_hangs_are_told_apart() -> None:
+    never, hangs = stuck(Kind.NEVER_STARTED, 60.0, "a\nb"), stuck(Kind.STUCK, 30.0, "")
+    assert "did not start to spin within 60 s" in never.sentence
+    assert never.detail == "a\nb"
+    assert "did not come back from a callback within 30 s" in hangs.sentence
+
+
+def test_a_printed_traceback_names_the_crash() -> None:
+    diagnosis = diagnose_output(_ended("print('starting', flush=True)\nraise ValueError('no lidar')"))
+    assert diagnosis is not None
+    assert diagnosis.kind is Kind.CRASHED_AT_START
+    assert "ValueError: no lidar" in diagnosis.sentence
+    assert diagnose_output(_ended("print('all is well')")) is None
+
+
+def test_only_the_end_of_a_long_output_is_kept() -> None:
+    assert tail("\n".join(map(str, range(100))), 3) == "97\n98\n99"
+    assert tail("") == ""

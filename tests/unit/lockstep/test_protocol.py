@@ -1,0 +1,123 @@
+"""What the host says is bounded, and dropped where it is of the wrong type."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from autograder.lockstep import protocol
+from autograder.lockstep.protocol import MAX_LINE, MAX_TEXT, MAX_TOPICS, ProtocolError
+from autograder.lockstep.stepper import HOST
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=10), inner, max_size=5),
+    max_leaves=20,
+)
+FIELDS = st.sampled_from(
+    ["published", "late", "nodes", "timers", "unmatched", "subscriptions", "phase", "type", "message", "traceback"]
+)
+
+
+def _line(**event: Any) -> bytes:
+    return json.dumps(event).encode() + b"\n"
+
+
+def test_an_event_is_a_line_of_json() -> None:
+    assert protocol.parse(_line(event="ready")) == {"event": "ready"}
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        (b"", "cut short"),
+        (b'{"event": "ready"}', "cut short"),
+        (b"x" * (MAX_LINE + 1) + b"\n", "too long"),
+        (b"PASS 100/100\n", "no JSON"),
+        (b'\xff\xfe{"event": 1}\n', "no JSON"),
+        (b"[" * 30_000 + b"\n", "no JSON"),
+        (b'{"event": ' + b"9" * 10_000 + b"}\n", "no JSON"),
+        (b'["event"]\n', "no event"),
+        (b'{"event": 1}\n', "no event"),
+        (b"{}\n", "no event"),
+    ],
+)
+def test_anything_else_is_refused(line: bytes, reason: str) -> None:
+    with pytest.raises(ProtocolError, match=reason):
+        protocol.parse(line)
+
+
+@settings(deadline=None)
+@given(st.binary(max_size=200))
+def test_no_bytes_get_through_but_events(noise: bytes) -> None:
+    try:
+        event = protocol.parse(noise + b"\n")
+    except ProtocolError:
+        return
+    assert isinstance(event["event"], str)
+
+
+@settings(deadline=None)
+@given(st.dictionaries(FIELDS, JSON))
+def test_forged_fields_of_any_type_become_records_of_the_right_one(forged: dict[str, Any]) -> None:
+    reply = protocol.reply(forged)
+    assert all(type(topic) is str and type(n) is int and n >= 0 for topic, n in reply.published.items())
+    assert type(reply.late) is bool
+    description = protocol.description(forged)
+    assert all(type(name) is str for name in (*description.nodes, *description.unmatched))
+    assert all(type(period) is int and period > 0 for period in description.timers)
+    assert all(type(n) is int and n >= 0 for n in description.subscriptions.values())
+    crash = protocol.crash(forged)
+    assert crash.phase in ("import", "start", "spin")
+    assert all(type(text) is str for text in (crash.type, crash.message, crash.traceback))
+
+
+def test_true_is_no_count() -> None:
+    assert protocol.reply({"published": {"/a": True, "/b": -1, "/c": 1.0, "/d": 2}}).published == {"/d": 2}
+
+
+def test_late_is_true_and_nothing_like_it() -> None:
+    assert [protocol.reply({"late": value}).late for value in (True, 1, "true", [0], None)] == [True, *[False] * 4]
+
+
+def test_texts_and_lists_are_cut() -> None:
+    crash = protocol.crash({"type": "E", "message": "m" * 10 * MAX_TEXT, "traceback": "t" * 10 * MAX_TEXT})
+    assert (len(crash.message), len(crash.traceback)) == (MAX_TEXT, MAX_TEXT)
+    description = protocol.description({"nodes": ["/n"] * 10 * MAX_TOPICS, "timers": [1] * 10 * MAX_TOPICS})
+    assert (len(description.nodes), len(description.timers)) == (MAX_TOPICS, MAX_TOPICS)
+    assert len(protocol.reply({"published": {str(n): n for n in range(10 * MAX_TOPICS)}}).published) == MAX_TOPICS
+
+
+def test_the_host_starts_at_the_time_that_the_grader_believes() -> None:
+    tree = ast.parse(Path(HOST).read_text())
+    assigned = {
+        target.id: eval(compile(ast.Expression(node.value), str(HOST), "eval"))
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.BinOp)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    assert assigned["START"] == protocol.START
+
+
+def test_the_host_imports_nothing_of_the_grader() -> None:
+    imported = {
+        name
+        for node in ast.walk(ast.parse(Path(HOST).read_text()))
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert not {name for name in imported if name.split(".")[0] in ("autograder", "sim")}
+    assert inspect.getsourcefile(protocol) != str(HOST)

@@ -1,0 +1,126 @@
+"""The trusted end of the pipes against programs that lie, hang or fall silent."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.lockstep import Stepper, stepper
+from autograder.sandbox import Ending, Sandbox, launcher
+
+START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
+Open = Callable[[str], Stepper]
+
+
+@pytest.fixture
+def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
+    """Open a stepper on a program that stands in the host's place and says what a forger would."""
+    monkeypatch.setenv(launcher.TIER_VARIABLE, "process")
+    monkeypatch.setattr(stepper, "START_SECONDS", 30.0)
+    with ExitStack() as stack:
+
+        def open_stepper(code: str) -> Stepper:
+            program = tmp_path / "forger.py"
+            program.write_text(START + code)
+            monkeypatch.setattr(stepper, "HOST", program)
+            return stack.enter_context(Stepper(Sandbox(tmp_path), tmp_path / "node", python=sys.executable))
+
+        yield open_stepper
+
+
+def _kind(action: Callable[[], object]) -> Kind:
+    with pytest.raises(StudentError) as caught:
+        action()
+    return caught.value.diagnosis.kind
+
+
+def test_a_host_that_answers_is_stepped(host: Open) -> None:
+    answers = r"""
+os.write(write, b'{"event": "ready"}\n')
+os.read(read, 999)
+os.write(write, b'{"event": "done", "published": {"/cmd_vel": 3}, "late": false}\n')
+os.read(read, 999)
+"""
+    program = host(answers)
+    program.wait_ready()
+    assert program.step(10**9, {"/scan": 1}).published == {"/cmd_vel": 3}
+    assert program.quit() == 0
+
+
+def test_a_line_that_comes_in_pieces_is_read_whole(host: Open) -> None:
+    program = host(r"""
+for byte in b'{"event": "ready"}\n':
+    os.write(write, bytes([byte]))
+signal.pause()
+""")
+    program.wait_ready()
+
+
+def test_a_program_that_ends_before_it_is_ready_has_ended_early(host: Open) -> None:
+    assert _kind(host("raise SystemExit(4)").wait_ready) is Kind.ENDED_EARLY
+
+
+def test_a_program_that_never_is_ready_never_started(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stepper, "START_SECONDS", 0.5)
+    assert _kind(host("signal.pause()").wait_ready) is Kind.NEVER_STARTED
+
+
+def test_a_step_that_does_not_come_back_is_stuck(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stepper, "STEP_SECONDS", 0.5)
+    program = host('os.write(write, b\'{"event": "ready"}\\n\')\nsignal.pause()')
+    program.wait_ready()
+    assert _kind(lambda: program.step(1, {})) is Kind.STUCK
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        "b'100 points\\n'",
+        "b'[' * 5000 + b'\\n'",
+        'b\'{"event": "passed", "score": 100}\\n\'',
+        "b'\\x80\\x04\\x95\\n'",
+    ],
+)
+def test_a_forged_line_is_no_event(host: Open, forged: str) -> None:
+    assert _kind(host(f"os.write(write, {forged})\nraise SystemExit(0)").wait_ready) is Kind.ENDED_EARLY
+
+
+def test_a_crash_event_is_told_in_its_own_words(host: Open) -> None:
+    event = '{"event": "crash", "phase": "import", "type": "NameError", "message": "x", "traceback": "T"}'
+    program = host(f"os.write(write, {event.encode()!r} + b'\\n')")
+    assert _kind(program.wait_ready) is Kind.CRASHED_AT_IMPORT
+
+
+def test_a_program_that_answers_without_listening_does_not_hold_up_the_grader(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = host(r"""
+os.write(write, b'{"event": "ready"}\n')
+while True:
+    os.write(write, b'{"event": "done"}\n' * 100)
+""")
+    program.wait_ready()
+
+    def step_until_the_pipe_is_full() -> None:
+        for step in range(10_000):
+            program.step(step, {"/scan": step})
+
+    assert _kind(step_until_the_pipe_is_full) is Kind.STUCK
+
+
+def test_a_line_without_an_end_is_not_collected_for_ever(host: Open) -> None:
+    assert _kind(host("while True: os.write(write, b'x' * 4096)").wait_ready) is Kind.STUCK
+
+
+def test_nothing_is_left_when_the_block_ends(host: Open, tmp_path: Path) -> None:
+    first = host("signal.pause()")
+    with Stepper(Sandbox(tmp_path), tmp_path / "node", python=sys.executable) as program:
+        assert program.process.ending is None
+    assert program.process.ending is Ending.KILLED
+    assert first.process.ending is None
