@@ -89,7 +89,7 @@ def _plain_values(path: Path, body: bytes, count: int) -> npt.NDArray[np.float64
 
 
 def _read_png(path: Path, data: bytes) -> Shades:
-    from PIL import Image, UnidentifiedImageError
+    from PIL import Image
 
     try:
         with warnings.catch_warnings():
@@ -98,7 +98,9 @@ def _read_png(path: Path, data: bytes) -> Shades:
                 _check_size(path, *image.size)
                 deep = image.mode.startswith("I")
                 colours = np.asarray(image if deep else image.convert("RGBA"), dtype=np.float64)
-    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
+    except WorldError:
+        raise
+    except Exception as error:  # Pillow raises whatever its decoders meet in a damaged file
         raise _error(path, f"the PNG is broken ({error})", _AGAIN) from None
     if deep:  # 16-bit grey
         return Shades(colours / 65535.0, np.ones(colours.shape, dtype=np.bool_))
