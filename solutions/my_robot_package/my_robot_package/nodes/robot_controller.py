@@ -69,7 +69,7 @@ class RobotController(Node):
 
     def __init__(self, **kwargs):
         """
-        Create the publisher, the two subscriptions and the timer.
+        Name the node robot_controller; create its publisher, subscriptions and timer.
 
         cmd_vel: a queue of 10. scan: qos_profile_sensor_data, because a lidar publishes
         best-effort and a reliable subscription would never match it. status: a queue of 10.
