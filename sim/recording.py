@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import struct
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -24,6 +27,7 @@ from sim.simulation import start, step
 from sim.state import Commands, Event, Simulation, State
 
 FORMAT = 1
+MOST_BYTES = 4_000_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,6 +101,24 @@ class Recording:
         return arrays
 
 
+# What numpy, zipfile, zlib and json raise on a file that is not what it should be.
+_DAMAGE = (
+    OSError,
+    LookupError,
+    TypeError,
+    ValueError,
+    AttributeError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    SyntaxError,
+    MemoryError,
+    OverflowError,
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    tokenize.TokenError,
+)
 _COLUMNS = (
     "times_ns",
     "poses",
@@ -198,7 +220,11 @@ def run(
 def load_recording(path: str | Path) -> Recording:
     """Read a recording from a file. Raises RecordingError for a file that is none, or is damaged."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with Path(path).open("rb") as stream, zipfile.ZipFile(stream) as archive:
+            size = sum(part.file_size for part in archive.infolist())
+        if size > MOST_BYTES:
+            raise RecordingError(f"{path}: {size} bytes when unpacked; a recording holds at most {MOST_BYTES}")
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header = json.loads(file["header"].tobytes())
             if header["format"] != FORMAT:
                 raise RecordingError(
@@ -207,19 +233,42 @@ def load_recording(path: str | Path) -> Recording:
                 )
             simulation = from_json(header["simulation"])
             columns = {name: file[name] for name in _COLUMNS}
-            scans = tuple(
-                ScanLog(**{name: file[f"scan{index}_{name}"] for name in _SCAN_COLUMNS})
-                for index in range(len(simulation.robots))
-            )
-            return Recording(
-                simulation, **columns, scans=scans, events=tuple(Event(**event) for event in header["events"])
-            )
+            logs = [
+                {name: file[f"scan{index}_{name}"] for name in _SCAN_COLUMNS} for index in range(len(simulation.robots))
+            ]
+        _check(columns, logs)
+        events = tuple(Event(**event) for event in header["events"])
+        return Recording(simulation, **columns, scans=tuple(ScanLog(**log) for log in logs), events=events)
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file; give the path of a saved recording") from None
     except RecordingError as error:
         raise RecordingError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
-    except (OSError, KeyError, TypeError, ValueError, AttributeError, EOFError, zipfile.BadZipFile) as error:
+    except _DAMAGE as error:
         raise RecordingError(f"{path}: not a recording, or a damaged one ({error}); record the run again") from None
+
+
+def _check(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]) -> None:
+    """Raise RecordingError for columns that cannot belong to one run."""
+    rows, robots = len(columns["times_ns"]), len(logs)
+    wanted: dict[str, tuple[NDArray[Any], str, tuple[int, ...]]] = {
+        "times_ns": (columns["times_ns"], "i8", (rows,)),
+        "collided": (columns["collided"], "b1", (rows, robots)),
+        "clearances": (columns["clearances"], "f8", (rows, robots)),
+    }
+    for name, width in (("poses", 3), ("velocities", 2), ("commands", 2), ("odometry", 3), ("covariances", 9)):
+        wanted[name] = (columns[name], "f8", (rows, robots, width))
+    for index, log in enumerate(logs):
+        count = len(log["rows"])
+        wanted[f"scan{index}_rows"] = (log["rows"], "i8", (count,))
+        wanted[f"scan{index}_stamps_ns"] = (log["stamps_ns"], "i8", (count,))
+        for name in ("ranges", "intensities"):
+            wanted[f"scan{index}_{name}"] = (log[name], "f4", (count, *log[name].shape[1:2]))
+    for name, (array, kind, shape) in wanted.items():
+        if array.dtype != np.dtype(kind) or array.shape != shape or array.ndim != len(shape):
+            raise RecordingError(
+                f"the column {name} has the shape {array.shape} of {array.dtype}, not {shape} of {np.dtype(kind)}; "
+                "record the run again"
+            )
 
 
 def replay(recording: Recording, *, engine: EngineName = "numpy") -> Iterator[State]:

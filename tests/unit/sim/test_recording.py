@@ -1,0 +1,182 @@
+"""A recording keeps everything, saves, loads and replays to the same bits, and refuses what is damaged."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from sim import (
+    LDS_01,
+    Command,
+    DeadSector,
+    Faults,
+    OdometryDrift,
+    Pose,
+    Recorder,
+    Recording,
+    RecordingError,
+    RobotSpec,
+    Simulation,
+    Window,
+    clearance,
+    load_recording,
+    observe,
+    replay,
+    run,
+    start,
+    step,
+)
+from tests.unit.sim.worlds import ENGINES, random_world, wander
+
+
+def everything(engine: str = "numpy") -> Simulation:
+    faults = Faults((Window(1.0, 1.5),), (Window(2.0, 3.0),), (DeadSector(0.1, 0.4, Window(0.5)),))
+    square = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
+    robots = (
+        RobotSpec(name="a", lidar=replace(LDS_01, noise=0.01), drift=OdometryDrift(0.01, 0.02, 0.0), faults=faults),
+        RobotSpec(name="b", footprint=square, start=Pose(0.5, 0.5, 1.0), lidar=None, on_collision="slide"),
+    )
+    return Simulation(random_world(12, movers=2), robots, seed=3, engine=engine)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return run(everything(), wander(4, ("a", "b")), 6.0)
+
+
+@pytest.fixture
+def saved(recording: Recording, tmp_path: Path) -> Path:
+    path = tmp_path / "run.npz"
+    recording.save(path)
+    return path
+
+
+def test_a_recording_has_a_row_for_every_state(recording: Recording) -> None:
+    assert len(recording) == 61
+    assert recording.times[-1] == 6.0
+    assert recording.poses.shape == (61, 2, 3)
+    assert recording.commands.shape == recording.velocities.shape == (61, 2, 2)
+    assert recording.covariances.shape == (61, 2, 9)
+    assert np.isnan(recording.commands[0]).all()
+    assert recording.clearances.shape == recording.collided.shape == (61, 2)
+
+
+def test_a_dead_lidar_leaves_no_scan_in_the_recording(recording: Recording) -> None:
+    rows = recording.scans[0].rows.tolist()
+    assert rows == [row for row in range(60) if not 10 <= row < 15]
+    assert recording.scans[0].ranges.shape == (55, 360)
+    assert recording.scans[1].ranges.shape == (0, 0)
+
+
+def test_a_saved_recording_loads_to_the_same_bits(recording: Recording, saved: Path) -> None:
+    loaded = load_recording(saved)
+    assert loaded.sha256() == recording.sha256()
+    assert loaded.events == recording.events
+    assert loaded.simulation.robots == recording.simulation.robots
+    assert saved.stat().st_size < 120_000
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_replay_finds_every_state_again(recording: Recording, saved: Path, engine: Any) -> None:
+    states = list(replay(load_recording(saved), engine=engine))
+    poses = [[(r.pose.x, r.pose.y, r.pose.theta) for r in state.robots] for state in states]
+    np.testing.assert_array_equal(np.array(poses), recording.poses)
+    assert [state.time_ns for state in states] == recording.times_ns.tolist()
+    covariances = [[r.covariance for r in state.robots] for state in states]
+    np.testing.assert_array_equal(np.array(covariances), recording.covariances)
+    log = recording.scans[0]
+    for row, ranges in zip(log.rows.tolist(), log.ranges, strict=True):
+        scan = observe(replace(recording.simulation, engine=engine), states[row], "a")
+        assert scan is not None
+        np.testing.assert_array_equal(scan.ranges, ranges)
+
+
+def test_the_hash_tells_runs_apart_and_engines_not(recording: Recording) -> None:
+    again = run(everything("numba"), wander(4, ("a", "b")), 6.0)
+    other = run(everything(), wander(5, ("a", "b")), 6.0)
+    assert again.sha256() == recording.sha256() != other.sha256()
+
+
+def test_a_recorder_notes_what_was_and_what_was_not_commanded() -> None:
+    simulation = Simulation(random_world(1), (RobotSpec(name="a", watchdog=math.inf),))
+    recorder = Recorder(simulation)
+    state = step(simulation, start(simulation), Command(0.2, 0.1), 0.1)
+    recorder.append(state, Command(0.2, 0.1))
+    state = step(simulation, state, None, 0.25)
+    recorder.append(state)
+    recording = recorder.recording()
+    np.testing.assert_array_equal(recording.commands[1:, 0], [[0.2, 0.1], [np.nan, np.nan]])
+    assert recording.times_ns.tolist() == [0, 100_000_000, 350_000_000]
+    assert recording.clearances[-1, 0] == clearance(simulation, state).distance
+    assert list(replay(recording))[-1].robots == state.robots
+
+
+def test_a_file_that_is_not_there_or_is_something_else_is_named(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"none\.npz: there is no such file"):
+        load_recording(tmp_path / "none.npz")
+    other = tmp_path / "other.npz"
+    other.write_text("hello")
+    with pytest.raises(RecordingError, match=r"other\.npz: not a recording, or a damaged one"):
+        load_recording(other)
+    np.savez(other, header=np.frombuffer(b'{"format": 99}', dtype=np.uint8))
+    with pytest.raises(RecordingError, match="format 99 is not the format 1"):
+        load_recording(other)
+
+
+@pytest.mark.parametrize(
+    ("what", "change"),
+    [
+        ("world", None),
+        ("robots", []),
+        ("robots", [{"name": "a"}]),
+        ("seed", -1),
+        ("tick", "soon"),
+    ],
+)
+def test_a_recording_of_no_possible_run_is_refused(saved: Path, what: str, change: object) -> None:
+    with np.load(saved) as file:
+        arrays = dict(file)
+    header = json.loads(arrays["header"].tobytes())
+    description = json.loads(header["simulation"])
+    description[what] = change
+    header["simulation"] = json.dumps(description)
+    arrays["header"] = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
+    np.savez(saved, **arrays)
+    with pytest.raises(RecordingError, match="the description of the run is damaged"):
+        load_recording(saved)
+
+
+@pytest.mark.parametrize("column", ["poses", "times_ns", "scan0_ranges"])
+def test_a_recording_whose_columns_do_not_fit_is_refused(saved: Path, column: str) -> None:
+    with np.load(saved) as file:
+        arrays = dict(file)
+    arrays[column] = arrays[column][:-1]
+    np.savez(saved, **arrays)
+    with pytest.raises(RecordingError, match=r"the column .* has the shape"):
+        load_recording(saved)
+
+
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(at=st.floats(0, 1), value=st.integers(0, 255), cut=st.booleans())
+def test_a_damaged_file_is_a_recording_error_and_nothing_else(saved: Path, at: float, value: int, cut: bool) -> None:
+    data = bytearray(saved.read_bytes())
+    place = int(at * (len(data) - 1))
+    if cut:
+        del data[place:]
+    else:
+        data[place] = value
+    damaged = saved.with_name("damaged.npz")
+    damaged.write_bytes(data)
+    try:
+        rows = len(load_recording(damaged))
+    except RecordingError as error:
+        rows = 61 if "damaged.npz" in str(error) else 0
+    assert rows == 61
