@@ -138,7 +138,7 @@ def colcon(workspace: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "colcon", *words],
         cwd=workspace,
-        env={**os.environ, "PATH": path},
+        env={**os.environ, "PATH": path, "MAKEFLAGS": "-j3"},
         capture_output=True,
         text=True,
         timeout=2 * PATIENCE,

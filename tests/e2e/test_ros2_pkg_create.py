@@ -183,6 +183,23 @@ def test_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspace) ->
     assert "Hi from py_pkg." in printed
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ending_launch_takes_its_nodes_down(workspace: Workspace, tmp_path: Path, number: int) -> None:
+    file = tmp_path / "stubborn.launch.py"
+    file.write_text(LAUNCH.replace("executable='hello'", "executable='stubborn'"))
+    command = [*ROS2, "launch", str(file)]
+    with subprocess.Popen(
+        command, env=workspace.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert any("arguments" in line for line in process.stdout)
+        process.send_signal(number)
+        # The pipe ends only when the node, which holds it too, is gone.
+        rest, _ = process.communicate(timeout=PATIENCE)
+    assert "process has died" in rest
+    assert "exit code 7" in rest
+
+
 def test_launch_shows_arguments_and_the_description(workspace: Workspace) -> None:
     path = workspace.folder / "src/py_pkg/launch/hello.launch.py"
     shown = workspace.ros2("launch", str(path), "--show-args")

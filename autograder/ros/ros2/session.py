@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,15 +17,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import rclpy
-from rclpy.exceptions import InvalidNodeNameException, InvalidTopicNameException
+from rclpy.exceptions import NameValidationException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
+from rclpy.validate_node_name import validate_node_name
 
 from autograder.ros.ros2.exceptions import Ros2Error
 
 NODE_NAME_PREFIX = "_ros2cli"
+# Beyond it, DDS runs out of ports.
+LAST_DOMAIN = 232
 
 # Seconds without a change after which the graph counts as discovered, and the most to wait for that.
 QUIET = 0.5
@@ -93,14 +97,19 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
     """Start rclpy with a node of our own, and end it afterwards.
 
     Raises:
-        Ros2Error: the node's name, or the name of a topic or service used with it, is not valid.
+        Ros2Error: `ROS_DOMAIN_ID`, the node's name, or the name of a topic or service used with it is not valid.
     """
+    domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+    if not re.fullmatch(r"\d{1,3}", domain) or int(domain) > LAST_DOMAIN:
+        raise Ros2Error(f"ROS_DOMAIN_ID is '{domain}', but must be a number from 0 to {LAST_DOMAIN}")
     parameters = [Parameter("use_sim_time", value=True)] if getattr(args, "use_sim_time", False) else []
     # Python's own handlers stay: Ctrl-C then leaves the context alive, so that a goal can still be cancelled.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
+        name = node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}"
+        validate_node_name(name)
         node = rclpy.create_node(
-            node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}",
+            name,
             start_parameter_services=False,
             parameter_overrides=parameters,
         )
@@ -111,7 +120,7 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
         finally:
             executor.shutdown(timeout_sec=0)
             node.destroy_node()
-    except (InvalidNodeNameException, InvalidTopicNameException) as error:
+    except NameValidationException as error:
         raise Ros2Error(str(error)) from None
     finally:
         rclpy.try_shutdown()

@@ -116,3 +116,24 @@ def test_a_reader_that_stops_listening_is_no_traceback() -> None:
     shell = f"{sys.executable} -m autograder.ros.ros2 interface list | head -1"
     done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("Messages:\n", "")
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (("topic", "echo", "bad topic"), "topic name 'bad topic' is invalid"),
+        (("service", "call", "bad name", "std_srvs/srv/Empty"), "Invalid service name"),
+        (("topic", "pub", "/x", "std_msgs/msg/Empty", "-n", "bad name"), "Invalid node name"),
+        (("topic", "pub", "bad topic", "std_msgs/msg/Empty"), "Invalid topic name"),
+    ],
+)
+def test_a_name_that_ros_does_not_allow_is_an_error_without_a_traceback(words: tuple[str, ...], error: str) -> None:
+    outcome = main(words)
+    assert isinstance(outcome, str)
+    assert outcome.startswith(error)
+
+
+@pytest.mark.parametrize("domain", ["300", "-1", "lab"])
+def test_a_domain_that_dds_has_no_ports_for_is_an_error(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    assert main(["node", "list"]) == f"ROS_DOMAIN_ID is '{domain}', but must be a number from 0 to 232"
