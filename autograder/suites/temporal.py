@@ -6,10 +6,13 @@ value is positive where the formula holds, and its size is the distance to the b
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import rtamt
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", DeprecationWarning)  # its parser's runtime imports typing.io
+    import rtamt
 
 
 @dataclass(frozen=True)
