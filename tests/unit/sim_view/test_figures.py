@@ -1,0 +1,207 @@
+"""Static pictures: what is on them, the same bytes each time, no pyplot anywhere."""
+
+from __future__ import annotations
+
+import base64
+import io
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from PIL import Image
+
+from sim import Recording, Simulation, World, box, start
+from sim.maps import load
+from sim.view import DARK, LIGHT, plot, show
+from sim.view.artists import outlines
+from sim.view.stage import HEIGHT, WIDTH
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def texts(ax: Axes) -> set[str]:
+    return {text.get_text() for text in ax.texts}
+
+
+def tracks(ax: Axes) -> list[LineCollection]:
+    return [item for item in ax.collections if isinstance(item, LineCollection) and item.get_array() is not None]
+
+
+def test_a_world_shows_its_walls_names_and_size(world: World) -> None:
+    (ax,) = show(world).figure.axes
+    assert {"The lab", "12.0 × 8.0 m", "north wall", "round table", "dock"} <= texts(ax)  # noqa: RUF001
+    walls = ax.collections[0]
+    assert isinstance(walls, LineCollection)
+    assert len(walls.get_segments()) == len(world.segments)
+
+
+def test_names_can_be_left_out(world: World) -> None:
+    (ax,) = show(world, names=False).figure.axes
+    assert texts(ax) == {"The lab", "12.0 × 8.0 m"}  # noqa: RUF001
+
+
+def test_a_given_axes_is_drawn_into(world: World, recording: Recording) -> None:
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    assert show(world, ax=left).figure is figure
+    assert plot(recording, ax=right).figure is figure
+    assert left.collections
+    assert right.collections
+
+
+def test_the_same_drawing_gives_the_same_bytes(world: World, recording: Recording) -> None:
+    assert show(world).png() == show(world).png()
+    assert show(world).svg() == show(world).svg()
+    assert plot(recording, mark=3.0).svg() == plot(recording, mark=3.0).svg()
+
+
+def test_the_worlds_figures_in_the_repository_are_those_of_the_worlds() -> None:
+    worlds = sorted(path.stem for path in (ROOT / "assets" / "worlds").glob("*.yaml"))
+    assert sorted(path.stem for path in (ROOT / "assets" / "figures" / "worlds").glob("*.png")) == worlds
+    for name in worlds:
+        drawn = show(load(ROOT / "assets" / "worlds" / f"{name}.yaml")).png()
+        kept = (ROOT / "assets" / "figures" / "worlds" / f"{name}.png").read_bytes()
+        fresh, old = (np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=int) for data in (drawn, kept))
+        assert fresh.shape == old.shape, f"{name}: run python assets/figures/make_worlds.py"
+        assert np.abs(fresh - old).mean() < 0.5, f"{name}: run python assets/figures/make_worlds.py"
+
+
+def test_robots_and_what_they_see_are_drawn_with_a_state(world: World) -> None:
+    simulation = Simulation(world)
+    bare, full = show(simulation), show(simulation, start(simulation))
+    assert not [line for line in bare.figure.axes[0].lines if line.get_color() == LIGHT.hit]
+    (hits,) = [line for line in full.figure.axes[0].lines if line.get_color() == LIGHT.hit]
+    assert len(hits.get_xdata()) > 100
+    assert "robot at (1.40 m, 0.80 m)" in full.alt
+
+
+def test_a_track_says_how_long_it_is_and_what_happened(recording: Recording) -> None:
+    picture = plot(recording)
+    title = " ".join(texts(picture.figure.axes[0]))
+    collisions = sum(event.kind == "collision" for event in recording.events)
+    assert collisions
+    assert f"{collisions} collision" in title
+    assert "8.0 s" in title
+    assert f"{collisions} collision" in picture.alt
+
+
+@pytest.mark.parametrize(("colour", "values"), [("time", "times"), ("clearance", "clearances")])
+def test_a_track_is_coloured_by_time_or_clearance(recording: Recording, colour: str, values: str) -> None:
+    picture = plot(recording, colour=colour)  # type: ignore[arg-type]
+    (track,) = tracks(picture.figure.axes[0])
+    column = getattr(recording, values)
+    column = column if column.ndim == 1 else column[:, 0]
+    assert np.array(track.get_array()) == pytest.approx((column[1:] + column[:-1]) / 2)
+    scale = picture.figure.axes[0].child_axes[0]
+    assert colour in texts(scale)
+
+
+def test_one_robot_can_be_picked(recording: Recording) -> None:
+    picture = plot(recording, robot="two")
+    (track,) = tracks(picture.figure.axes[0])
+    assert track.get_segments()[0][0] == pytest.approx(recording.poses[0, 1, :2])
+    assert "Track of two" in picture.alt
+
+
+def test_a_mark_writes_the_instant_and_the_note(recording: Recording) -> None:
+    picture = plot(recording, mark=3.04, note="0.08 m from the north wall")
+    assert "t = 3.0 s\n0.08 m from the north wall" in texts(picture.figure.axes[0])
+    assert "Marked: t = 3.0 s, 0.08 m from the north wall" in picture.alt
+
+
+def test_the_mark_draws_a_line_to_the_nearest_obstacle(recording: Recording) -> None:
+    row = int(np.argmin(recording.clearances[:, 0]))
+    ax = plot(recording, mark=float(recording.times[row]), robot="one").figure.axes[0]
+    ends = [np.column_stack(line.get_data()) for line in ax.lines if len(line.get_xdata()) == 2]
+    gap = next(line for line in ends if line[0] == pytest.approx(recording.poses[row, 0, :2]))
+    spec = recording.simulation.robots[0]
+    assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(recording.clearances[row, 0] + spec.radius, abs=1e-9)
+
+
+def test_a_mark_outside_the_recording_takes_its_nearest_instant(recording: Recording) -> None:
+    assert "t = 8.0 s" in texts(plot(recording, mark=99.0).figure.axes[0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"robot": "three"}, "no robot 'three': it has one, two"),
+        ({"colour": "speed"}, "no colour 'speed': choose time or clearance"),
+        ({"mark": float("nan")}, "no instant t = nan s"),
+        ({"theme": "sepia"}, "no theme 'sepia': choose one of light, dark"),
+    ],
+)
+def test_arguments_that_make_no_sense_are_named(
+    recording: Recording, arguments: dict[str, str | float], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        plot(recording, **arguments)  # type: ignore[arg-type]
+
+
+def test_a_picture_is_saved_as_png_or_svg_only(world: World, tmp_path: Path) -> None:
+    picture = show(world)
+    assert picture.save(tmp_path / "a.png").read_bytes() == picture.png()
+    assert ElementTree.parse(picture.save(tmp_path / "a.svg")).getroot().tag.endswith("svg")
+    for name in ("a.pdf", "a"):
+        with pytest.raises(ValueError, match=r"saved as \.png or \.svg"):
+            picture.save(tmp_path / name)
+
+
+def test_a_picture_shows_itself_with_its_alternative_text() -> None:
+    picture = show(World.from_segments(box(2, 2), name='a "quoted" <b> world'))
+    data, metadata = picture._repr_mimebundle_()
+    assert base64.b64decode(data["image/png"]) == picture._repr_png_()
+    assert 'alt="Map of the world “a &quot;quoted&quot; &lt;b&gt; world”' in data["text/html"]
+    assert metadata["image/png"]["alt"] == data["text/plain"] == picture.alt
+
+
+@pytest.mark.parametrize("size", [(0.5, 0.5), (60.0, 1.0), (1.0, 60.0), (500.0, 500.0)])
+def test_worlds_of_any_size_fit_on_the_sheet(size: tuple[float, float]) -> None:
+    figure = show(World.from_segments(box(*size))).figure
+    assert figure.get_figwidth() <= WIDTH + 0.01
+    assert figure.get_figheight() <= HEIGHT + 0.01
+    assert 2 <= len(figure.axes[0].get_xticks()) + len(figure.axes[0].get_yticks()) <= 40
+
+
+def test_a_world_without_walls_can_be_shown() -> None:
+    assert show(World()).png().startswith(b"\x89PNG")
+
+
+def test_furniture_is_solid_and_the_room_is_not(world: World) -> None:
+    room, solid = outlines(world)
+    assert np.ptp(room, axis=0).tolist() == [12.0, 8.0]
+    assert len(solid) == 4
+
+
+def luminance(colour: str) -> float:
+    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+def test_text_has_the_contrast_that_wcag_asks_for(theme: object) -> None:
+    for foreground in ("ink", "muted", "goal", "alarm"):
+        for background in ("paper", "floor", "outside"):
+            values = sorted(luminance(getattr(theme, name)) for name in (foreground, background))
+            assert (values[1] + 0.05) / (values[0] + 0.05) >= 4.5, (foreground, background)
+
+
+def test_nothing_imports_pyplot_or_is_imported_by_the_core() -> None:
+    code = """
+import sys, sim
+assert not {"matplotlib", "rclpy", "ipywidgets", "numba", "PIL"} & set(sys.modules), sorted(sys.modules)
+import sim.bridge, sim.maps, sim.export
+assert not {"matplotlib", "rclpy", "ipywidgets"} & set(sys.modules)
+import sim.view
+sim.view.show(sim.World.from_segments(sim.box(2, 2))).png()
+assert not {"matplotlib.pyplot", "ipywidgets", "rclpy"} & set(sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,242 @@
+"""The live view without a browser: what its methods do, on the loop that a kernel has."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sim import Command, Recording, Scan, Simulation, World, load_world
+from sim.view import LiveView, Picture, live
+from sim.view.renderer import Renderer
+from sim.view.session import LONGEST_NS, Session
+from sim.view.theme import DARK, LIGHT
+
+ROOT = Path(__file__).resolve().parents[3]
+SECOND = 1_000_000_000
+PATIENCE = 60.0
+
+
+@pytest.fixture(autouse=True)
+def somebody_is_looking(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("AUTOGRADER_GRADING", raising=False)
+
+
+def go(scan: Scan) -> Command:
+    return Command(0.3, 0.0)
+
+
+def paused(source: Any, controller: Any = None) -> LiveView:
+    view = live(source, controller, play=False)
+    assert isinstance(view, LiveView)
+    return view
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        await asyncio.sleep(0)
+
+
+def widgets_of(view: LiveView) -> dict[str, Any]:
+    """The view's buttons and the like by their tooltips, and the rest by their kind."""
+    found: dict[str, Any] = {}
+
+    def visit(widget: Any) -> None:
+        found[getattr(widget, "tooltip", None) or type(widget).__name__] = widget
+        for child in getattr(widget, "children", ()):
+            visit(child)
+
+    visit(view.widget)
+    return found
+
+
+def test_it_plays_on_the_loop_and_gives_it_back(world: World) -> None:
+    async def play() -> None:
+        view = live(world, go)
+        assert isinstance(view, LiveView)
+        ticks = 0
+
+        async def other() -> None:
+            nonlocal ticks
+            while True:
+                ticks += 1
+                await asyncio.sleep(0)
+
+        task = asyncio.get_running_loop().create_task(other())
+        await until(lambda: view.time > 0.5)
+        assert view.playing
+        assert view.fps > 0.0
+        assert ticks > 10
+        view.pause()
+        task.cancel()
+        assert not view.playing
+        assert view.recording.poses[-1, 0, 0] > world.starts[0].x
+
+    asyncio.run(play())
+
+
+def test_steps_are_exact(world: World) -> None:
+    view = paused(world, go)
+    view.step(0.1)
+    view.step(0.5)
+    assert view.time == pytest.approx(0.6)
+    assert len(view.recording) == 31
+
+
+def test_the_past_can_be_visited_and_time_goes_on_from_there(world: World) -> None:
+    view = paused(world, go)
+    view.step(2.0)
+    newest = widgets_of(view)["Image"].value
+    view.seek(0.5)
+    assert view.time == 0.5
+    assert widgets_of(view)["Image"].value != newest
+    view.step(0.1)
+    assert view.time == pytest.approx(0.6)
+    assert view.recording.times[-1] == pytest.approx(2.0)
+    view.seek(99.0)
+    assert view.time == pytest.approx(2.0)
+
+
+def test_reset_forgets_the_run(world: World) -> None:
+    view = paused(world, go)
+    first = widgets_of(view)["Image"].value
+    view.step(2.0)
+    view.reset()
+    assert (view.time, len(view.recording)) == (0.0, 1)
+    assert widgets_of(view)["Image"].value == first
+
+
+def test_the_pad_takes_over_until_the_code_gets_the_robot_back(world: World) -> None:
+    view = paused(world, go)
+    view.step(1.0)
+    pad = widgets_of(view)
+    pad["Turn left"].click()
+    view.step(1.0)
+    assert view.recording.velocities[-1, 0].tolist() == pytest.approx([0.0, 0.9])
+    pad["Stop the robot"].click()
+    view.step(1.0)
+    assert view.recording.velocities[-1, 0].tolist() == [0.0, 0.0]
+    pad["Let your code drive"].click()
+    view.step(1.0)
+    assert view.recording.velocities[-1, 0].tolist() == pytest.approx([0.3, 0.0])
+
+
+def test_without_a_callback_there_is_nobody_to_give_the_robot_back_to(world: World) -> None:
+    assert "Let your code drive" not in widgets_of(paused(world))
+
+
+def test_an_exception_of_the_callback_stops_time_and_is_shown_without_our_own_lines(world: World) -> None:
+    def broken(scan: Scan) -> Command:
+        raise LookupError("no such wall")
+
+    view = paused(world, broken)
+    view.step(1.0)
+    (shown,) = widgets_of(view)["Output"].outputs
+    assert shown["name"] == "stderr"
+    assert "LookupError: no such wall" in shown["text"]
+    assert "in broken" in shown["text"]
+    assert "session.py" not in shown["text"]
+    assert view.time == 0.0
+    view.reset()
+    assert widgets_of(view)["Output"].outputs == ()
+
+
+def test_a_callback_that_returns_something_else_hears_what_is_wanted(world: World) -> None:
+    view = paused(world, lambda scan: 0.3)
+    view.step(1.0)
+    assert "must return a Command or None, not float" in widgets_of(view)["Output"].outputs[0]["text"]
+
+
+def test_a_callback_hears_each_scan_once(world: World) -> None:
+    stamps: list[int] = []
+    view = paused(world, lambda scan: stamps.append(scan.stamp_ns))
+    view.step(1.0)
+    view.step(0.1)
+    assert stamps == [0, SECOND // 5, 2 * SECOND // 5, 3 * SECOND // 5, 4 * SECOND // 5, SECOND]
+
+
+def test_a_recording_is_played_to_its_end(recording: Recording) -> None:
+    view = paused(recording)
+    assert "Forward" not in widgets_of(view)
+    view.step(99.0)
+    assert view.time == pytest.approx(8.0)
+    assert view.recording is recording
+
+
+def test_the_slider_seeks_while_time_stands_still(world: World) -> None:
+    view = paused(world, go)
+    view.step(2.0)
+    slider = widgets_of(view)["FloatSlider"]
+    assert slider.value == pytest.approx(2.0)
+    slider.value = 1.0
+    assert view.time == 1.0
+
+
+def test_it_is_silent_under_a_grader(world: World, recording: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AUTOGRADER_GRADING", "1")
+
+    async def make() -> list[Any]:
+        views = [live(source, go) for source in (world, Simulation(world), recording)]
+        assert len(asyncio.all_tasks()) == 1  # this one
+        return views
+
+    assert all(isinstance(view, Picture) for view in asyncio.run(make()))
+
+
+def test_without_a_loop_it_stands_still(world: World) -> None:
+    view = live(world, go)
+    assert isinstance(view, LiveView)
+    assert not view.playing
+    assert repr(view) == "<live view of 'the lab' at 0.00 s, paused>"
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), 1000.0])
+def test_a_speed_that_makes_no_sense_is_refused(world: World, speed: float) -> None:
+    with pytest.raises(ValueError, match="makes no sense"):
+        live(world, speed=speed)
+
+
+def test_a_forgotten_run_ends() -> None:
+    session = Session(Simulation(World(), tick=1.0))
+    session.advance(LONGEST_NS + 5 * SECOND)
+    assert session.end_ns == LONGEST_NS
+    assert not session.growing
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+def test_a_blitted_frame_is_the_same_as_a_fresh_one(world: World, theme: Any) -> None:
+    session = Session(Simulation(world), go)
+    session.advance(3 * SECOND)
+    used = Renderer(session.simulation, theme)
+    for frame in session.frames[::20]:
+        used.draw(frame, session.trail(frame.state.time_ns))
+    last = session.frames[-1]
+    again = used.draw(last, session.trail(last.state.time_ns))
+    fresh = Renderer(session.simulation, theme).draw(last, session.trail(last.state.time_ns))
+    assert np.array_equal(np.asarray(again), np.asarray(fresh))
+
+
+def test_frames_are_jpeg_or_png_of_one_size(world: World) -> None:
+    session = Session(Simulation(world))
+    renderer = Renderer(session.simulation, LIGHT)
+    jpeg, png = (Image.open(io.BytesIO(data)) for data in (renderer.jpeg(session.at(0)), renderer.png(session.at(0))))
+    assert (jpeg.format, png.format) == ("JPEG", "PNG")
+    assert jpeg.size == png.size == (980, 450)
+
+
+def test_a_moving_obstacle_moves_in_the_picture() -> None:
+    world = load_world(ROOT / "assets" / "worlds" / "moving_obstacle.yaml")
+    session = Session(Simulation(world))
+    session.advance(2 * SECOND)
+    renderer = Renderer(session.simulation, LIGHT)
+    first, last = (np.asarray(renderer.draw(session.at(when))) for when in (0, 2 * SECOND))
+    assert (np.abs(first[60:, :600].astype(int) - last[60:, :600]).max(axis=2) > 60).sum() > 200
