@@ -58,7 +58,7 @@ def main(argv: Sequence[str] | None = None) -> Outcome:
         sys.path.append(str(STAND_INS))
     if "--use-python-default-buffering" not in arguments:
         sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
-    signal.signal(signal.SIGTERM, _terminate)
+    before = signal.signal(signal.SIGTERM, _terminate)
     try:
         run, args = parse(COMMANDS, arguments)
         return run(args)
@@ -70,6 +70,8 @@ def main(argv: Sequence[str] | None = None) -> Outcome:
         # `ros2 topic echo /scan | head`: nobody reads on. Python would complain once more when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _terminate(signum: int, _: object) -> NoReturn:

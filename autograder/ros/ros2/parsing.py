@@ -53,12 +53,7 @@ class Command:
     not_covered: tuple[str, ...] = ()
 
     def load(self) -> tuple[Verb, ...] | Verb:
-        """Import the command's verbs, or its one verb if it has no further word.
-
-        Raises:
-            NotCoveredError: there is no module for it.
-        """
-        assert self.module is not None
+        """Import the verbs of a covered command, or its one verb if it has no further word."""
         module = importlib.import_module(f"autograder.ros.ros2.{self.module}")
         found: tuple[Verb, ...] | Verb = module.VERBS if hasattr(module, "VERBS") else module.VERB
         return found
@@ -89,7 +84,7 @@ def parse(
     )
     for known, command in commands.items():
         if command.module is not None:
-            child = children.add_parser(known, help=command.summary, prog=f"ros2 {known}", add_help=known != name)
+            child = children.add_parser(known, help=command.summary, prog=f"ros2 {known}")
             child.set_defaults(run=lambda _: None)
     if name in commands:
         # Filled in now that it is known which one; the placeholder made for the list of commands gives way.

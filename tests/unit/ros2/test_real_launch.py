@@ -55,10 +55,8 @@ def python_package(name: str, content: str) -> dict[str, str]:
 def machine(tmp_path: Path) -> tuple[RosEnvironment, str]:
     """A virtual environment of its own that sees this one's packages, and ROS with its prefix in front."""
     prefix = tmp_path / "venv"
-    venv.create(prefix, with_pip=True, symlinks=True)
+    venv.create(prefix, symlinks=True)
     python = str(prefix / "bin" / "python")
-    # venv may bring an old setuptools, which would hide the one that the wheels need.
-    subprocess.run([python, "-m", "pip", "uninstall", "--quiet", "--yes", "setuptools"], check=True)
     packages = next(prefix.glob("lib/python*/site-packages"))
     (packages / "course.pth").write_text(sysconfig.get_path("purelib"))
     ros = find()

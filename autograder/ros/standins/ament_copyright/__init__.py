@@ -4,6 +4,10 @@ It is found only where the real package is not importable. Covered: `main(argv)`
 `--verbose`, `--list-licenses` and `--xunit-file`. Get the real one by sourcing a ROS 2 Jazzy installation.
 """
 
+from standin_notice import guard
+
 from .main import main
 
 __all__ = ["main"]
+
+__getattr__ = guard(__name__)

@@ -5,6 +5,8 @@ It is found only where the real package is not importable, has its import names,
 sourcing a ROS 2 Jazzy installation.
 """
 
+from standin_notice import guard
+
 from .convert import get_message_slot_types, message_to_csv, message_to_ordereddict, message_to_yaml
 from .get_interfaces import (
     get_action_interfaces,
@@ -33,3 +35,5 @@ __all__ = [
     "message_to_yaml",
     "set_message_fields",
 ]
+
+__getattr__ = guard(__name__)
