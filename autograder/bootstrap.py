@@ -221,8 +221,8 @@ class SetUp:
         (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
         say(f"installing the pinned packages of {name}, a minute or two")
         failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
-        # The lock holds for 3.10 to 3.13; rtamt's own claim to end at 3.12 would stop pip on 3.13.
-        pinned = ("--ignore-requires-python", "--no-compile", "--require-hashes", "--requirement", str(chosen))
+        # The lock is whole and holds for 3.10 to 3.13, whatever a package claims (rtamt: to end at 3.12).
+        pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(chosen))
         self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
         say("compiling them")
         # Its exit status is not asked: some packages ship templates and old Python that never compile.
