@@ -22,6 +22,8 @@ from rclpy.signals import SignalHandlerOptions
 
 from sim.bridge.driver import Driver
 from sim.bridge.node import SimulatorNode
+from sim.bridge.settings import SETTINGS
+from sim.exceptions import SpecError
 from sim.simulation import Simulation
 
 PATIENCE = 10.0
@@ -38,6 +40,10 @@ class Bridge:
     """
 
     def __init__(self, world: str | Path, *, domain_id: int | None = None, **settings: Any) -> None:
+        unknown = sorted(set(settings) - {setting.name for setting in SETTINGS})
+        if unknown:
+            known = ", ".join(setting.name for setting in SETTINGS)
+            raise SpecError(f"the simulator has no setting {unknown[0]!r}; it has {known}")
         overrides = [Parameter(name, value=value) for name, value in {"world": str(world), **settings}.items()]
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
@@ -72,7 +78,11 @@ class Bridge:
         return self._thread.is_alive()
 
     def pause(self) -> None:
-        """Let simulated time stand still."""
+        """Let simulated time stand still.
+
+        Raises:
+            RuntimeError: if the bridge has been stopped; so do `resume`, `step` and `reset`.
+        """
         self._on_thread(lambda: self._node.pause(True))
 
     def resume(self) -> None:
@@ -108,6 +118,8 @@ class Bridge:
             self._node.destroy_node()
 
     def _on_thread(self, action: Callable[[], Any]) -> None:
+        if not self.running:
+            raise RuntimeError("the simulator has been stopped: make a new Bridge")
         done = threading.Event()
 
         def act() -> None:
@@ -118,4 +130,4 @@ class Bridge:
 
         self._executor.create_task(act)
         if not done.wait(PATIENCE):
-            raise TimeoutError(f"the simulator did not answer within {PATIENCE:.0f} s: has it been stopped?")
+            raise TimeoutError(f"the simulator did not answer within {PATIENCE:.0f} s")

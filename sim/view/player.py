@@ -134,6 +134,8 @@ class LiveView:
             self._task.cancel()
             self._task = None
         self._source.hold(True)
+        if not self._source.paced:  # it went on until it heard
+            self._now_ns = self._source.end_ns
         self._controls.set_playing(False)
         self._render()
 

@@ -26,6 +26,7 @@ class Watch:
         self.simulation = bridge.simulation
         self._bridge = bridge
         self._held: Command | None = None
+        self._holding = False
         self._forget()
 
     @property
@@ -51,25 +52,21 @@ class Watch:
     def advance(self, until_ns: int) -> int:
         """Look at the bridge once and return the instant to be shown: its newest.
 
-        A paused bridge is stepped up to `until_ns`.
+        A bridge that the view itself has paused is stepped up to `until_ns`.
         """
-        if self._bridge.paused:
+        if self._holding and until_ns > self.end_ns:
             self._bridge.step((until_ns - self.end_ns) / 1e9)
         if self._held is not None:
             self._bridge.driver.command(self.simulation.robots[0].name, self._held)
-        frame = self._look()
-        if frame.state.time_ns < self.end_ns:  # somebody has reset it
-            self._forget()
-        elif frame.state.time_ns > self.end_ns:
-            self._frames.append(frame)
-            self._times.append(frame.state.time_ns)
-            self._recorder.append(frame.state)
+        self._see()
         return self.end_ns
 
     def hold(self, paused: bool) -> None:
         """Let the bridge's time stand still, or go on."""
+        self._holding = paused
         if self._bridge.running:
             (self._bridge.pause if paused else self._bridge.resume)()
+            self._see()
 
     def reset(self) -> None:
         """Send the bridge back to its start."""
@@ -83,6 +80,15 @@ class Watch:
     def recording(self) -> Recording:
         """Return what the view has seen as a recording; commands are not in it."""
         return self._recorder.recording()
+
+    def _see(self) -> None:
+        frame = self._look()
+        if frame.state.time_ns < self.end_ns:  # somebody has reset it
+            self._forget()
+        elif frame.state.time_ns > self.end_ns:
+            self._frames.append(frame)
+            self._times.append(frame.state.time_ns)
+            self._recorder.append(frame.state)
 
     def _look(self) -> Frame:
         driver = self._bridge.driver
