@@ -59,10 +59,11 @@ def test_a_given_package_installs_only_executables_that_the_chapter_has(chapter:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
 @each_chapter
 @pytest.mark.parametrize("form", list(Form))
 def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
-    result = run_notebook(chapter.path, form, report=tmp_path / chapter.path.name)
+    result = run_notebook(chapter.path, form, timeout=400, report=tmp_path / chapter.path.name)
     assert result.ok, result.failure
     assert images_without_alt(result.notebook) == []
     counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook))
