@@ -10,19 +10,23 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import nbformat
 from nbformat import NotebookNode
+from nbformat.v4 import new_notebook
 from nbgrader.api import Gradebook
 from nbgrader.preprocessors import NbGraderPreprocessor
 from nbgrader.utils import is_grade, is_solution
 from traitlets import Bool, Integer, Unicode
 
 from autograder import feedback
+from autograder.cli.options import DEFAULT_SEED
 from autograder.exceptions import GraderError
 from autograder.feedback.model import view
 from autograder.feedback.pictures import from_folder
 from autograder.feedback.text import clean
-from autograder.grading import grade_submission
+from autograder.grading.batch import Entry, grade_all
 from autograder.grading.hygiene import grade_id
+from autograder.grading.pipeline import NOTEBOOK
 from autograder.nbgrader.outputs import harmless, verdict
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
@@ -31,8 +35,13 @@ from autograder.sandbox import Tier
 class SandboxedGrade(NbGraderPreprocessor):
     """Grades a submission and fills the notebook's outputs. No code of a student's runs in this process."""
 
-    seed = Integer(0, help="Every hidden input is drawn from this seed.").tag(config=True)
+    seed = Integer(DEFAULT_SEED, help="Every hidden input is drawn from this seed.").tag(config=True)
     isolation = Unicode(Tier.BUBBLEWRAP.value, help="How submissions are isolated: a tier's name.").tag(config=True)
+    resume = Bool(
+        False,
+        help="Book a result stored below `results` if its submission, suite and seed are the same, instead of grading "
+        "again: `autograder grade submitted --assignment ID --out .build/nbgrader/ID -j N` grades a class in parallel.",
+    ).tag(config=True)
     after_due = Bool(False, help="Also show the checks that stay closed until the due date.").tag(config=True)
     results = Unicode(
         ".build/nbgrader", help="Where results go: <results>/<assignment>/<student>/, from the course directory."
@@ -48,24 +57,36 @@ class SandboxedGrade(NbGraderPreprocessor):
         marks = resources["nbgrader"]
         assignment, student = marks["assignment"], marks["student"]
         submitted = Path(coursedir.format_path(coursedir.submitted_directory, student, assignment))
-        out = Path(coursedir.root) / self.results / assignment / student
+        results = Path(coursedir.root) / self.results / assignment
         try:
-            graded = grade_submission(
-                submitted, assignment, student=student, seed=self.seed, out=out, isolation=Tier(self.isolation)
+            (result,) = grade_all(
+                (Entry(student, submitted),),
+                assignment,
+                seed=self.seed,
+                out=results,
+                jobs=1,
+                isolation=Tier(self.isolation),
+                resume=self.resume,
             )
-            if graded.result.status is Status.NOT_GRADED:
-                raise GraderError(f"{student}: not graded, nothing is booked. {graded.result.diagnosis.sentence}")
-            self._fill(nb, graded.notebook)
-            self._judge(nb, graded.result, out)
+            if result.status is Status.NOT_GRADED:
+                raise GraderError(f"{student}: not graded, nothing is booked. {result.diagnosis.sentence}")
+            if result.isolation != self.isolation:
+                raise GraderError(
+                    f"{student}: the stored result was graded with the isolation {result.isolation!r}, not "
+                    f"{self.isolation!r}: grade it again, without SandboxedGrade.resume"
+                )
+            self._fill(nb, results / student / NOTEBOOK)
+            self._judge(nb, result, results / student)
+            feedback.write(result, results / student, after_due=self.after_due)
         except Exception:
             self._flag(marks)
             raise
-        feedback.write(graded.result, out, after_due=self.after_due)
         return nb, resources
 
-    def _fill(self, nb: NotebookNode, executed: NotebookNode | None) -> None:
+    def _fill(self, nb: NotebookNode, executed: Path) -> None:
         """Take over the outputs of the sandboxed run, cell by cell where the source is the same."""
-        cells = [] if executed is None else [cell for cell in executed.cells if cell.cell_type == "code"]
+        notebook = nbformat.read(executed, as_version=4) if executed.is_file() else new_notebook()
+        cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
         count = Counter(_name(cell) for cell in cells)
         ran = {_name(cell): cell for cell in cells if count[_name(cell)] == 1}
         for cell in nb.cells:

@@ -20,9 +20,10 @@ from nbgrader.apps import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from traitlets.config import PyFileConfigLoader
 
-import autograder.nbgrader.grade
+import autograder.grading.batch
 from autograder.checks import Check, Outcome
 from autograder.grading import Graded
+from autograder.grading.pipeline import NOTEBOOK
 from autograder.result import CheckResult, Result
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -122,7 +123,15 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
     """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
     made = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
-    monkeypatch.setattr(autograder.nbgrader.grade, "grade_submission", lambda *a, **k: made.grade(*a, **k))
+
+    def grade(*args: Any, out: Path, **options: Any) -> Graded:
+        graded = made.grade(*args, out=out, **options)
+        out.mkdir(parents=True, exist_ok=True)
+        if graded.notebook is not None:
+            nbformat.write(graded.notebook, out / NOTEBOOK)
+        return graded
+
+    monkeypatch.setattr(autograder.grading.batch, "grade_submission", grade)
     return made
 
 

@@ -12,6 +12,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 from autograder.checks import Check, Outcome
+from autograder.cli.options import DEFAULT_SEED
 from autograder.exceptions import IsolationError
 from autograder.grading import Graded
 from autograder.result import Artifact, CheckResult, Status
@@ -39,7 +40,6 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
 
     def grade(path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: str) -> Graded:
         seen.append((path, assignment, student, seed, out, isolation))
-        out.mkdir(parents=True)
         return verdict()
 
     course.grade = grade
@@ -47,7 +47,7 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
     assert course.autograde("alice")["success"]
     assert course.grades("alice") == BOOKED
     out = course.root / ".build" / "nbgrader" / "tiny" / "alice"
-    assert seen == [(folder, "tiny", "alice", 0, out, "bubblewrap")]
+    assert seen == [(folder, "tiny", "alice", DEFAULT_SEED, out, "bubblewrap")]
     assert (out / "feedback.html").is_file()
 
 
@@ -237,6 +237,15 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     done = course.autograde("frank")
     assert not done["success"]
     assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
+
+
+def test_a_result_of_a_weaker_isolation_is_not_booked(course: Any, verdict: Callable[..., Graded]) -> None:
+    course.grade = lambda *a, **k: verdict(isolation="process")
+    course.submit("grace", course.released)
+    done = course.autograde("grace")
+    assert not done["success"]
+    assert "graded with the isolation 'process', not 'bubblewrap'" in done["log"]
+    assert course.grades("grace")["grade-graph"] == (None, 3.0, True)
 
 
 def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Graded]) -> None:
