@@ -2,6 +2,11 @@
 
 Grades come from the isolated grader (`autograder.nbgrader`); nbgrader books them. `NBGRADER_EXCHANGE` names the
 exchange folder of a class; without it there is one below `.build/`, for trying things out.
+
+`nbgrader autograde` takes one submission after the other. To grade a large class on all cores, and then book it:
+
+    autograder grade submitted --assignment 02_nodes --out .build/nbgrader/02_nodes -j 8
+    nbgrader autograde 02_nodes --SandboxedGrade.resume=True
 """
 
 import os

@@ -22,9 +22,8 @@ from autograder.result import Result
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.timeout(1800),
-    # What nbgrader does with SQLAlchemy, and what rtamt's parser imports.
+    # What nbgrader does with SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
-    pytest.mark.filterwarnings("ignore:typing.io is deprecated:DeprecationWarning"),
 ]
 ASSIGNMENT = "02_nodes"
 SOLUTION = "robot-controller"
