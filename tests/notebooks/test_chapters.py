@@ -80,7 +80,9 @@ def test_a_chapters_figures_are_what_their_script_draws(script: Path, tmp_path: 
     names = {path.name for path in committed.iterdir()}
     assert names == {path.name for path in tmp_path.iterdir()}
     for name in names:
-        assert (committed / name).read_bytes() == (tmp_path / name).read_bytes(), name
+        assert (committed / name).read_bytes() == (tmp_path / name).read_bytes(), (
+            f"{name} is stale: run {script.relative_to(ROOT)}"
+        )
 
 
 @each_chapter
