@@ -70,8 +70,8 @@ def words_of_ticks(key: Words, tick: int, ticks: int) -> Words:
 
 
 def uniform(raw: Words) -> Floats:
-    """Return numbers between 0 and 1, both excluded, on a grid of 2**-53."""
-    numbers: Floats = ((raw >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
+    """Return numbers between 0 and 1, both excluded, in the middles of 2**52 equal steps."""
+    numbers: Floats = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
     return numbers
 
 

@@ -135,7 +135,8 @@ def _circles(scene: Scene, extra: Sequence[tuple[float, float, float]]) -> Float
 def _fan(scene: Scene, walls: Floats, circles: Floats, at: Pose, lidar: LidarSpec, body: Body | None = None) -> Floats:
     beams = beams_of(lidar) if body is None or body.beams is None else body.beams
     grid = scene.grid
-    place = (circles, beams.table, clean(at.x), clean(at.y), clean(at.theta), lidar.angle_min, beams.per_radian, beams.reach)
+    pose = (clean(at.x), clean(at.y), clean(at.theta))
+    place = (circles, beams.table, *pose, lidar.angle_min, beams.per_radian, beams.reach)
     ranges: Floats
     if grid is None or walls is not scene.walls:
         ranges = scene.engine.fan(walls, *place)

@@ -50,20 +50,21 @@ def load_world(path: str | Path) -> World:
         optional=("name", "units", "walls", "boxes", "polygons", "circles", "starts", "goals", "movers"),
     )
     read = Reader(where, _units(plain, sections.get("units")))
+    name = read.text(sections.get("name"), "name")
     segments: list[tuple[float, float, float, float]] = []
     names: list[str] = []
     for node in read.items(sections.get("walls"), "walls", MOST_THINGS):
         if isinstance(node, yaml.SequenceNode):
             x1, y1, x2, y2 = read.lengths(node, "a wall", 4)
-            name = ""
+            label = ""
         else:
             wall = read.fields(node, "a wall", required=("from", "to"), optional=("name",))
             (x1, y1), (x2, y2) = read.lengths(wall["from"], "from", 2), read.lengths(wall["to"], "to", 2)
-            name = read.text(wall.get("name"), "name")
+            label = read.text(wall.get("name"), "name")
         if (x1, y1) == (x2, y2):
             raise bad(where, node, "the wall has no length: it ends where it begins", "Move one end, or leave it out")
         segments.append((x1, y1, x2, y2))
-        names.append(name)
+        names.append(label)
     for node in read.items(sections.get("boxes"), "boxes", MOST_THINGS):
         room = read.fields(node, "a box", required=("size",), optional=("center", "name"))
         width, height = (read.above_zero(value, "size") for value in read.items(room["size"], "size", 2, 2))
@@ -91,7 +92,7 @@ def load_world(path: str | Path) -> World:
     return World.from_segments(
         segments,
         circles=circles,
-        name=read.text(sections.get("name"), "name") or where.stem,
+        name=name or where.stem,
         starts=starts or (Pose(),),
         goals=goals,
         movers=movers,
@@ -115,7 +116,7 @@ def _sides(read: Reader, node: yaml.Node) -> list[tuple[float, float, float, flo
     points = [read.lengths(point, "a point", 2) for point in nodes]
     if points[0] == points[-1]:  # closed by hand
         points.pop()
-    for point, first, second in zip(nodes, points, points[1:], strict=False):
+    for point, first, second in zip(nodes[1:], points, points[1:], strict=False):
         if first == second:
             raise bad(read.path, point, "two neighbouring points are the same", "Leave one of them out")
     if len(points) < 3:
