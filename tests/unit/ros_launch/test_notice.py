@@ -81,5 +81,5 @@ def test_launch_files_of_other_formats_are_refused_by_name(tmp_path: Path, suffi
 
 def test_private_names_are_refused_the_python_way() -> None:
     assert not hasattr(launch.actions, "__wrapped__")
-    with pytest.raises(AttributeError, match="module 'launch.actions' has no attribute '_private'"):
+    with pytest.raises(AttributeError, match=r"module 'launch.actions' has no attribute '_private'"):
         launch.actions._private  # noqa: B018

@@ -102,7 +102,7 @@ def test_a_value_that_no_parameter_can_have_is_refused(
 def test_a_parameter_value_of_another_type_is_refused_at_once() -> None:
     with pytest.raises(TypeError, match="value='fast' is not an instance of <class 'float'>"):
         ParameterValue("fast", value_type=float)
-    with pytest.raises(ValueError, match="data_type is invalid. Expected one of: int, float, str, bool, List"):
+    with pytest.raises(ValueError, match=r"data_type is invalid. Expected one of: int, float, str, bool, List"):
         ParameterValue(ROBOT, value_type=dict)
 
 
@@ -353,11 +353,11 @@ def test_packages_and_their_executables_are_found(
     assert FindPackageShare(["with", "_lib"]).perform(context) == str(tmp_path / "share/with_lib")
     assert ExecutableInPackage("go", "with_lib").perform(context) == str(executable)
     with pytest.raises(
-        SubstitutionFailure, match="executable 'stop' not found on the libexec directory '.*/lib/with_lib'"
+        SubstitutionFailure, match=r"executable 'stop' not found on the libexec directory '.*/lib/with_lib'"
     ):
         ExecutableInPackage(executable="stop", package="with_lib").perform(context)
     with pytest.raises(
-        SubstitutionFailure, match="package 'without_lib' found at .*, but libexec directory .*not exist"
+        SubstitutionFailure, match=r"package 'without_lib' found at .*, but libexec directory .*not exist"
     ):
         ExecutableInPackage("go", "without_lib").perform(context)
     with pytest.raises(LookupError, match=f"package 'nowhere' not found, searching: .*{tmp_path}"):

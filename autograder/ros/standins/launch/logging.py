@@ -12,17 +12,21 @@ import sys
 from collections.abc import Iterable, Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 _LOG_FORMAT = "{created:.7f} [{levelname}] [{name}]: {message}"
 _SCREEN_FORMATS = {
     "default": "[{levelname}] [{name}]: {message}",
     "default_with_timestamp": "{created:.7f} [{levelname}] [{name}]: {message}",
 }
+if TYPE_CHECKING:
+    _StreamHandler = logging.StreamHandler[Any]
+else:
+    _StreamHandler = logging.StreamHandler  # not generic before Python 3.11
 OutputConfig = Mapping[str, "str | Iterable[str]"]
 
 
-class _ScreenHandler(logging.StreamHandler[Any]):
+class _ScreenHandler(_StreamHandler):
     """Writes to what is standard output at the time, which notebooks and tests exchange."""
 
     def __init__(self, format_: str) -> None:

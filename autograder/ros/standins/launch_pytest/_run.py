@@ -31,6 +31,9 @@ class LaunchRun:
         either: list[asyncio.Future[Any]] = [beginning, self._task]
         self.loop.run_until_complete(asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED))
         beginning.cancel()
+        if not ready.is_set() and (self._task.cancelled() or self._task.result() != 0):
+            self.close()
+            raise RuntimeError("the launch has failed before the test could begin: see its output")
 
     def end(self) -> int:
         """Shut the launch down, or wait for its end; return its return code, the same one each time."""
