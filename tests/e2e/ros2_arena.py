@@ -79,6 +79,8 @@ class Helper(Node):
         """Count to the target; a target above 100 is never reached."""
         total = 0
         for now in range(1, goal.request.target + 1):
+            # Slow enough for feedback to be heard before the result overtakes it.
+            self.ending.wait(0.1)
             goal.publish_feedback(Count.Feedback(now=now))
             total += now
             while goal.request.target > 100 and not goal.is_cancel_requested and not self.ending.wait(0.01):
