@@ -143,6 +143,13 @@ def test_substitutions_in_a_parameter_file_are_performed_where_allowed(
     assert ParameterFile(file).evaluate(context) == file
 
 
+def test_a_value_that_looks_like_a_substitution_is_left_as_it_is(context: LaunchContext, tmp_path: Path) -> None:
+    context.launch_configurations.update({"odd": "$(var odd) (so)", "name": "odd"})
+    (tmp_path / "p.yaml").write_text("a: $(var $(var name)) $5 (five)")
+    evaluated = ParameterFile(tmp_path / "p.yaml", allow_substs=True).evaluate(context)
+    assert yaml.safe_load(evaluated.read_text()) == {"a": "$(var odd) (so) $5 (five)"}
+
+
 @pytest.mark.parametrize(
     ("text", "error", "message"),
     [
@@ -228,9 +235,8 @@ def test_a_node_without_a_name_keeps_its_own(run: Run) -> None:
 
 
 def test_pushed_namespaces_and_remaps_hold_within_their_group(run: Run) -> None:
-    inside, deeper, absolute, outside = (Recorded(name="n") for _ in range(3)), None, None, None
-    first, second, third = inside
-    absolute, outside = Recorded(name="n", namespace="/own"), Recorded(name="n")
+    first, second, third, outside = (Recorded(name="n") for _ in range(4))
+    absolute = Recorded(name="n", namespace="/own")
     deeper = GroupAction([PushRosNamespace("arm"), second])
     run(GroupAction([PushRosNamespace("robot1"), SetRemap("a", "b"), first, deeper, third, absolute]), outside)
     names = [node.node_name for node in (first, second, third, absolute)]

@@ -31,8 +31,12 @@ _KINDS: dict[str, Callable[..., Substitution]] = {
     "command": Command,
     "dirname": ThisLaunchFileDir,
 }
-# The innermost one: no other begins inside of it.
-_INNERMOST = re.compile(r"\$\((?P<kind>[\w-]+)(?P<arguments>(?:[^()$]|\$(?!\()|\([^()$]*\))*)\)")
+_WHOLE = ("eval", "command")
+# The last one that begins in a text: no other begins inside of it.
+_LAST = re.compile(r"\$\((?P<kind>[\w-]+)(?P<arguments>(?:[^()$]|\$(?!\()|\([^()$]*\))*)\)")
+# Values are put in with other characters for these, so that nothing in a value is taken for a substitution.
+_HIDE = str.maketrans("$()", "\ue000\ue001\ue002")
+_SHOW = str.maketrans("\ue000\ue001\ue002", "$()")
 
 
 def substitute_text(context: LaunchContext, text: str) -> str:
@@ -41,29 +45,20 @@ def substitute_text(context: LaunchContext, text: str) -> str:
     Raises SubstitutionFailure for one that fails or is unfinished, NotInStandInError for a kind that is not
     covered.
     """
-    position = 0
-    while (match := _last_opening(text)) is not None:
-        position = match
-        found = _INNERMOST.match(text, position)
+    while (position := text.rfind("$(")) >= 0:
+        found = _LAST.match(text, position)
         if found is None:
             line = text[position:].splitlines()[0]
             raise SubstitutionFailure(f"this substitution has no end or cannot be read: {line}")
-        value = _perform(context, found["kind"], found["arguments"].strip())
-        text = text[: found.start()] + value + text[found.end() :]
-    return text
-
-
-def _last_opening(text: str) -> int | None:
-    position = text.rfind("$(")
-    return None if position < 0 else position
+        value = _perform(context, found["kind"], found["arguments"].strip().translate(_SHOW))
+        text = text[:position] + value.translate(_HIDE) + text[found.end() :]
+    return text.translate(_SHOW)
 
 
 def _perform(context: LaunchContext, kind: str, arguments: str) -> str:
     if kind not in _KINDS:
         raise not_covered(f"$({kind} ...)", standin="launch_ros")
-    parts = [arguments] if kind in ("eval", "command") else shlex.split(arguments)
-    if kind in ("eval", "command"):
-        parts = [_unquoted(arguments)]
+    parts = [_unquoted(arguments)] if kind in _WHOLE else shlex.split(arguments)
     try:
         substitution = _KINDS[kind](*parts)
     except TypeError as error:
