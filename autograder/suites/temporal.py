@@ -34,7 +34,7 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
     Args:
         condition: a formula of rtamt, such as `gap > 0.05` or `(blocked > 0) implies eventually[0:10] (turn > 0)`; its
             intervals count samples.
-        times: seconds, rising, one a sample.
+        times: seconds, rising, one a sample, two or more.
         signals: one value a sample, by the names that the formula uses.
 
     Raises:

@@ -1,0 +1,179 @@
+"""A suite's tests become check results, and nothing else becomes anything."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import Outcome
+from autograder.diagnosis import OK, Kind
+from autograder.grading.gallery import Gallery
+from autograder.grading.plugin import GradingPlugin, run
+from autograder.lab.workspace import Workspace
+from autograder.ros import activate
+
+HEAD = """
+import pytest
+from autograder.checks import CheckFailed, check, expect
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
+"""
+Grade = Callable[[str], GradingPlugin]
+_NUMBERS = itertools.count()
+
+
+@pytest.fixture
+def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
+    """Run a suite of one module, given as text."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "")
+    monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
+    monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
+
+    def grade_text(text: str) -> GradingPlugin:
+        # A name of its own: pytest keeps the modules that this process has imported.
+        path = tmp_path / "suite" / f"checks_{next(_NUMBERS)}.py"
+        path.parent.mkdir()
+        path.write_text(HEAD + textwrap.dedent(text))
+        plugin = GradingPlugin(Workspace(tmp_path / "ws", activate(), tmp_path), 7, Gallery(tmp_path / "out"))
+        run((path,), plugin)
+        return plugin
+
+    return grade_text
+
+
+def _outcomes(plugin: GradingPlugin) -> dict[str, tuple[Outcome, float]]:
+    return {name: (result.outcome, result.points) for name, result in plugin.results.items()}
+
+
+def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(grade: Grade) -> None:
+    plugin = grade("""
+        @check(points=2, group="g")
+        def test_right():
+            '''It is right.'''
+
+        @check(points=4, group="g", hints=("a hint",))
+        def test_half():
+            '''It is half right.'''
+            expect(False, "only half", fraction=0.5)
+
+        @check(points=1, group="g")
+        def test_wrong():
+            '''It is wrong.'''
+            raise CheckFailed("all wrong")
+        """)
+    assert _outcomes(plugin) == {
+        "right": (Outcome.PASSED, 2.0),
+        "half": (Outcome.FAILED, 2.0),
+        "wrong": (Outcome.FAILED, 0.0),
+    }
+    assert list(plugin.results) == ["right", "half", "wrong"]
+    assert (plugin.results["half"].message, plugin.results["half"].hints) == ("only half", ("a hint",))
+    assert plugin.failures == []
+    assert plugin.diagnosis is OK
+
+
+def test_what_depends_on_a_failed_check_is_not_checked_nor_what_depends_on_that(grade: Grade) -> None:
+    plugin = grade("""
+        @check(points=1, group="g")
+        def test_first():
+            '''The first thing.'''
+            raise CheckFailed("no")
+
+        @check(points=1, group="g", depends=("first",))
+        def test_second():
+            '''The second thing.'''
+            raise GraderError("never reached")
+
+        @check(points=1, group="g", depends=("second",))
+        def test_third():
+            '''The third thing.'''
+
+        @check(points=1, group="g")
+        def test_fourth():
+            '''The fourth thing.'''
+        """)
+    outcomes = [result.outcome for result in plugin.results.values()]
+    assert outcomes == [Outcome.FAILED, Outcome.NOT_CHECKED, Outcome.NOT_CHECKED, Outcome.PASSED]
+    assert 'first "The first thing." has to pass' in plugin.results["second"].message
+    assert plugin.failures == []
+
+
+def test_a_fault_of_the_student_s_in_a_fixture_fails_the_check_and_is_the_diagnosis(grade: Grade) -> None:
+    plugin = grade("""
+        @pytest.fixture
+        def robot():
+            raise StudentError(Diagnosis(Kind.CRASHED_AT_START, "Your node crashed.", "line 3"))
+
+        @check(points=1, group="g")
+        def test_starts(robot):
+            '''It starts.'''
+
+        @check(points=1, group="g")
+        def test_other():
+            '''It does the other thing.'''
+            raise StudentError(Diagnosis(Kind.STUCK, "Your node hangs."))
+        """)
+    assert [result.outcome for result in plugin.results.values()] == [Outcome.FAILED] * 2
+    assert plugin.results["starts"].message == "Your node crashed."
+    assert plugin.diagnosis.kind is Kind.CRASHED_AT_START
+    assert plugin.failures == []
+
+
+@pytest.mark.parametrize("error", ["GraderError('lost')", "ZeroDivisionError()", "AssertionError()", "SystemExit(0)"])
+@pytest.mark.parametrize("where", ["check", "fixture", "teardown"])
+def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: str, where: str) -> None:
+    plugin = grade(f"""
+        @pytest.fixture
+        def thing():
+            if "{where}" == "fixture": raise {error}
+            yield
+            if "{where}" == "teardown": raise {error}
+
+        @check(points=1, group="g")
+        def test_it(thing):
+            '''It is so.'''
+            if "{where}" == "check": raise {error}
+        """)
+    assert plugin.results["it"].outcome is Outcome.NOT_CHECKED
+    assert plugin.results["it"].points == 0.0
+    assert len(plugin.failures) == 1
+
+
+def test_a_module_that_cannot_be_imported_is_the_grader_s_own_failure(grade: Grade) -> None:
+    plugin = grade("import no_such_module")
+    assert plugin.results == {}
+    assert "no_such_module" in plugin.failures[0]
+
+
+def test_a_test_that_declares_no_check_counts_for_nothing(grade: Grade) -> None:
+    plugin = grade("""
+        def test_helper():
+            assert True
+        """)
+    assert plugin.results == {}
+    assert plugin.failures == []
+
+
+def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Grade) -> None:
+    plugin = grade("""
+        @check(points=1, group="g")
+        def test_it(workspace, seed, gallery):
+            '''It is so.'''
+            expect(seed == 7 and gallery.check == "it" and workspace.install.name == "install", "wrong fixtures")
+        """)
+    assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
+
+
+def test_what_lies_around_the_suite_is_not_collected(grade: Grade, tmp_path: Path) -> None:
+    (tmp_path / "conftest.py").write_text("raise SystemExit('collected')")
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --collect-only\n")
+    plugin = grade("""
+        @check(points=1, group="g")
+        def test_it():
+            '''It is so.'''
+        """)
+    assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}

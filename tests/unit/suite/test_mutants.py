@@ -1,0 +1,84 @@
+"""The file of mutants is read whole, or refused by name."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from autograder import layout, suites
+from autograder.diagnosis import Kind
+from autograder.exceptions import GraderError
+from autograder.suite import Suite
+from autograder.suites import mutants as module
+from autograder.suites.mutants import Edit, Mutant, lay_down, lay_down_reference, mutants
+
+HEAD = "file: my_robot_package/setup.py\nmutants:\n"
+
+
+@pytest.fixture
+def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The path of a mutants.yaml that belongs to the real suite's checks."""
+    real = suites.load("02_nodes")
+    files = tuple(tmp_path / path.name for path in real.files)
+    twin = Suite(real.assignment, real.packages, files, real.checks, real.version)
+    monkeypatch.setattr(module, "load", lambda assignment: twin)
+    return tmp_path / "mutants.yaml"
+
+
+def test_a_mutant_is_read_with_what_it_leaves_out_filled_in(described: Path) -> None:
+    described.write_text(
+        HEAD + "  - {id: a, title: t, loses: [nan], edits: [{find: x, replace: y}]}\n"
+        "  - {id: b, title: t, loses: all, diagnosis: stuck, demo: true, slow: true,"
+        " edits: [{file: other.py, find: x, replace: y}]}\n"
+    )
+    first, second = mutants("02_nodes")
+    assert (first.loses, first.diagnosis, first.demo, first.slow) == (frozenset({"nan"}), Kind.OK, False, False)
+    assert first.edits == (Edit("my_robot_package/setup.py", "x", "y"),)
+    assert second.loses == {check.id for check in suites.load("02_nodes").checks}
+    assert (second.diagnosis, second.demo, second.slow) == (Kind.STUCK, True, True)
+    assert second.edits[0].file == "other.py"
+
+
+def test_a_check_that_the_suite_does_not_have_is_named(described: Path) -> None:
+    described.write_text(HEAD + "  - {id: a, title: t, loses: [nan, flies], edits: []}\n")
+    with pytest.raises(GraderError, match="mutant a: there is no check flies"):
+        mutants("02_nodes")
+
+
+def test_a_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
+    described.write_text(HEAD + "  - {id: a, title: t, loses: [nan], diagnosis: tired, edits: []}\n")
+    with pytest.raises(ValueError, match="tired"):
+        mutants("02_nodes")
+
+
+@pytest.mark.parametrize(("find", "times"), [("no such text", 0), ("import", 2)])
+def test_an_edit_that_does_not_stand_exactly_once_is_refused(tmp_path: Path, find: str, times: int) -> None:
+    shutil.copytree(layout.SOLUTIONS / "my_robot_package", tmp_path / "reference")
+    text = (tmp_path / "reference" / "setup.py").read_text()
+    times = text.count(find)
+    assert times != 1
+    flawed = Mutant("a", "t", (Edit("my_robot_package/setup.py", find, ""),), frozenset())
+    with pytest.raises(GraderError, match=f"mutant a: '{find}' stands {times} times in my_robot_package/setup.py"):
+        lay_down(flawed, ("my_robot_package",), tmp_path / "out")
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment: str, tmp_path: Path) -> None:
+    packages = suites.load(assignment).packages
+    lay_down_reference(packages, tmp_path / "reference")
+    for mutant in mutants(assignment):
+        lay_down(mutant, packages, tmp_path / mutant.id)
+        for edit in mutant.edits:
+            changed = (tmp_path / mutant.id / "src" / edit.file).read_text()
+            assert changed != (tmp_path / "reference" / "src" / edit.file).read_text()
+        assert mutant.loses
+
+
+def test_mutants_have_names_of_their_own_and_every_check_is_lost_by_one() -> None:
+    for assignment in suites.graded():
+        every = mutants(assignment)
+        assert len({mutant.id for mutant in every}) == len(every)
+        lost = frozenset().union(*(mutant.loses for mutant in every))
+        assert lost == {check.id for check in suites.load(assignment).checks}
