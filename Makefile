@@ -14,7 +14,7 @@ PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
 
-.PHONY: help setup demo test check lint lab bench verify lock clean
+.PHONY: help setup demo test check lint lab bench verify real-launch lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -56,6 +56,10 @@ bench:          ## measure simulator, grader and builds, write .build/bench.json
 verify:         ## prove the grader: reference, release, mutants, right answers, attacks (VERIFY_ARGS=)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/autograder verify $(VERIFY_ARGS)
+
+real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
+	@$(BOOTSTRAP)
+	@$(BIN)/python -m autograder.ros.real_launch
 
 # Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
 COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \

@@ -119,13 +119,15 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
     """Switch ROS 2 on for this process and the children it starts. Safe to call twice.
 
-    Call it before the first `import rclpy`.
+    Call it before the first `import rclpy`. Workspaces that are sourced already stay sourced.
 
     Raises:
         RosError: there is no usable ROS 2 Jazzy.
     """
     environment = find()
-    variables = environment.variables(overlays=overlays, domain=domain)
+    sourced = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
+    kept = tuple(path for path in sourced if path not in {*overlays, *environment.prefixes})
+    variables = environment.variables(overlays=(*overlays, *kept), domain=domain)
     # The two that a user may have chosen on purpose stay.
     for chosen in ("ROS_LOG_DIR", "FASTDDS_BUILTIN_TRANSPORTS"):
         if chosen in os.environ:
