@@ -49,6 +49,7 @@ class LidarSpec:
             ("range_min", 0.0 <= self.range_min < self.range_max, "metres, from 0 to below range_max"),
             ("rate", 0.0 < self.rate <= 1000.0, "scans a second, above 0 and at most 1000"),
             ("noise", 0.0 <= self.noise <= self.range_max, "a standard deviation in metres, 0 or above"),
+            ("mount", all(map(math.isfinite, (self.mount.x, self.mount.y, self.mount.theta))), "a finite pose"),
             ("dropout", 0.0 <= self.dropout <= 1.0, "a probability from 0 to 1"),
         ):
             if not good:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 from sim.engine import EngineName, engine
 from sim.exceptions import SpecError
@@ -61,6 +62,10 @@ class Simulation:
             raise SpecError(f"seed is {self.seed!r}; give a whole number, 0 or above")
         if self.engine not in ("numpy", "numba", "auto"):
             engine(self.engine)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what was laid out for the engine: a copy, here or in another process, lays it out again."""
+        return {item.name: getattr(self, item.name) for item in fields(self)}
 
     @cached_property
     def tick_ns(self) -> int:

@@ -95,6 +95,8 @@ class World:
         put(self, "segments", segments)
         put(self, "circles", circles)
         put(self, "starts", tuple(self.starts) or (Pose(),))
+        if not all(_near(pose.x) and _near(pose.y) and math.isfinite(pose.theta) for pose in self.starts):
+            raise WorldError("a start pose is not within the world", "Give finite numbers in metres and radians")
         put(self, "goals", tuple(self.goals))
         put(self, "movers", tuple(self.movers))
         put(self, "segment_names", _names(self.segment_names, len(segments), "segment_names"))

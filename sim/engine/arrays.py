@@ -29,6 +29,8 @@ __all__ = ["coast", "fan", "finish", "gap", "nearest", "push", "rays"]
 
 # How far, in radians, numpy's arctan2 and the arithmetic after it may be off, with a wide margin.
 BEARING_ERROR = 1e-12
+# Above so many walls it pays to leave out first those that are out of reach.
+WORTH_A_LOOK = 200
 
 
 def fan(
@@ -47,6 +49,11 @@ def fan(
     turned = np.array((((c,), (s,)), ((-s,), (c,)))) * table[:, None]
     directions = turned[0] + turned[1]
     best = np.full(table.shape[1], NOTHING)
+    if walls.shape[1] > WORTH_A_LOOK:
+        x1, x2, y1, y2 = walls[:4]
+        beside = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
+        beside |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
+        walls = walls[:, ~beside]
     if walls.shape[1]:
         _walls_into(best, directions, walls, ox, oy, yaw + angle_min, per_radian, reach)
     if len(circles):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import math
 import os
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -121,6 +123,17 @@ def test_single_beams_and_fans_agree_bit_for_bit() -> None:
         np.testing.assert_array_equal(np.where(plain > FULL_TURN.range_max, np.inf, plain), fan)
 
 
+def test_walls_out_of_reach_are_left_out_without_a_trace() -> None:
+    world = random_world(3, walls=900, size=30.0)
+    random = np.random.default_rng(5)
+    for _ in range(40):
+        pose = random_pose(random, 30.0)
+        near, far = (
+            cast(at(pose, world, lidar=lidar), pose, lidar) for lidar in (replace(FULL_TURN, range_max=3.0), FULL_TURN)
+        )
+        np.testing.assert_array_equal(near, np.where(far > 3.0, np.inf, far))
+
+
 @pytest.mark.parametrize("walls", [301, 3000])
 def test_the_grid_changes_the_cost_and_not_a_bit(walls: int) -> None:
     world = random_world(3, walls=walls, size=30.0)
@@ -209,3 +222,11 @@ def test_an_engine_that_is_not_installed_says_how_to_get_it(monkeypatch: pytest.
 
 def test_auto_takes_numba_where_it_is_installed() -> None:
     assert engine("auto") is engine("numba")
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_simulation_that_has_run_can_be_copied_and_sent_to_another_process(name: str) -> None:
+    subject = simulation(name)
+    state = step(subject, start(subject), {"r0": Command(0.3, 0.5)}, 0.3)
+    for other in (copy.deepcopy(subject), pickle.loads(pickle.dumps(subject))):
+        assert step(other, start(other), {"r0": Command(0.3, 0.5)}, 0.3) == state

@@ -230,6 +230,7 @@ def test_scan_angles_put_zero_ahead_and_left_positive(beam: int) -> None:
         ({"range_min": 9.0}, "range_min is 9.0; give metres, from 0 to below range_max"),
         ({"rate": 0.0}, "rate is 0.0; give scans a second"),
         ({"noise": -1.0}, "noise is -1.0; give a standard deviation"),
+        ({"mount": Pose(math.inf)}, r"mount is .*; give a finite pose"),
         ({"dropout": 1.5}, "dropout is 1.5; give a probability"),
     ],
 )

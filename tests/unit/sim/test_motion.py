@@ -76,13 +76,9 @@ def test_headings_are_wrapped_into_one_turn(angle: float) -> None:
 def test_the_path_is_the_closed_form_of_an_arc(engine: str, v: float, w: float, seconds: float) -> None:
     pose = drive(replace(FREE, start=Pose(1.0, 2.0, 0.5)), Command(v, w), seconds, engine).robots[0].pose
     t = round(seconds * 1e9) / 1e9
-    if abs(w) > 1e-3:
-        x = 1.0 + v / w * (math.sin(0.5 + w * t) - math.sin(0.5))
-        y = 2.0 - v / w * (math.cos(0.5 + w * t) - math.cos(0.5))
-    else:
-        x = 1.0 + v * t * math.cos(0.5 + w * t / 2)
-        y = 2.0 + v * t * math.sin(0.5 + w * t / 2)
-    assert (pose.x, pose.y) == (pytest.approx(x, abs=2e-6 * abs(w < 1e-3) + 1e-11), pytest.approx(y, abs=1e-6))
+    chord = 2.0 * v / w * math.sin(w * t / 2) if w else v * t
+    end = (1.0 + chord * math.cos(0.5 + w * t / 2), 2.0 + chord * math.sin(0.5 + w * t / 2))
+    assert (pose.x, pose.y) == pytest.approx(end, abs=1e-11, rel=0)
     assert math.cos(pose.theta - (0.5 + w * t)) == pytest.approx(1.0)
 
 
@@ -271,6 +267,7 @@ def test_worlds_that_make_no_sense_are_refused() -> None:
         (lambda: World(segments=["a"]), "segments are not numbers"),  # type: ignore[arg-type]
         (lambda: World(circles=np.zeros((1, 3))), "radius is not above zero"),
         (lambda: World.from_segments([[0, 0, 1, 1]], segment_names=("a", "b")), "holds 2 names for 1"),
+        (lambda: World.from_segments([], starts=[Pose(math.nan)]), "a start pose is not within the world"),
         (lambda: Goal(0.0, math.inf), "a goal at"),
         (lambda: Mover(()), "the path of the mover"),
         (lambda: Mover(((0, 0),), speed=0.0), "the speed of the mover"),
