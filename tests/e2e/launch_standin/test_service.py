@@ -254,69 +254,6 @@ def test_a_handler_can_be_removed_and_can_be_meant_for_once(capsys: pytest.Captu
     assert (out.count("[launch.user]: once"), out.count("[launch.user]: removed")) == (1, 0)
 
 
-def test_output_is_kept_if_it_is_asked_for() -> None:
-    kept = ExecuteProcess(cmd=["sh", "-c", "echo out; printf err >&2"], cached_output=True)
-    other = ExecuteProcess(cmd=["true"], name="other")
-    service_with(kept, other).run()
-    assert (kept.get_stdout(), kept.get_stderr(), kept.return_code) == ("out\n", "err", 0)
-    with pytest.raises(RuntimeError, match=r"cached output must be true to be able to get stdout, proc 'other-\d+'"):
-        other.get_stdout()
-
-
-def test_much_output_arrives_whole_and_in_order() -> None:
-    action = ExecuteProcess(cmd=["seq", "20000"], cached_output=True)
-    service_with(action).run()
-    assert action.get_stdout().split() == [str(number) for number in range(1, 20001)]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error", "message"),
-    [
-        ({"cmd": "echo hello"}, TypeError, r"cmd must be a list such as \['echo', 'hello'\], got str: 'echo hello'"),
-        ({"cmd": ["true"], "respawn": 3}, TypeError, "value='3' is not an instance of <class 'bool'>"),
-        ({"cmd": ["sleep", 5]}, TypeError, "Failed to normalize given item of type '<class 'int'>'"),
-    ],
-)
-def test_arguments_of_the_wrong_type_are_refused_at_once(
-    arguments: dict[str, Any], error: type[Exception], message: str
-) -> None:
-    with pytest.raises(error, match=message):
-        ExecuteProcess(**arguments)
-
-
-@pytest.mark.parametrize(
-    ("output", "message"),
-    [
-        ("scren", 'scren is not a valid standard output config i.e. "screen", "log" or "both"'),
-        ({"out": "screen"}, 'out is not a valid output source i.e. "stdout", "stderr" or "both"'),
-        ({"stdout": "scren"}, "['scren'] is not a valid output destination i.e. "),
-    ],
-)
-def test_an_output_that_there_is_not_ends_the_launch(
-    capsys: pytest.CaptureFixture[str], output: Any, message: str
-) -> None:
-    assert service_with(ExecuteProcess(cmd=["true"], output=output)).run() == 1
-    assert message in capsys.readouterr().out
-
-
-def test_a_handler_needs_an_action_and_something_to_do() -> None:
-    with pytest.raises(TypeError, match="action_matcher must be an 'ExecuteLocal' instance or a callable, got LogInfo"):
-        OnProcessExit(target_action=LogInfo(msg=""), on_exit=[])
-    with pytest.raises(
-        TypeError, match="expected all items in 'on_event' iterable to be of type 'LaunchDescriptionEnt"
-    ):
-        OnProcessExit(on_exit=["not an action"])
-    with pytest.raises(TypeError, match="expected entities or a callable to handle an event with, got '<class 'int'>'"):
-        OnShutdown(on_shutdown=5)  # type: ignore[arg-type]
-
-
-def test_a_coroutine_and_a_function_must_be_such() -> None:
-    with pytest.raises(TypeError, match="OpaqueFunction expected a callable for 'function', got '<class 'str'>'"):
-        OpaqueFunction(function="f")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="OpaqueCoroutine expected a coroutine function for 'coroutine'"):
-        OpaqueCoroutine(coroutine=print)  # type: ignore[arg-type]
-
-
 def test_each_child_leads_a_process_group_of_its_own() -> None:
     groups: list[int] = []
     action = sleeper()
