@@ -6,7 +6,9 @@ commands and the seed, and not on when the timer fires.
 
 from __future__ import annotations
 
+import signal
 import time
+from types import FrameType
 from typing import Any
 
 import rclpy
@@ -19,6 +21,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
@@ -163,8 +166,13 @@ class SimulatorNode(Node):
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until Ctrl-C or SIGTERM; return 0, or 1 for settings that make no sense."""
-    rclpy.init(args=args)
+    """Run the node until Ctrl-C or SIGTERM; return 0, or 1 for settings that make no sense.
+
+    It takes the signals itself: rclpy's own handler would shut the context down in the middle of a callback, and a node
+    that publishes all the time would then end in an RCLError as often as not.
+    """
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    signal.signal(signal.SIGTERM, _interrupt)
     node = None
     try:
         node = SimulatorNode()
@@ -179,3 +187,7 @@ def main(args: list[str] | None = None) -> int:
             node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
 
@@ -122,7 +123,8 @@ def test_the_live_view_looks_on_and_drives(bridge: Bridge, monkeypatch: pytest.M
         view.pause()
         return view
 
-    view = asyncio.run(watch())
+    with ThreadPoolExecutor(1) as thread:  # other tests may have left a loop running in this one
+        view = thread.submit(asyncio.run, watch()).result()
     assert bridge.paused
     before = view.time
     view.step(0.1)
