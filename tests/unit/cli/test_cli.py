@@ -1,0 +1,179 @@
+"""The command line: what it says, and its exit status."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from autograder import cli, result
+from autograder.checks import Outcome
+from autograder.cli import grade as grade_verb
+from autograder.cli.options import table
+from autograder.exceptions import GraderError, UsageError
+from autograder.notebook.checking import CheckReport, Line
+
+MakeResult = Callable[..., result.Result]
+
+
+def _run(*arguments: str) -> Result:
+    return CliRunner().invoke(cli.group, arguments)
+
+
+def _submission(folder: Path) -> Path:
+    (folder / "src").mkdir(parents=True)
+    return folder
+
+
+@pytest.fixture
+def graded(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
+    """Let the `grade` verb get given results; returns what it asked for."""
+
+    def give(*results: result.Result) -> dict[str, Any]:
+        asked: dict[str, Any] = {}
+
+        def grade_all(entries: object, assignment: str, **options: Any) -> tuple[result.Result, ...]:
+            asked.update(options, entries=entries, assignment=assignment)
+            for one in results:
+                options["on_result"](one)
+            return results
+
+        monkeypatch.setattr(sys.modules["autograder.cli.grade"], "grade_all", grade_all)
+        return asked
+
+    return give
+
+
+def test_every_verb_has_help() -> None:
+    listed = _run("--help")
+    assert listed.exit_code == 0
+    for verb in cli.group.commands:
+        assert verb in listed.output
+        shown = _run(verb, "--help")
+        assert shown.exit_code == 0
+        assert "Usage:" in shown.output
+
+
+def test_grading_prints_a_line_and_a_row_a_submission_and_exits_0(
+    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
+) -> None:
+    asked = graded(make_result("alice"))
+    out, stored = tmp_path / "out", tmp_path / "all.json"
+    done = _run(
+        *("grade", str(_submission(tmp_path / "alice")), "--assignment", "02_nodes", "--out", str(out)),
+        *("--seed", "5", "-j", "3", "--json", str(stored)),
+    )
+    assert done.exit_code == 0, done.output
+    assert "[1/1] alice: 4/10 = 40 %" in done.output
+    assert "it kept driving: 0.08 m from the north wall" in done.output
+    assert (asked["seed"], asked["jobs"], asked["isolation"].value, asked["resume"]) == (5, 3, "bubblewrap", False)
+    assert json.loads(stored.read_text())[0]["student"] == "alice"
+    assert (out / "index.html").is_file()
+
+
+@pytest.mark.parametrize(("percent", "status"), [("40", 0), ("41", 1)])
+def test_a_mark_below_the_required_one_exits_1(
+    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]], percent: str, status: int
+) -> None:
+    graded(make_result("alice"))
+    path, out = str(_submission(tmp_path / "alice")), str(tmp_path / "out")
+    assert _run("grade", path, "--assignment", "02_nodes", "--out", out, "--require", percent).exit_code == status
+
+
+def test_a_submission_that_was_not_graded_exits_1_and_shows_no_zero(
+    tmp_path: Path, ungraded_result: result.Result, graded: Callable[..., dict[str, Any]]
+) -> None:
+    graded(ungraded_result)
+    done = _run(
+        "grade", str(_submission(tmp_path / "carol")), "--assignment", "02_nodes", "--out", str(tmp_path / "out")
+    )
+    assert done.exit_code == 1
+    assert "carol       not graded" in done.output
+    assert "0/10" not in done.output
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("grade",),
+        ("grade", "x"),
+        ("grade", "x", "--assignment", "02_nodes", "--seed", "-1"),
+        ("grade", "x", "--assignment", "02_nodes", "-j", "0"),
+        ("grade", "x", "--assignment", "02_nodes", "--isolation", "none"),
+        ("check",),
+        ("fly",),
+    ],
+)
+def test_a_wrong_call_exits_2(arguments: tuple[str, ...]) -> None:
+    assert _run(*arguments).exit_code == 2
+
+
+def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(list(arguments))
+    code = ended.value.code
+    assert isinstance(code, int)
+    return code
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("grade", "/no/where", "--assignment", "02_nodes"), "/no/where: there is no such file or folder"),
+        (("grade", "/tmp", "--assignment", "77_none"), "there are no checks for '77_none'; there are for: "),
+        (("check", "77_none", "/tmp"), "there are no visible checks for '77_none'"),
+        (("check", "02_nodes", "/no/where"), "there is no folder /no/where/src"),
+    ],
+)
+def test_a_name_that_is_not_there_is_one_sentence_and_exits_2(
+    arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _main(monkeypatch, *arguments) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(("error", "status"), [(UsageError("wrong"), 2), (GraderError("broken"), 1)])
+def test_an_error_that_is_known_becomes_a_sentence(
+    error: Exception, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def fail(*arguments: object, **options: object) -> None:
+        raise error
+
+    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", fail)
+    assert _main(monkeypatch, "check", "02_nodes", str(tmp_path)) == status
+    assert capsys.readouterr().err == f"autograder: {error}\n"
+
+
+@pytest.mark.parametrize(("outcome", "status"), [(Outcome.PASSED, 0), (Outcome.FAILED, 1), (Outcome.NOT_CHECKED, 1)])
+def test_checking_exits_0_only_when_every_check_passed(
+    outcome: Outcome, status: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    report = CheckReport("02_nodes", (Line("It turns.", outcome, "it did not", ("look left",), None),))
+    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", lambda *arguments: report)
+    done = _run("check", "02_nodes", str(tmp_path), "--json", str(tmp_path / "report.json"))
+    assert done.exit_code == status
+    assert "It turns." in done.output
+    assert json.loads((tmp_path / "report.json").read_text())["lines"][0]["outcome"] == outcome.value
+
+
+def test_a_long_reason_is_wrapped_below_its_column() -> None:
+    text = table([("alice", "3/4", "word " * 60), ("bob", "4/4", "")], ("submission", "marks", "why"))
+    lines = text.splitlines()
+    assert lines[0].startswith("submission")
+    assert all(line.startswith(" " * 15) for line in lines[3:-1])
+    assert lines[-1] == "bob           4/4"
+
+
+def test_the_installed_command_works_and_says_what_is_wrong() -> None:
+    command = [str(Path(sys.executable).with_name("autograder")), "grade", "/no/where", "--assignment", "02_nodes"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stderr) == (2, "autograder: /no/where: there is no such file or folder\n")
+    assert grade_verb.callback is not None

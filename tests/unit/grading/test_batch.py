@@ -1,0 +1,149 @@
+"""Finding a class's submissions, and keeping results that still hold."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import suites
+from autograder.exceptions import UsageError
+from autograder.grading import Graded, batch, intake
+from autograder.grading.batch import Entry, discover, grade_all
+from autograder.result import Result, Status, write_json
+
+CHAPTER = "02_nodes"
+MakeResult = Callable[..., Result]
+
+
+def _submission(folder: Path) -> Path:
+    (folder / "src" / "pkg").mkdir(parents=True)
+    (folder / "src" / "pkg" / "package.xml").write_text("<package/>")
+    return folder
+
+
+def _found(*paths: Path) -> list[tuple[str, str]]:
+    return [(entry.student, entry.path.name) for entry in discover(paths, CHAPTER)]
+
+
+def test_one_submission_is_named_by_its_folder_or_file(tmp_path: Path) -> None:
+    (tmp_path / "bob.zip").write_bytes(b"")
+    assert _found(_submission(tmp_path / "alice"), tmp_path / "bob.zip") == [("alice", "alice"), ("bob", "bob.zip")]
+
+
+def test_a_folder_of_submissions_holds_one_a_student(tmp_path: Path) -> None:
+    _submission(tmp_path / "class" / "bob")
+    (tmp_path / "class" / "alice.zip").write_bytes(b"")
+    (tmp_path / "class" / "carol.ipynb").write_bytes(b"{}")
+    (tmp_path / "class" / "notes.txt").write_bytes(b"")
+    (tmp_path / "class" / ".hidden").mkdir()
+    assert [name for name, _ in _found(tmp_path / "class")] == ["alice", "bob", "carol"]
+
+
+def test_nbgrader_s_submitted_layout_is_understood(tmp_path: Path) -> None:
+    for student in ("alice", "bob"):
+        _submission(tmp_path / "submitted" / student / CHAPTER)
+    assert _found(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", CHAPTER)]
+
+
+def test_an_empty_submission_in_a_class_is_still_a_submission(tmp_path: Path) -> None:
+    (tmp_path / "class" / "dave").mkdir(parents=True)
+    assert _found(tmp_path / "class") == [("dave", "dave")]
+
+
+def test_a_folder_that_holds_nothing_is_a_wrong_call(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="neither a submission of 02_nodes nor a folder of submissions"):
+        discover((tmp_path,), CHAPTER)
+
+
+def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="nobody: there is no such file or folder"):
+        discover((tmp_path / "nobody",), CHAPTER)
+
+
+def test_two_submissions_of_one_name_are_a_wrong_call(tmp_path: Path) -> None:
+    _submission(tmp_path / "a" / "alice")
+    (tmp_path / "alice.zip").write_bytes(b"")
+    with pytest.raises(UsageError, match="two submissions are called alice: rename one"):
+        discover((tmp_path / "a" / "alice", tmp_path / "alice.zip"), CHAPTER)
+
+
+class Grader:
+    """Stands where a submission is graded; remembers which were, and how many at once."""
+
+    def __init__(self, make_result: MakeResult, together: int) -> None:
+        self.graded: list[str] = []
+        self._make = make_result
+        self._meeting = threading.Barrier(together)
+
+    def __call__(self, path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: object) -> Graded:
+        self._meeting.wait(60)
+        self.graded.append(student)
+        result = self._make(
+            student,
+            seed=seed,
+            submission_sha256=intake.take(path, assignment).sha256,
+            suite_version=suites.load(assignment).version,
+        )
+        write_json(out / "result.json", result.to_json())
+        return Graded(result, None)
+
+
+@pytest.fixture
+def entries(tmp_path: Path) -> tuple[Entry, ...]:
+    return tuple(Entry(name, _submission(tmp_path / name)) for name in ("alice", "bob"))
+
+
+@pytest.fixture
+def grade(
+    tmp_path: Path, entries: tuple[Entry, ...], make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., list[str]]:
+    """Grade the class; return who was really graded."""
+
+    def run(*, together: int = 1, **options: Any) -> list[str]:
+        grader = Grader(make_result, together)
+        monkeypatch.setattr(batch, "grade_submission", grader)
+        results = grade_all(entries, CHAPTER, **{"seed": 7, "out": tmp_path / "out", "jobs": 2, **options})
+        assert [result.student for result in results] == ["alice", "bob"]
+        return sorted(grader.graded)
+
+    return run
+
+
+def test_as_many_are_graded_at_once_as_asked_for(grade: Callable[..., list[str]]) -> None:
+    assert grade(together=2, jobs=2) == ["alice", "bob"]
+
+
+def test_a_resumed_run_grades_only_what_has_changed(grade: Callable[..., list[str]], tmp_path: Path) -> None:
+    grade()
+    assert grade(resume=True) == []
+    assert grade(resume=False) == ["alice", "bob"]
+    assert grade(resume=True, seed=8) == ["alice", "bob"]
+    (tmp_path / "bob" / "src" / "pkg" / "setup.py").write_text("")
+    assert grade(resume=True, seed=8) == ["bob"]
+
+
+@pytest.mark.parametrize("stored", ["", "{}", "[1]", '{"schema": "other"}'])
+def test_a_stored_result_that_is_none_is_graded_again(
+    grade: Callable[..., list[str]], tmp_path: Path, stored: str
+) -> None:
+    grade()
+    (tmp_path / "out" / "alice" / "result.json").write_text(stored)
+    assert grade(resume=True) == ["alice"]
+
+
+def test_what_was_not_graded_is_graded_again(grade: Callable[..., list[str]], tmp_path: Path) -> None:
+    grade()
+    path = tmp_path / "out" / "alice" / "result.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "status": Status.NOT_GRADED.value}))
+    assert grade(resume=True) == ["alice"]
+
+
+def test_each_result_is_announced(grade: Callable[..., list[str]]) -> None:
+    seen: list[str] = []
+    grade(on_result=lambda result: seen.append(result.student))
+    assert sorted(seen) == ["alice", "bob"]
