@@ -272,7 +272,12 @@ def _check(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]
 
 
 def replay(recording: Recording, *, engine: EngineName = "numpy") -> Iterator[State]:
-    """Run the recorded commands again from the recorded start: each state is the recorded one, bit for bit."""
+    """Run the recorded commands again from the recorded start: each state is the recorded one, bit for bit.
+
+    Raises RecordingError for a recording that does not begin at the start of its run.
+    """
+    if recording.times_ns[0] != 0:
+        raise RecordingError("the recording begins in the middle of its run; record from `start` on to replay it")
     simulation = replace(recording.simulation, engine=engine)
     state = start(simulation)
     yield state

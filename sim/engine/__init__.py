@@ -1,4 +1,10 @@
-"""Who computes: the array engine (numpy) or the compiled one (numba), chosen by name, with the same bits from both."""
+"""Who computes: the array engine (numpy) or the compiled one (numba), chosen by name, with the same bits from both.
+
+What is guaranteed: the same simulation and the same commands give the same states (float64) and the same scans
+(float32), bit for bit, from either engine, in any order of calls, on any processor with IEEE 754 doubles. Between a
+seed and a scan stand only operations that are correctly rounded everywhere: sums, products, quotients, square roots.
+What is not: that another version of this package computes the same.
+"""
 
 from __future__ import annotations
 

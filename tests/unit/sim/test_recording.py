@@ -119,6 +119,13 @@ def test_a_recorder_notes_what_was_and_what_was_not_commanded() -> None:
     assert list(replay(recording))[-1].robots == state.robots
 
 
+def test_a_recording_that_begins_in_the_middle_is_not_replayed() -> None:
+    simulation = Simulation(random_world(1))
+    recording = Recorder(simulation, step(simulation, start(simulation))).recording()
+    with pytest.raises(RecordingError, match="begins in the middle of its run"):
+        next(replay(recording))
+
+
 def test_a_file_that_is_not_there_or_is_something_else_is_named(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=r"none\.npz: there is no such file"):
         load_recording(tmp_path / "none.npz")
