@@ -16,6 +16,7 @@ class Kind(str, Enum):
     NOTEBOOK_FAILED = "notebook_failed"
     MISSING_PACKAGE = "missing_package"
     HALF_WRITTEN_PACKAGE = "half_written_package"
+    UNFINISHED = "unfinished"
     SYNTAX_ERROR = "syntax_error"
     BUILD_FAILED = "build_failed"
     MISSING_EXECUTABLE = "missing_executable"

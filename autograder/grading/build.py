@@ -60,8 +60,8 @@ def require_packages(source: Path, wanted: tuple[str, ...]) -> None:
                 raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
 
 
-def build(workspace: Workspace) -> Build:
-    """Run `colcon build` on a workspace.
+def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
+    """Run `colcon build` on the wanted packages of a workspace and on those that they depend on.
 
     Raises:
         StudentError: it did not build; the detail holds the end of colcon's output.
@@ -71,6 +71,7 @@ def build(workspace: Workspace) -> Build:
     colcon = str(Path(sys.executable).with_name("colcon"))
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
+    command += ["--packages-up-to", *wanted]
     environment = {
         **workspace.environment(),
         "COLCON_HOME": str(workspace.scratch),

@@ -109,7 +109,7 @@ class Grading:
         lay_down(packages, source)
         with self._phase("build"):
             build.require_packages(source, self._suite.packages)
-            self._build = build.build(self._workspace)
+            self._build = build.build(self._workspace, self._suite.packages)
 
     def _clear(self) -> None:
         """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""

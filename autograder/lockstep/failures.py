@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.lockstep.protocol import Crash
 from autograder.sandbox import Ending, Process
 
 _LINES = 25
+_FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
 
 _PHASES = {
     "import": (Kind.CRASHED_AT_IMPORT, "Your module could not be imported"),
@@ -33,13 +36,18 @@ _LIMITS = {
 
 
 def diagnose_crash(crash: Crash) -> Diagnosis:
-    """Name a reported exception. A syntax error is told apart, with its line."""
+    """Name a reported exception. Syntax errors and unwritten parts of an exercise are told apart."""
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,
             f"Python cannot read your file: {crash.message}. Mend that line, then run the file again.",
             tail(crash.traceback),
         )
+    if crash.type == "NotImplementedError":
+        frames = _FRAME.findall(crash.traceback)
+        where = f", in {frames[-1]}" if frames else ""
+        sentence = f"A part of the exercise is still to be written{where}: put your code in place of the raise."
+        return Diagnosis(Kind.UNFINISHED, sentence, tail(crash.traceback))
     kind, what = _PHASES[crash.phase]
     reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
     return Diagnosis(

@@ -49,7 +49,7 @@ def main() -> None:
     answer: dict[str, Any] = {"diagnosis": _plain(OK)}
     try:
         require_packages(workspace.root / "src", packages)
-        build(workspace)
+        build(workspace, packages)
         answer |= run(workspace, out)
     except StudentError as error:
         answer["diagnosis"] = _plain(error.diagnosis)

@@ -6,13 +6,14 @@ value is positive where the formula holds, and its size is the distance to the b
 
 from __future__ import annotations
 
-import warnings
+import sys
+import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", DeprecationWarning)  # its parser's runtime imports typing.io
-    import rtamt
+# rtamt's parser (antlr4 4.7) takes TextIO from typing.io, of which Python 3.11 warns and which 3.13 no longer has.
+sys.modules["typing.io"] = typing
+import rtamt  # noqa: E402
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from autograder.visible.ch02_nodes.contract import EXECUTABLE, PACKAGE
 
 GROUP = "lifecycle"
 START_SECONDS = 30.0  # of real time
+QUIET = 0.05  # s after a command: half a period later, a node at 10 Hz waits for work, as it does most of the time
+TRIALS = 3
 STOP_SECONDS = 15.0  # of real time; a node that ends cleanly needs 0.2
 HINTS = (
     "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",
@@ -33,13 +35,32 @@ def test_sigterm(workspace: Workspace) -> None:
 
 
 def _expect_clean_end(workspace: Workspace, number: signal.Signals) -> None:
+    for _ in range(TRIALS):
+        status, output = _end(workspace, number)
+        if not _interrupted_rclpy(status, output):
+            break
+    expect(status is not None, f"{STOP_SECONDS:.0f} s after {number.name} it was still running, and had to be killed.")
+    expect(status == 0, f"After {number.name} it ended with exit status {status}: {tail(output, 1)}")
+
+
+def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str]:
+    """Start the program, send it a signal while it spins; return its exit status, None if it stays, and its output."""
     with RealtimeLab(workspace, PACKAGE, EXECUTABLE, listens={"/cmd_vel": Twist}) as lab:
         # A node may be seen while its __init__ still runs; a command shows that it spins.
         expect(
             lab.wait_for(lambda: bool(lab.messages("/cmd_vel")), START_SECONDS),
             f"Started as ros2 run does, it published no command within {START_SECONDS:.0f} s.",
         )
-        status = lab.stop(number, STOP_SECONDS)
-        last = tail(lab.output, 1)
-    expect(status is not None, f"{STOP_SECONDS:.0f} s after {number.name} it was still running, and had to be killed.")
-    expect(status == 0, f"After {number.name} it ended with exit status {status}: {last}")
+        lab.run(QUIET)
+        return lab.stop(number, STOP_SECONDS), lab.output
+
+
+def _interrupted_rclpy(status: int | None, output: str) -> bool:
+    """Say whether the signal fell into the moment in which rclpy itself raises, whatever the program does.
+
+    Between asking whether its context is valid and building its wait set, rclpy's executor does not expect the context
+    to go. It is a matter of microseconds, and says nothing about the program.
+    """
+    frames = [line for line in output.splitlines() if line.startswith("  File ")]
+    in_executor = bool(frames) and "rclpy/executors.py" in frames[-1]
+    return status == 1 and in_executor and "context" in tail(output, 1)
