@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
+from matplotlib.transforms import Bbox
 from PIL import Image
 
 from sim.lidar import LidarSpec, Scan
@@ -57,7 +58,9 @@ class Renderer:
                 write_names(self._world, simulation.world, theme)
             self._centre = _sight_stage(self._sight, simulation, theme)
             self._moving = self._add_moving()
-            for artist in self._moving:
+            self._said: tuple[str, str, bool] | None = None
+            self._above = Bbox.from_extents(0, math.ceil(self._world.bbox.y1), figure.bbox.width, figure.bbox.height)
+            for artist in (*self._moving, self._clock, self._words):
                 artist.set_animated(True)
             canvas: Any = self._canvas
             canvas.draw()
@@ -65,19 +68,12 @@ class Renderer:
 
     def draw(self, frame: Frame, trail: Floats | None = None) -> Image.Image:
         """Return the frame as an RGB image; `trail` is the first robot's track so far, (K, 2) in metres."""
-        self._canvas.restore_region(self._background)
-        self._update(frame, trail)
-        for artist in self._moving:
-            if artist.get_visible() and artist.axes is not None:
-                artist.axes.draw_artist(artist)
-        width, height = self._canvas.get_width_height()
-        pixels = Image.frombuffer("RGBA", (width, height), self._canvas.buffer_rgba(), "raw", "RGBA", 0, 1)
-        return pixels.convert("RGB")
+        return self._drawn(frame, trail, "RGBA").convert("RGB")
 
     def jpeg(self, frame: Frame, trail: Floats | None = None, quality: int = 84) -> bytes:
         """Return the frame as JPEG, colours at full resolution so that thin lines stay clean."""
         stream = io.BytesIO()
-        self.draw(frame, trail).save(stream, "JPEG", quality=quality, subsampling=0)
+        self._drawn(frame, trail, "RGBX").save(stream, "JPEG", quality=quality, subsampling=0)
         return stream.getvalue()
 
     def png(self, frame: Frame, trail: Floats | None = None) -> bytes:
@@ -85,6 +81,31 @@ class Renderer:
         stream = io.BytesIO()
         self.draw(frame, trail).save(stream, "PNG", compress_level=1)
         return stream.getvalue()
+
+    def _drawn(self, frame: Frame, trail: Floats | None, mode: str) -> Image.Image:
+        self._canvas.restore_region(self._background)
+        self._update(frame, trail)
+        for artist in self._moving:
+            if artist.get_visible() and artist.axes is not None:
+                artist.axes.draw_artist(artist)
+        self._write(frame)
+        width, height = self._canvas.get_width_height()
+        return Image.frombuffer(mode, (width, height), self._canvas.buffer_rgba(), "raw", mode, 0, 1)
+
+    def _write(self, frame: Frame) -> None:
+        """Write the time and the speed above the axes; letters are slow, so that they are kept until they change."""
+        first = frame.state.robots[0]
+        speed = f"{first.velocity.linear:+.2f} m/s   {first.velocity.angular:+.2f} rad/s"
+        said = (f"{frame.state.time_ns / 1e9:.1f} s", speed, first.collided)
+        if said != self._said:
+            self._clock.set_text(said[0])
+            self._words.set_text(speed + ("  ·  blocked" if first.collided else ""))
+            self._words.set_color(self._theme.alarm if first.collided else self._theme.muted)
+            self._world.draw_artist(self._clock)
+            self._sight.draw_artist(self._words)
+            self._said, self._line = said, self._canvas.copy_from_bbox(self._above)
+        else:
+            self._canvas.restore_region(self._line)
 
     def _add_moving(self) -> list[Artist]:
         theme, world, sight = self._theme, self._world, self._sight
@@ -118,7 +139,7 @@ class Renderer:
         pairs = [part for pair in self._bodies for part in pair]
         return [
             *(self._seen, self._rays, self._trail, *self._movers, self._hits, *self._halos, *pairs),
-            *(self._near_seen, self._near_rays, *self._centre, self._near_hits, self._clock, self._words),
+            *(self._near_seen, self._near_rays, *self._centre, self._near_hits),
         ]
 
     def _update(self, frame: Frame, trail: Floats | None) -> None:
@@ -134,11 +155,6 @@ class Renderer:
         points = np.empty((0, 2)) if trail is None else trail
         self._trail.set_data(*points.T)
         self._update_scan(frame.scans[0])
-        first = state.robots[0]
-        self._clock.set_text(f"{state.time_ns / 1e9:6.2f} s")
-        blocked = "  ·  blocked" if first.collided else ""
-        self._words.set_text(f"{first.velocity.linear:+.2f} m/s   {first.velocity.angular:+.2f} rad/s{blocked}")
-        self._words.set_color(self._theme.alarm if first.collided else self._theme.muted)
 
     def _update_scan(self, newest: tuple[Scan, Pose] | None) -> None:
         parts = (self._seen, self._rays, self._hits, self._near_seen, self._near_rays, self._near_hits)
