@@ -46,7 +46,6 @@ def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     launch.logging.reset()
 
 
-@pytest.mark.slow
 def test_a_hundred_launches_of_light_processes_leave_nothing(
     fleet: Path, mark: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -71,7 +70,6 @@ def test_a_hundred_launches_of_light_processes_leave_nothing(
     assert said.count("process started with pid") == 2 * STARTS
 
 
-@pytest.mark.slow
 def test_launches_of_nodes_that_are_stopped_early_or_late_leave_nothing(start: Callable[..., Any]) -> None:
     for number in range(NODE_STARTS):
         running = start("two_robots")

@@ -7,10 +7,12 @@ exactly one SIGINT on to the whole group: a shell, a debugger or a wrapper ends 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import signal
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 # How long whatever a finished process left running in its group has, before it is killed.
@@ -133,16 +135,16 @@ class ChildProcess:
         self._transport.close()
 
     async def _end_leftovers(self) -> None:
+        if not self._signal_group(signal.SIGTERM):
+            return
         loop = asyncio.get_running_loop()
         deadline = loop.time() + _LEFTOVER_SECONDS
-        alive = self._signal_group(signal.SIGTERM)
-        while alive and loop.time() < deadline:
-            await asyncio.sleep(0.02)
-            alive = self._signal_group(0)
+        while _has_living_members(self.pid) and loop.time() < deadline:
+            await asyncio.sleep(0.05)
         self._signal_group(signal.SIGKILL)
 
     def _signal_group(self, number: int) -> bool:
-        """Send a signal to the group (0 only asks); return whether the group has any member.
+        """Send a signal to the group; return whether the group has any member.
 
         The kernel does not reuse the number of a group that has members, and hands new numbers out in turn.
         """
@@ -154,3 +156,14 @@ class ChildProcess:
             # A member that changed its user: there, but not ours to signal.
             return True
         return True
+
+
+def _has_living_members(group: int) -> bool:
+    """Whether a process group has a member that is more than an entry its parent has yet to collect."""
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            # The name, in parentheses, may hold anything; behind it come state, parent and group.
+            state, _, member_of = stat.read_text().rpartition(")")[2].split()[:3]
+            if int(member_of) == group and state != "Z":
+                return True
+    return False
