@@ -53,7 +53,7 @@ bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/python -m tests.benchmarks
 
-verify:         ## prove the grader: reference, release, mutants, right answers, attacks (VERIFY_ARGS=)
+verify:         ## prove the grader: reference, release and mutants (VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/autograder verify $(VERIFY_ARGS)
 

@@ -66,6 +66,7 @@ def grade_submission(
     if not path.exists():
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)
+    out.mkdir(parents=True, exist_ok=True)
     for stale in (RESULT, NOTEBOOK, LOG):
         (out / stale).unlink(missing_ok=True)
     report = CellReport(Ending.EXITED, 0, "")

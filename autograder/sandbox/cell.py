@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.ros.environment import without_wheel_bootstrap
 from autograder.sandbox import bubblewrap
 from autograder.sandbox.launcher import TIER_VARIABLE
 from autograder.sandbox.limits import GIB, MIB, Limits
@@ -46,8 +46,8 @@ def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: L
         command = make_command(scratch)
         if tier is Tier.BUBBLEWRAP:
             command = bubblewrap.cell(command, scratch=scratch, size=SCRATCH)
-        environment = {name: value for name, value in os.environ.items() if name not in WHEEL_BOOTSTRAP_VARIABLES}
-        with Process(command, limits, environment={**environment, TIER_VARIABLE: tier.value}) as process:
+        environment = {**without_wheel_bootstrap(os.environ), TIER_VARIABLE: tier.value}
+        with Process(command, limits, environment=environment) as process:
             process.wait(None)
             assert process.ending is not None
             return CellReport(process.ending, process.returncode or 0, process.output)
