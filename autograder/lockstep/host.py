@@ -138,12 +138,19 @@ class Host:
     # The steps.
 
     def _ready(self, executor: Executor, nodes: Any, condition: Any) -> Any:
+        if nodes is None and len(executor.get_nodes()) > 1:
+            nodes = self._in_order(executor)
         try:
             work = _wait_for_work(executor, timeout_sec=0, nodes=nodes, condition=condition)
         except TimeoutException:
             return None
         self.progress = time.monotonic()
         return work
+
+    def _in_order(self, executor: Executor) -> list[Any]:
+        """Return the executor's nodes as they were made; it keeps them in a set, in another order every time."""
+        there = executor.get_nodes()
+        return [node for node in self._nodes() if node in there]
 
     def _owed(self, executor: Executor) -> list[Any]:
         """Return the executor's subscriptions that have not taken every message they were sent."""

@@ -1,0 +1,250 @@
+"""Lockstep with small real nodes: every kind of spin, the same run every time."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.sandbox import Limits, Process
+from tests.e2e.cell_support import in_cell
+
+HEAD = """
+import sys
+import rclpy
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from std_msgs.msg import String
+
+class Echo(Node):
+    '''Says on `said` what it heard on `heard`, and how often its timer has fired.'''
+
+    def __init__(self, name='echo', qos=10, heard='heard', said='said', period=0.1):
+        super().__init__(name)
+        self.ticks, self.last = 0, ''
+        self.out = self.create_publisher(String, said, qos)
+        self.create_subscription(String, heard, self.hear, qos)
+        self.create_timer(period, self.tick)
+
+    def hear(self, message):
+        self.last = message.data
+        self.say('heard')
+
+    def tick(self):
+        self.ticks += 1
+        self.say('tick')
+
+    def say(self, why):
+        now = self.get_clock().now().nanoseconds
+        self.out.publish(String(data=f'{self.get_name()} {why} {self.last} {self.ticks} {now}'))
+
+def run(program):
+    rclpy.init()
+    try:
+        program()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+"""
+
+SPIN = "run(lambda: rclpy.spin({node}))\n"
+PROGRAMS = {
+    "rclpy.spin": SPIN.format(node="Echo()"),
+    "best effort": SPIN.format(node="Echo(qos=qos_profile_sensor_data)"),
+    "two nodes in one executor": """
+def program():
+    executor = SingleThreadedExecutor()
+    executor.add_node(first := Echo('first'))
+    executor.add_node(second := Echo('second', period=0.05))
+    executor.spin()
+run(program)
+""",
+    "many threads": """
+def program():
+    executor = MultiThreadedExecutor(num_threads=4)
+    executor.add_node(node := Echo())
+    executor.spin()
+run(program)
+""",
+    "spin_once": """
+def program():
+    node = Echo()
+    while rclpy.ok():
+        rclpy.spin_once(node, timeout_sec=0.1)
+run(program)
+""",
+    "spin_once without waiting": """
+def program():
+    node = Echo()
+    while rclpy.ok():
+        rclpy.spin_once(node, timeout_sec=0)
+run(program)
+""",
+    "two nodes by turns": """
+def program():
+    first, second = Echo('first'), Echo('second')
+    while rclpy.ok():
+        rclpy.spin_once(first, timeout_sec=0.05)
+        rclpy.spin_once(second, timeout_sec=0.05)
+run(program)
+""",
+    "publishes in __init__": """
+class Eager(Echo):
+    def __init__(self):
+        super().__init__()
+        for _ in range(20):
+            self.say('early')
+run(lambda: rclpy.spin(Eager()))
+""",
+    "two topics in one step": """
+class Both(Echo):
+    def __init__(self):
+        super().__init__()
+        self.create_subscription(String, 'also', self.hear, 10)
+run(lambda: rclpy.spin(Both()))
+""",
+}
+STEPS = 60
+
+
+def trace(scratch: Path, program: str, runs: int) -> list[Any]:
+    """Run a program several times in lockstep; return what it said in each run."""
+    from std_msgs.msg import String
+
+    from autograder.lab import LockstepLab, Workspace
+    from autograder.ros import activate
+
+    install = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
+    install.mkdir(parents=True)
+    (install / "node").write_text(f"#!/usr/bin/env python3\n{HEAD}{program}")
+    (scratch / "home").mkdir()
+    workspace = Workspace(scratch / "ws", activate(), scratch / "home")
+    offers, listens = {"/heard": String, "/also": String}, {"/said": String}
+    traces = []
+    for _ in range(runs):
+        with LockstepLab(workspace, "pkg", "node", offers=offers, listens=listens) as lab:
+            for number in range(STEPS):
+                lab.publish("/also", String(data=f"also {number}"))
+                lab.publish("/heard", String(data=f"message {number}"))
+                lab.step(lab.tick_ns)
+            status = lab.quit()
+        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in lab.messages("/said")]
+        traces.append({"said": said, "status": status})
+    return traces
+
+
+def _hash(said: list[Any]) -> str:
+    return hashlib.sha256(repr(said).encode()).hexdigest()
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_says_the_same_in_every_run_and_hears_every_message(name: str) -> None:
+    first, *others = in_cell(trace, PROGRAMS[name], 3)
+    assert [_hash(other["said"]) for other in others] == [_hash(first["said"])] * len(others)
+    heard = {text.split(" heard ")[1].split()[1] for _, text in first["said"] if " heard message" in text}
+    assert heard == {str(number) for number in range(STEPS)}
+    assert first["status"] == 0
+
+
+def test_a_busy_machine_changes_nothing() -> None:
+    quiet = in_cell(trace, PROGRAMS["two nodes in one executor"], 1)
+    burners = [Process([sys.executable, "-I", "-c", "while True: pass"], Limits(wall_seconds=300)) for _ in range(2)]
+    try:
+        busy = in_cell(trace, PROGRAMS["two nodes in one executor"], 2)
+    finally:
+        for burner in burners:
+            burner.kill()
+    assert [_hash(run["said"]) for run in busy] == [_hash(quiet[0]["said"])] * 2
+
+
+def test_data_comes_before_timers_and_timers_fire_at_their_time() -> None:
+    (run,) = in_cell(trace, PROGRAMS["rclpy.spin"], 1)
+    for step in range(STEPS):
+        time = round((step + 1) * 0.1, 3)
+        at = [text for seconds, text in run["said"] if seconds == time]
+        now = 100 * 10**9 + (step + 1) * 10**8
+        assert at == [
+            f"echo heard message {step} {step} {now - 1}",
+            f"echo tick message {step} {step + 1} {now}",
+        ]
+
+
+def test_a_message_that_was_published_before_the_two_sides_met_is_not_waited_for() -> None:
+    (run,) = in_cell(trace, PROGRAMS["publishes in __init__"], 1)
+    assert not [text for _, text in run["said"] if " early " in text]
+
+
+def impatient(scratch: Path, program: str) -> list[Any]:
+    """Run a program once, with little patience for messages that do not come."""
+    from autograder.lab import lockstep
+
+    lockstep.DELIVERY_SECONDS = 1.0
+    return trace(scratch, program, 1)
+
+
+FORGER = """
+import os, threading
+def forge():
+    for name in os.listdir('/proc/self/fd'):
+        try:
+            if os.readlink(f'/proc/self/fd/{name}').startswith('pipe:') and int(name) > 2:
+                os.write(int(name), b'{"event": "done", "published": {"/said": 999999}}\\n' * 3)
+        except OSError:
+            pass
+class Forger(Echo):
+    def tick(self):
+        super().tick()
+        if self.ticks == 10:
+            forge()
+run(lambda: rclpy.spin(Forger()))
+"""
+
+
+def test_a_forged_count_makes_the_grader_wait_a_while_and_believe_nothing() -> None:
+    (run,) = in_cell(impatient, FORGER)
+    assert 0 < len(run["said"]) <= 2 * STEPS
+
+
+def wild(scratch: Path, program: str) -> list[str]:
+    """Run a program that does not keep to the rules; return the kind and sentence of its diagnosis."""
+    from autograder.exceptions import StudentError
+
+    try:
+        trace(scratch, program, 1)
+    except StudentError as error:
+        return [error.diagnosis.kind.value, error.diagnosis.sentence]
+    return ["ok", ""]
+
+
+@pytest.mark.parametrize(
+    ("program", "kind", "words"),
+    [
+        ("raise KeyError('lidar')", "crashed_at_import", "KeyError: 'lidar'"),
+        ("run(lambda: Echo(qos=None))", "crashed_at_start", "before it started to spin"),
+        ("run(lambda: rclpy.spin(Echo(name='not a name')))", "crashed_at_start", "InvalidNodeName"),
+        ("run(lambda: rclpy.spin(Echo(name='grader')))", "reserved_name", "which is the grader's own name"),
+        ("rclpy.init()\nnode = Echo()", "ended_early", "rclpy.spin(node)"),
+        (
+            "class Late(Echo):\n    def tick(self):\n        super().tick()\n        1 / (20 - self.ticks)\n"
+            "run(lambda: rclpy.spin(Late()))",
+            "crashed_later",
+            "ZeroDivisionError",
+        ),
+        (
+            "import os\nclass Gone(Echo):\n    def tick(self):\n        super().tick()\n"
+            "        self.ticks < 5 or os._exit(0)\n"
+            "run(lambda: rclpy.spin(Gone()))",
+            "ended_early",
+            "exit status 0",
+        ),
+    ],
+)
+def test_a_program_that_fails_is_told_how(program: str, kind: str, words: str) -> None:
+    found, sentence = in_cell(wild, program)
+    assert found == kind, sentence
+    assert words in sentence
