@@ -208,13 +208,17 @@ class Lab(ABC):
         return lambda message: received.append(Stamped(self.seconds, message))
 
     def _await(self, condition: Callable[[], bool]) -> None:
-        if not self.wait_for(condition, MEETING_SECONDS):
-            if [name for name, _ in self.node.get_node_names_and_namespaces()].count(NAME) > 1:
-                sentence = (
-                    f"Your node is called {NAME}, which is the grader's own name: give it the name that was asked for."
-                )
-                raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
+        met = self.wait_for(lambda: self._is_impersonated() or condition(), MEETING_SECONDS)
+        if self._is_impersonated():
+            sentence = (
+                f"Your node is called {NAME}, which is the grader's own name: give it the name that is asked for."
+            )
+            raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
+        if not met:
             raise GraderError(f"the grader and the student's node did not meet within {MEETING_SECONDS:.0f} s")
+
+    def _is_impersonated(self) -> bool:
+        return self.node.get_node_names().count(NAME) > 1
 
     def _spin(self, timeout: float) -> None:
         """Take what has arrived; wait for something at most `timeout` seconds.
