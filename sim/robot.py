@@ -87,10 +87,11 @@ class RobotSpec:
 class RobotState:
     """One robot at one instant.
 
-    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on
-    turning while it slides along something); `command` the last one received, at `command_ns`; `odometry` the pose by its wheels in the frame `odom` (which starts at the start
-    pose), with `covariance` over (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while
-    something blocks it; `collisions` counts the contacts so far. `held` is the state in which a frozen lidar froze.
+    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on turning
+    while it slides along something); `command` the last one received, at `command_ns`; `odometry` the pose by its
+    wheels in the frame `odom` (which starts at the start pose), with `covariance` over (x, y, theta), 3 x 3 row by
+    row in m², m rad and rad². `collided` is true while something blocks it; `collisions` counts the contacts so far.
+    `held` is the state in which a frozen lidar froze.
     """
 
     name: str

@@ -15,7 +15,7 @@ from sim.exceptions import SpecError
 from sim.faults import DeadSector
 from sim.lidar import LidarSpec, Scan
 from sim.noise import normal, uniform, words
-from sim.pose import Pose
+from sim.pose import ORIGIN, Pose
 from sim.robot import RobotSpec
 from sim.scene import Body, Scene, beams_of, outline
 from sim.state import Simulation, State
@@ -38,7 +38,7 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
         raise SpecError(f"robot {spec.name!r} has no lidar; give its RobotSpec one")
     faults = spec.faults
     time_ns = state.time_ns
-    if any(window.holds(time_ns) for window in faults.dead):
+    if faults.dead and any(window.holds(time_ns) for window in faults.dead):
         return None
     source = state.robots[index].held or state
     body = simulation.scene.bodies[index]
@@ -95,6 +95,8 @@ def directions(pose: Pose, lidar: LidarSpec) -> Floats:
 
 def mounted(pose: Pose, mount: Pose) -> Pose:
     """Return where a sensor is whose pose in `base_link` is `mount`, for a robot at `pose`."""
+    if mount is ORIGIN:
+        return pose
     s, c = sincos(pose.theta)
     return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)
 

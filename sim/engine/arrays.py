@@ -106,14 +106,15 @@ def _walls_into(
     counts -= starts
     counts += 1.0
     np.maximum(counts, 0.0, out=counts)
-    if (unsure | hard).any():
-        # a hard wall that no beam meets is left out, unless the sensor may stand on it
-        hard &= (counts[0] + counts[1] > 0.0) | (np.abs(swing) > 0.4 * full) | (h == 0.0)
-        hard |= unsure.any(axis=(0, 1))
-        counts[:, hard] = 0.0
-        for k in np.flatnonzero(hard):
-            px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
-            wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)
+    suspects = np.flatnonzero(unsure | hard)
+    if len(suspects):
+        for k in {place % size for place in suspects.tolist()}:
+            # a hard wall that no beam meets is left out, unless the sensor may stand on it
+            met = counts[0, k] + counts[1, k] > 0.0 or abs(swing[k]) > 0.4 * full or h[k] == 0.0
+            if met or unsure[:, :, k].any():
+                counts[:, k] = 0.0
+                px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
+                wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)
     lengths = counts.astype(np.intp).ravel()
     shifts = starts.astype(np.intp).ravel()
     shifts += lengths
