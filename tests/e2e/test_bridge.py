@@ -206,7 +206,7 @@ def test_time_stands_still_steps_exactly_and_starts_again(listener: Listener, si
     listener.wait(lambda: clock and seconds(clock[-1].clock) == pytest.approx(1.0), "the clock")
 
     answer = listener.call(Trigger, "/simulator/reset", Trigger.Request())
-    assert (answer.success, answer.message) == (True, "back at 0.000 s")
+    assert (answer.success, answer.message) == (True, "reset at 0.000 s")
     running = listener.call(SetBool, "/simulator/pause", SetBool.Request(data=False))
     assert running.message.startswith("running at")
     clock.clear()

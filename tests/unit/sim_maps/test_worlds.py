@@ -1,0 +1,81 @@
+"""The course's worlds: a robot fits on every start and goal, and can get from one to the other."""
+
+from __future__ import annotations
+
+from collections import deque
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim import Pose, RobotSpec, Simulation, World, clearance, start
+from sim.maps import load
+from sim.view.artists import movers_at
+
+WORLDS = Path(__file__).resolve().parents[3] / "assets" / "worlds"
+NAMES = ("corridor", "doorway", "empty_room", "lab", "maze", "moving_obstacle", "office", "slalom")
+CELL = 0.1
+ROOM_TO_SPARE = 0.05  # metres between the robot and the walls on its way
+
+
+def distance(world: World, x: float, y: float) -> float:
+    """How far the robot's body is from everything that stands still, were it at that place."""
+    still = World(
+        segments=world.segments,
+        circles=world.circles,
+        segment_names=world.segment_names,
+        circle_names=world.circle_names,
+    )
+    simulation = Simulation(still, robots=(RobotSpec(start=Pose(x, y)),))
+    return clearance(simulation, start(simulation)).distance
+
+
+def reachable(world: World, here: Pose) -> set[tuple[int, int]]:
+    """The cells, `CELL` wide and counted from the start pose, that a robot gets to."""
+    seen, waiting = {(0, 0)}, deque([(0, 0)])
+    while waiting:
+        i, j = waiting.popleft()
+        for cell in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+            if cell not in seen and distance(world, here.x + cell[0] * CELL, here.y + cell[1] * CELL) > ROOM_TO_SPARE:
+                seen.add(cell)
+                waiting.append(cell)
+    return seen
+
+
+def test_these_are_the_worlds() -> None:
+    assert tuple(sorted(path.stem for path in WORLDS.glob("*.yaml"))) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_robot_fits_on_every_start_and_goal(name: str) -> None:
+    world = load(WORLDS / f"{name}.yaml")
+    for place in (*world.starts, *world.goals):
+        assert distance(world, place.x, place.y) > 0.25
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "office"])
+def test_every_goal_can_be_reached_from_the_first_start(name: str) -> None:
+    world = load(WORLDS / f"{name}.yaml")
+    here = world.starts[0]
+    cells = np.array(sorted(reachable(world, here))) * CELL + (here.x, here.y)
+    assert world.goals
+    for goal in world.goals:
+        assert np.hypot(*(cells - (goal.x, goal.y)).T).min() < goal.radius
+
+
+@pytest.mark.parametrize("name", ["lab", "moving_obstacle"])
+def test_moving_obstacles_walk_through_no_wall(name: str) -> None:
+    world = load(WORLDS / f"{name}.yaml")
+    body = RobotSpec().radius
+    for second in np.arange(0.0, 60.0, 0.25):
+        places = movers_at(Simulation(world), int(second * 1e9))
+        for mover, (x, y) in zip(world.movers, places, strict=True):
+            assert distance(world, x, y) + body - mover.radius > 0.02
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_wall_and_pillar_has_a_name(name: str) -> None:
+    world = load(WORLDS / f"{name}.yaml")
+    if name != "office":  # a traced map has no names
+        assert all(world.segment_names)
+        assert all(world.circle_names)
