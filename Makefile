@@ -38,11 +38,13 @@ check:          ## the fast part of the tests
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile -m "not slow and not browser" $(PYTEST_ARGS)
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
-LINTED := autograder sim tests nbgrader_config.py
+LINTED := autograder sim tests assets nbgrader_config.py
+STANDINS := launch launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice
 lint:
 	$(BIN)/ruff check $(LINTED)
 	$(BIN)/ruff format --check $(LINTED)
 	$(BIN)/mypy
+	$(BIN)/mypy --config-file autograder/ros/standins/mypy.ini $(addprefix -p ,$(STANDINS))
 
 lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_ARGS=)
 	@$(BOOTSTRAP)

@@ -218,7 +218,7 @@ class Lab(ABC):
             raise GraderError(f"the grader and the student's node did not meet within {MEETING_SECONDS:.0f} s")
 
     def _is_impersonated(self) -> bool:
-        return self.node.get_node_names().count(NAME) > 1
+        return bool(self.node.get_node_names().count(NAME) > 1)
 
     def _spin(self, timeout: float) -> None:
         """Take what has arrived; wait for something at most `timeout` seconds.
