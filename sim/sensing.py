@@ -95,7 +95,7 @@ def directions(pose: Pose, lidar: LidarSpec) -> Floats:
 
 def mounted(pose: Pose, mount: Pose) -> Pose:
     """Return where a sensor is whose pose in `base_link` is `mount`, for a robot at `pose`."""
-    if mount is ORIGIN:
+    if mount is ORIGIN:  # the usual one; the sums below would come to the same
         return pose
     s, c = sincos(pose.theta)
     return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)

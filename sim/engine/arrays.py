@@ -102,9 +102,9 @@ def _walls_into(
     unsure = inner - runs > 1.0 - 2.0 * doubt
 
     starts = np.maximum(inner[0], 0.0)
-    counts = np.minimum(-inner[1], len(best) - 1.0)
-    counts -= starts
-    counts += 1.0
+    counts = np.maximum(inner[1], 1.0 - len(best))  # minus the last beams
+    counts += starts
+    np.subtract(1.0, counts, out=counts)
     np.maximum(counts, 0.0, out=counts)
     suspects = np.flatnonzero(unsure | hard)
     if len(suspects):
