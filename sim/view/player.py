@@ -56,10 +56,10 @@ def live(
 
     `controller` gets each new scan of the first robot and returns a `Command` (or None: as before); without one the
     robot obeys the pad. `speed` is simulated seconds a second. Whatever `controller` raises pauses the view and is
-    printed below it. Without a running event loop (a plain script) the view is there, but stands still.
+    printed above it. Without a running event loop (a plain script) the view is there, but stands still.
 
     Raises:
-        ValueError: for a speed that is not above zero, or an unknown theme.
+        ValueError: for a speed that is not above zero, an unknown theme, or a callback where something else drives.
     """
     if not 0.0 < speed <= 100.0:
         raise ValueError(f"a speed of {speed} makes no sense: give a factor above 0 and up to 100, 1 is real time")
@@ -209,13 +209,13 @@ class LiveView:
 
 
 def _playable(source: World | Simulation | Recording | Bridge, controller: Controller | None) -> Source:
-    if isinstance(source, Recording):
-        return Replay(source)
     if isinstance(source, Simulation):
         return Session(source, controller)
     if isinstance(source, World):
         return Session(Simulation(source), controller)
-    return Watch(source)
+    if controller is not None:
+        raise ValueError("a callback can't drive a recording or a ROS bridge: give live() a world or a simulation")
+    return Replay(source) if isinstance(source, Recording) else Watch(source)
 
 
 def _still(source: World | Simulation | Recording | Bridge, theme: Theme) -> Picture:

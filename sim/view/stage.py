@@ -18,6 +18,9 @@ HEIGHT = 5.4
 _LEFT, _RIGHT, _BOTTOM, _TOP = 0.42, 0.16, 0.34, 0.60
 """Inches of paper around the axes."""
 
+ROOMY = 0.5
+"""Metres of radius from which a pillar has its name inside."""
+
 
 def new_axes(world: World, theme: Theme) -> Axes:
     """Return the Axes of a new Figure that has the world's proportions, within `WIDTH` x `HEIGHT` inches."""
@@ -71,7 +74,9 @@ def write_names(ax: Axes, world: World, theme: Theme) -> None:
         wall = rows[int(np.argmax(np.hypot(rows[:, 2] - rows[:, 0], rows[:, 3] - rows[:, 1])))]
         _name_wall(ax, name, wall, world, style)
     for (x, y, radius), name in zip(world.circles.tolist(), world.circle_names, strict=True):
-        if name:
+        if radius >= ROOMY:
+            ax.annotate(name, (x, y), ha="center", va="center", **style)
+        elif name:
             ax.annotate(name, (x, y + radius), (0, 4), textcoords="offset points", ha="center", va="bottom", **style)
     for goal in world.goals:
         spot = (goal.x, goal.y - goal.radius)

@@ -35,7 +35,7 @@ def tracks(ax: Axes) -> list[LineCollection]:
 
 def test_a_world_shows_its_walls_names_and_size(world: World) -> None:
     (ax,) = show(world).figure.axes
-    assert {"The lab", "12.0 × 8.0 m", "north wall", "round table", "dock"} <= texts(ax)  # noqa: RUF001
+    assert {"The lab", "12.0 × 8.0 m", "north wall", "table", "dock"} <= texts(ax)  # noqa: RUF001
     walls = ax.collections[0]
     assert isinstance(walls, LineCollection)
     assert len(walls.get_segments()) == len(world.segments)

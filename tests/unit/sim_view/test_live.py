@@ -212,6 +212,11 @@ def test_a_speed_that_makes_no_sense_is_refused(world: World, speed: float) -> N
         live(world, speed=speed)
 
 
+def test_a_recording_takes_no_callback(recording: Recording) -> None:
+    with pytest.raises(ValueError, match="a callback can't drive a recording"):
+        live(recording, go)
+
+
 def test_a_forgotten_run_ends() -> None:
     session = Session(Simulation(World(), tick=1.0))
     session.advance(LONGEST_NS + 5 * SECOND)
