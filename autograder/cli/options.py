@@ -10,10 +10,9 @@ from pathlib import Path
 import click
 
 from autograder.checks import Outcome
+from autograder.grading import DEFAULT_SEED
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
-
-DEFAULT_SEED = 2026
 
 json_option = click.option(
     "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Write what was found as JSON, too."

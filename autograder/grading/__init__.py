@@ -6,6 +6,6 @@
 phases, running students' code in sandboxes only.
 """
 
-from autograder.grading.pipeline import Graded, grade_submission
+from autograder.grading.pipeline import DEFAULT_SEED, Graded, grade_submission
 
-__all__ = ["Graded", "grade_submission"]
+__all__ = ["DEFAULT_SEED", "Graded", "grade_submission"]

@@ -71,7 +71,7 @@ def grade_all(
         out: the folder of the results.
         jobs: how many are graded at once; the results do not depend on it.
         isolation: the sandbox's tier.
-        resume: keep a stored result whose submission, suite and seed are the same.
+        resume: keep a stored result whose submission, suite, seed and isolation are the same.
         on_result: called for each result as it comes, in any order.
 
     Returns:
@@ -80,7 +80,7 @@ def grade_all(
     results: dict[str, Result] = {}
 
     def one(entry: Entry) -> Result:
-        stored = _stored(entry, assignment, seed, out / entry.student) if resume else None
+        stored = _stored(entry, assignment, seed, isolation, out / entry.student) if resume else None
         if stored is not None:
             return stored
         graded = grade_submission(
@@ -111,12 +111,13 @@ def _of_folder(folder: Path, assignment: str) -> Iterator[Entry]:
         yield Entry(child.stem if child.is_file() else child.name, inner if inner.is_dir() else child)
 
 
-def _stored(entry: Entry, assignment: str, seed: int, folder: Path) -> Result | None:
+def _stored(entry: Entry, assignment: str, seed: int, isolation: Tier, folder: Path) -> Result | None:
     try:
         result = from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
         digest = intake.take(entry.path, assignment).sha256
     except (OSError, ValueError, AutograderError):
         return None
     suite = suites.load(assignment)
-    same = (result.submission_sha256, result.suite_version, result.seed) == (digest, suite.version, seed)
+    found = (result.submission_sha256, result.suite_version, result.seed, result.isolation)
+    same = found == (digest, suite.version, seed, isolation.value)
     return result if same and result.status is Status.GRADED else None

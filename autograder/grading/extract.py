@@ -45,7 +45,9 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
     """
     source = nbformat.read(original, as_version=4)
     notebook = hygiene.restore(hygiene.read(submitted, original.name), source)
-    nbformat.write(execute(notebook, folder, workspace), out)
+    executed = nbformat.writes(execute(notebook, folder, workspace))
+    # Half a surrogate pair, in a cell or in what it printed, is no UTF-8: it must not fail the grader.
+    out.write_bytes(executed.encode("utf-8", errors="replace"))
 
 
 def execute(
@@ -108,7 +110,7 @@ def _no_kernel(manager: SandboxedKernelManager, error: RuntimeError) -> Exceptio
     if process is None or process.ending is None:
         return GraderError(f"the sandboxed kernel did not answer: {error}")
     sentence = (
-        "The notebook's kernel could not start: a file beside the notebook, such as random.py or sitecustomize.py, "
+        "The notebook's kernel could not start: a file beside the notebook, such as ipykernel_launcher.py, "
         "stands in the way of a module of the same name. Rename or remove it."
     )
     return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output)))

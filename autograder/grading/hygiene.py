@@ -15,6 +15,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 
 MAX_CELLS = 500
+DELETED = "# This cell was deleted."
 STUB = "YOUR CODE HERE"
 
 
@@ -41,7 +42,8 @@ def read(data: bytes, name: str) -> NotebookNode:
 def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     """Return the submitted notebook with every cell that nbgrader marks as the source notebook has it.
 
-    Cells that the student may edit keep the student's text. Outputs are dropped.
+    Cells that the student may edit keep the student's text, and are empty where the student deleted them. Outputs are
+    dropped.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
     notebook = copy.deepcopy(submitted)
@@ -54,9 +56,17 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
             _mend(cell, originals[name])
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-    notebook.cells += [copy.deepcopy(cell) for name, cell in originals.items() if name not in seen]
+    notebook.cells += [_put_back(cell) for name, cell in originals.items() if name not in seen]
     notebook.metadata = copy.deepcopy(source.metadata)
     return notebook
+
+
+def _put_back(original: NotebookNode) -> NotebookNode:
+    """Return a cell that the student deleted; an exercise comes back empty, for the source notebook holds its answer."""
+    cell = copy.deepcopy(original)
+    if cell.metadata.nbgrader.get("solution"):
+        cell.source = DELETED
+    return cell
 
 
 def grade_id(cell: NotebookNode) -> str:

@@ -19,11 +19,11 @@ from nbgrader.utils import is_grade, is_solution
 from traitlets import Bool, Integer, Unicode
 
 from autograder import feedback
-from autograder.cli.options import DEFAULT_SEED
 from autograder.exceptions import GraderError
 from autograder.feedback.model import view
 from autograder.feedback.pictures import from_folder
 from autograder.feedback.text import clean
+from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
 from autograder.grading.hygiene import grade_id
 from autograder.grading.pipeline import NOTEBOOK

@@ -12,9 +12,8 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 from autograder.checks import Check, Outcome
-from autograder.cli.options import DEFAULT_SEED
 from autograder.exceptions import IsolationError
-from autograder.grading import Graded
+from autograder.grading import DEFAULT_SEED, Graded
 from autograder.result import Artifact, CheckResult, Status
 
 # nbgrader's own use of SQLAlchemy.
