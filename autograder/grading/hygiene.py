@@ -62,7 +62,7 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
 
 
 def _put_back(original: NotebookNode) -> NotebookNode:
-    """Return a cell that the student deleted; an exercise comes back empty, for the source notebook holds its answer."""
+    """Return a cell that the student deleted; an exercise comes back empty: the source notebook holds its answer."""
     cell = copy.deepcopy(original)
     if cell.metadata.nbgrader.get("solution"):
         cell.source = DELETED
