@@ -1,0 +1,79 @@
+"""`drive` and `check`, as a student calls them in the notebook."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.notebook import CheckReport, DriveReport, Notice, check, drive
+from autograder.notebook.driving import FAULTS
+from autograder.suites.mutants import lay_down, lay_down_reference, mutants
+
+PACKAGE = "my_robot_package"
+
+
+@pytest.fixture(scope="session")
+def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("right")
+    lay_down_reference((PACKAGE,), folder)
+    return folder
+
+
+def _mutant(name: str, folder: Path) -> Path:
+    lay_down(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), folder)
+    return folder
+
+
+def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_workspace(right: Path) -> None:
+    report = check("02_nodes", right)
+    assert isinstance(report, CheckReport)
+    assert report.passed, repr(report)
+    assert [path.name for path in right.iterdir()] == ["src"]
+
+
+def test_a_flaw_is_told_with_hints_and_does_not_hide_the_rest(tmp_path: Path) -> None:
+    report = check("02_nodes", _mutant("drives_blind", tmp_path))
+    assert isinstance(report, CheckReport)
+    (failed,) = [line for line in report.lines if line.outcome.value == "failed"]
+    assert "A second after the last scan, the robot drove forward" in failed.message
+    assert failed.hints
+
+
+def test_a_syntax_error_is_a_calm_sentence(tmp_path: Path) -> None:
+    _mutant("syntax_error", tmp_path)
+    report = check("02_nodes", tmp_path)
+    assert isinstance(report, CheckReport)
+    assert report.trouble is not None
+    assert "Python cannot read your file: expected ':'" in report.trouble.sentence
+    notice = drive(PACKAGE, "robot_controller", seconds=1, workspace=tmp_path)
+    assert isinstance(notice, Notice)
+    assert notice.sentence == report.trouble.sentence
+
+
+def test_a_drive_is_the_same_every_time_and_shows_its_track(right: Path) -> None:
+    runs = [drive(PACKAGE, "robot_controller", seconds=12, seed=3, workspace=right) for _ in range(2)]
+    first, second = (run for run in runs if isinstance(run, DriveReport))
+    assert first.recording.sha256() == second.recording.sha256()
+    assert first.commands == second.commands
+    assert not first.collided
+    assert first.collided_at is None
+    assert "Robot controller initialised" in first.output
+    assert "image/png" in str(first._repr_mimebundle_()) or "image/svg" in str(first._repr_mimebundle_())
+
+
+def test_a_dead_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_path: Path) -> None:
+    good = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=right)
+    bad = drive(
+        PACKAGE, "robot_controller", seconds=14, faults=FAULTS["dead"], workspace=_mutant("drives_blind", tmp_path)
+    )
+    assert isinstance(good, DriveReport)
+    assert isinstance(bad, DriveReport)
+    assert {(v, w) for t, v, w in good.commands if t > 11} == {(0.0, 0.0)}
+    assert (0.0, 0.0) not in {(v, w) for t, v, w in bad.commands if t > 11}
+
+
+def test_a_package_that_is_not_there_is_a_calm_sentence(right: Path) -> None:
+    notice = drive("no_such_package", "robot_controller", seconds=1, workspace=right)
+    assert isinstance(notice, Notice)
+    assert "The package no_such_package is missing: src holds my_robot_package" in notice.sentence

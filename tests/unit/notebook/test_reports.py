@@ -1,0 +1,67 @@
+"""What a student sees in the notebook: plain sentences, escaped, and nothing run while it is graded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import Outcome
+from autograder.exceptions import UsageError
+from autograder.notebook import CheckReport, Notice, check, drive, grade
+from autograder.notebook.checking import Line
+from autograder.notebook.desk import GRADING_VARIABLE
+
+LINES = (
+    Line("It starts.", Outcome.PASSED, "", (), "https://docs.ros.org"),
+    Line("It turns <left>.", Outcome.FAILED, "it drove & drove", ("look <here>",), "https://docs.ros.org"),
+    Line("It stops.", Outcome.NOT_CHECKED, "", (), None),
+)
+
+
+def test_a_report_counts_and_explains_on_a_terminal() -> None:
+    text = repr(CheckReport("02_nodes", LINES))
+    assert "✔ passed      It starts." in text
+    assert "✘ failed      It turns <left>." in text
+    assert "    hint 1: look <here>" in text
+    assert text.endswith("02_nodes: 1 of 3 visible checks passed.")
+    assert text.count("https://docs.ros.org") == 1  # a check that passed has no page to read
+
+
+def test_what_a_program_said_is_escaped_in_a_notebook() -> None:
+    shown = CheckReport("02_nodes", LINES, Notice("<script>", "a < b"))._repr_html_()
+    assert "&lt;script&gt;" in shown
+    assert "<script>" not in shown
+    assert "it drove &amp; drove" in shown
+    assert "look &lt;here&gt;" in shown
+
+
+def test_a_report_passes_when_every_check_does() -> None:
+    assert CheckReport("02_nodes", LINES[:1]).passed
+    assert not CheckReport("02_nodes", LINES).passed
+
+
+def test_a_notice_is_a_sentence_and_its_detail() -> None:
+    assert repr(Notice("Nothing moves.", "line 3")) == "Nothing moves.\nline 3"
+    assert repr(Notice("Nothing moves.")) == "Nothing moves."
+
+
+def test_while_a_notebook_is_graded_nothing_is_driven_or_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(GRADING_VARIABLE, "1")
+    for report in (check("02_nodes", "/no/where"), drive("a", "b", workspace="/no/where")):
+        assert isinstance(report, Notice)
+
+
+def test_the_locked_cell_gives_no_marks_in_the_kernel() -> None:
+    assert "after you have handed in" in grade("02_nodes", "graph").sentence
+
+
+def test_what_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"there is no folder .*/src: run this from the assignment's folder"):
+        drive("a", "b", workspace=tmp_path)
+    with pytest.raises(UsageError, match=r"there is no world 'moon'; there are: .*empty_room"):
+        drive("a", "b", world="moon", workspace=tmp_path)
+    with pytest.raises(UsageError, match=r"there is no fault 'fog'; there are: nan, dead, or a sim.Faults"):
+        drive("a", "b", faults="fog", workspace=tmp_path)
+    with pytest.raises(UsageError, match="there are no visible checks for '77_none'; there are for: 02_nodes"):
+        check("77_none", tmp_path)
