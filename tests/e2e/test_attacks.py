@@ -1,0 +1,76 @@
+"""No attack gains a point, sees a hidden check, or stops the grader."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from autograder import feedback, layout, suites
+from autograder.checks import Outcome
+from autograder.grading import Graded, grade_submission
+from autograder.grading.hygiene import grade_id
+from autograder.result import Status
+from tests.attacks.corpus import ASSIGNMENT, CANARY, Attack, corpus
+
+ATTACKS = corpus()
+
+
+def _hidden_text() -> set[str]:
+    """Return lines that stand in the hidden suite only: whoever prints one of them has read it."""
+    lines = {
+        line.strip()
+        for path in suites.load(ASSIGNMENT).files
+        for line in path.read_text().splitlines()
+        if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
+    }
+    shown = "\n".join(path.read_text() for path in (layout.ROOT / "autograder" / "visible").rglob("*.py"))
+    return {line for line in lines if line not in shown}
+
+
+def _everything_written(out: Path) -> str:
+    """Return the text of every file that grading and feedback left."""
+    texts = (path.read_text(errors="replace") for path in out.rglob("*") if path.suffix in (".json", ".html", ".ipynb"))
+    return "\n".join(texts)
+
+
+def _grade(attack: Attack, folder: Path) -> Graded:
+    attack.make(folder / "work")
+    submission = folder / "work" / "submission"
+    path = submission if submission.is_dir() else folder / "work"
+    return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=folder / "out")
+
+
+@pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.id)
+def test_an_attack_gains_no_point_and_learns_nothing(
+    attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
+    graded = _grade(attack, tmp_path)
+    result = graded.result
+    assert result.status is Status.GRADED, (tmp_path / "out" / "grader.log").read_text()
+    lost = {check.id: check.message for check in result.checks if check.outcome is not Outcome.PASSED}
+    assert attack.base <= set(lost), f"gained {attack.base - set(lost)}"
+    assert not attack.exactly or set(lost) == attack.base, lost
+    assert result.max_score == suites.load(ASSIGNMENT).max_score
+    assert not attack.diagnosis or result.diagnosis.kind in attack.diagnosis
+
+    feedback.write(result, tmp_path / "out")
+    written = _everything_written(tmp_path / "out")
+    assert "STOLEN /" not in written  # the notebook's own source says "STOLEN", and a comma
+    assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
+    assert not {line for line in _hidden_text() if line in written}
+
+    if graded.notebook is not None:
+        source = nbformat.read(layout.source_notebook(ASSIGNMENT), as_version=4)
+        graded_cells = [cell for cell in graded.notebook.cells if grade_id(cell)]
+        wanted = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
+        assert sorted(map(grade_id, graded_cells)) == sorted(wanted)
+        for cell in graded_cells:
+            assert cell.metadata.nbgrader == wanted[grade_id(cell)].metadata.nbgrader
+            assert not cell.metadata.nbgrader.locked or cell.source == wanted[grade_id(cell)].source
+
+
+def test_there_is_hidden_text_to_look_for() -> None:
+    assert len(_hidden_text()) > 20

@@ -1,0 +1,303 @@
+"""Grading for real: what is right gets everything, what is wrong is named, and the grader's own failure is no zero."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+
+from autograder import suites
+from autograder.checks import Outcome
+from autograder.diagnosis import Kind
+from autograder.exceptions import IsolationError, UsageError
+from autograder.grading import grade_submission, pipeline
+from autograder.grading.batch import Entry, grade_all
+from autograder.result import Result, Status
+from autograder.sandbox import Tier, tiers
+from autograder.suites.mutants import lay_down_reference
+
+ASSIGNMENT = "02_nodes"
+PACKAGE = "my_robot_package"
+CONTROLLER = f"{PACKAGE}/{PACKAGE}/nodes/robot_controller.py"
+SEED = 11
+
+
+@pytest.fixture(scope="session")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The reference solution as a source tree."""
+    folder = tmp_path_factory.mktemp("reference") / "tree"
+    lay_down_reference((PACKAGE,), folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def layouts(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Entry, ...]:
+    """The reference in three layouts: a source tree, a zip of an assignment's folder, a lone notebook."""
+    folder = tmp_path_factory.mktemp("layouts")
+    with zipfile.ZipFile(folder / "zip.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in (path for path in reference.rglob("*") if path.is_file()):
+            archive.write(path, f"{ASSIGNMENT}/ws/{path.relative_to(reference)}")
+    answer = (reference / "src" / CONTROLLER).read_text()
+    cell = new_code_cell(f"%%writefile ws/src/{CONTROLLER}\n{answer}")
+    cell.metadata.nbgrader = {"grade_id": "robot-controller", "grade": False, "solution": True, "locked": False}
+    nbformat.write(new_notebook(cells=[cell]), folder / "notebook.ipynb")
+    return (
+        Entry("tree", reference),
+        Entry("zip", folder / "zip.zip"),
+        Entry("notebook", folder / "notebook.ipynb"),
+    )
+
+
+@pytest.fixture(scope="session")
+def together(layouts: tuple[Entry, ...], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
+    """The layouts' results, two graded at once."""
+    results = grade_all(layouts, ASSIGNMENT, seed=SEED, out=tmp_path_factory.mktemp("together"), jobs=2)
+    return {result.student: result for result in results}
+
+
+def _grade(path: Path, out: Path) -> Result:
+    return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out).result
+
+
+def _without_times(result: Result) -> dict[str, Any]:
+    data = result.to_json()
+    for timed in (data, data["build"], *data["checks"]):
+        timed.pop("seconds")
+    data.pop("started")
+    data.pop("phases")
+    data["build"].pop("log")  # colcon prints how long it took
+    return data
+
+
+@pytest.mark.parametrize("layout", ["tree", "zip", "notebook"])
+def test_the_reference_gets_everything_in_every_layout(together: dict[str, Result], layout: str) -> None:
+    result = together[layout]
+    assert [check.id for check in result.checks if check.outcome is not Outcome.PASSED] == []
+    assert (result.status, result.diagnosis.kind, result.score) == (Status.GRADED, Kind.OK, result.max_score)
+    assert result.max_score == suites.load(ASSIGNMENT).max_score
+    assert (result.seed, result.isolation, result.suite_version) == (
+        SEED,
+        "bubblewrap",
+        suites.load(ASSIGNMENT).version,
+    )
+    assert result.build is not None
+    assert result.build.packages[-1] == PACKAGE
+
+
+def test_the_pictures_of_the_tracks_stand_beside_the_result(together: dict[str, Result]) -> None:
+    assert {artifact.check for artifact in together["tree"].artifacts} == {"room", "pillars", "corridor"}
+
+
+def test_one_at_a_time_gives_the_same_result_as_two_at_once(
+    together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
+) -> None:
+    (alone,) = grade_all(layouts[:1], ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
+    assert json.dumps(_without_times(alone)) == json.dumps(_without_times(together["tree"]))
+    tracks = [artifact.sha256 for artifact in alone.artifacts]
+    assert tracks == [artifact.sha256 for artifact in together["notebook"].artifacts]
+    assert len(set(tracks)) == 3
+
+
+# What is wrong is named.
+
+
+def _remove(*names: str) -> Callable[[Path], None]:
+    def spoil(source: Path) -> None:
+        for name in names:
+            path = source / PACKAGE / name
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+    return spoil
+
+
+def _replace(name: str, text: str) -> Callable[[Path], None]:
+    return lambda source: (source / PACKAGE / name).write_text(text) and None
+
+
+def _rename(source: Path) -> None:
+    manifest = source / PACKAGE / "package.xml"
+    manifest.write_text(manifest.read_text().replace(f"<name>{PACKAGE}", "<name>my_robot"))
+
+
+def _no_script(source: Path) -> None:
+    setup = source / PACKAGE / "setup.py"
+    setup.write_text(setup.read_text().replace("robot_controller =", "robot_control ="))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "kind", "words"),
+    [
+        pytest.param(shutil.rmtree, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
+        pytest.param(
+            _rename, Kind.MISSING_PACKAGE, "has no package.xml with <name>my_robot_package</name>", id="renamed"
+        ),
+        pytest.param(_remove("package.xml"), Kind.MISSING_PACKAGE, "has no package.xml", id="no package.xml"),
+        pytest.param(_remove("setup.py"), Kind.HALF_WRITTEN_PACKAGE, "has no setup.py", id="no setup.py"),
+        pytest.param(_remove("resource"), Kind.HALF_WRITTEN_PACKAGE, "has no resource/", id="no marker"),
+        pytest.param(_replace("package.xml", "<package>"), Kind.HALF_WRITTEN_PACKAGE, "no well-formed XML", id="xml"),
+        pytest.param(_replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "colcon build failed", id="setup.py"),
+        pytest.param(_no_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
+        pytest.param(
+            lambda source: (source / "link").symlink_to("/etc"), Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"
+        ),
+    ],
+)
+def test_a_package_that_cannot_be_judged_is_told_what_to_do(
+    spoil: Callable[[Path], None], kind: Kind, words: str, reference: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(reference, tmp_path / "alice")
+    spoil(tmp_path / "alice" / "src")
+    result = _grade(tmp_path / "alice", tmp_path / "out")
+    assert (result.status, result.score, result.diagnosis.kind) == (Status.GRADED, 0.0, kind)
+    assert words in result.diagnosis.sentence
+    assert all(check.outcome is not Outcome.PASSED for check in result.checks)
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "kind"),
+    [
+        ("alice.zip", b"PK\x03\x04 and then nothing", Kind.UNREADABLE),
+        ("alice.ipynb", b'{"cells": [', Kind.UNREADABLE),
+        ("alice.ipynb", b"\x00" * 100, Kind.UNREADABLE),
+        ("alice.pdf", b"%PDF-1.7", Kind.UNREADABLE),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_told_so(name: str, data: bytes, kind: Kind, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(data)
+    result = _grade(tmp_path / name, tmp_path / "out")
+    assert (result.status, result.diagnosis.kind) == (Status.GRADED, kind)
+    assert "hand" in result.diagnosis.sentence
+
+
+def test_a_kernel_that_a_submitted_file_keeps_from_starting_is_named(tmp_path: Path) -> None:
+    (tmp_path / "alice").mkdir()
+    nbformat.write(new_notebook(cells=[new_code_cell("1")]), tmp_path / "alice" / f"{ASSIGNMENT}.ipynb")
+    (tmp_path / "alice" / "ipykernel_launcher.py").write_text("raise SystemExit(0)")
+    result = _grade(tmp_path / "alice", tmp_path / "out")
+    assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.NOTEBOOK_FAILED)
+    assert "a file beside the notebook" in result.diagnosis.sentence
+
+
+def test_a_notebook_whose_kernel_dies_still_counts_with_the_files_it_wrote(tmp_path: Path) -> None:
+    cells = [
+        "%%writefile ws/src/my_robot_package/setup.py\nsyntax error",
+        "import os\nos._exit(0)",
+        "%%writefile never\n",
+    ]
+    (tmp_path / "alice").mkdir()
+    book = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+    nbformat.write(book, tmp_path / "alice" / f"{ASSIGNMENT}.ipynb")
+    result = _grade(tmp_path / "alice", tmp_path / "out")
+    assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.BUILD_FAILED)
+
+
+# The grader's own failure.
+
+
+@pytest.fixture
+def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Let another program stand where the worker is started; it gets the job as its argument."""
+
+    def put(code: str) -> None:
+        monkeypatch.setattr(pipeline, "_worker", lambda job: [sys.executable, "-c", code, job.to_json()])
+
+    return put
+
+
+RUN = "\nfrom autograder.grading.worker import main\nmain()"
+BROKEN_SUITE = """
+import autograder.grading.plugin as plugin
+def run(files, plugin):
+    plugin.failures.append("def test_secret(): CANARY")
+    return 3
+plugin.run = run
+"""
+BROKEN_LAB = """
+from autograder.ros import activate
+activate()
+from autograder.exceptions import GraderError
+from autograder.lab import LockstepLab
+def step(lab, dt_ns):
+    raise GraderError("messages were lost: CANARY")
+LockstepLab.step = step
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "logged"),
+    [
+        pytest.param("raise SystemExit('the disk is full: CANARY')", "the disk is full", id="ends"),
+        pytest.param("import os\nos.kill(os.getpid(), 9)", "The worker ended", id="killed"),
+        pytest.param("pass", "The worker ended: exited, 0.", id="no result"),
+        pytest.param(BROKEN_SUITE + RUN, "def test_secret", id="broken suite"),
+        pytest.param(BROKEN_LAB + RUN, "messages were lost", id="broken lab"),
+    ],
+)
+def test_a_failure_of_the_grader_is_not_graded_and_never_a_zero(
+    code: str, logged: str, worker: Callable[[str], None], reference: Path, tmp_path: Path
+) -> None:
+    worker(code)
+    result = _grade(reference, tmp_path / "out")
+    assert (result.status, result.diagnosis.kind) == (Status.NOT_GRADED, Kind.NOT_GRADED)
+    assert "This is no zero" in result.diagnosis.sentence
+    assert {check.outcome for check in result.checks} == {Outcome.NOT_CHECKED}
+    assert result.max_score == suites.load(ASSIGNMENT).max_score
+    assert "CANARY" not in (tmp_path / "out" / "result.json").read_text()
+    assert logged in (tmp_path / "out" / "grader.log").read_text()
+
+
+def test_a_failure_that_passes_is_mended_by_the_second_try(
+    worker: Callable[[str], None], reference: Path, tmp_path: Path
+) -> None:
+    mark = tmp_path / "tried"
+    worker(
+        f"import pathlib\nmark = pathlib.Path({str(mark)!r})\nif not mark.exists():\n    mark.touch()\n    1 / 0{RUN}"
+    )
+    shutil.rmtree(shutil.copytree(reference, tmp_path / "alice") / "src" / PACKAGE)
+    (tmp_path / "alice" / "src" / "note").write_text("")
+    result = _grade(tmp_path / "alice", tmp_path / "out")
+    assert mark.exists()
+    assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.MISSING_PACKAGE)
+
+
+def test_a_result_of_an_earlier_run_is_never_taken_for_this_one(
+    worker: Callable[[str], None], reference: Path, tmp_path: Path, together: dict[str, Result]
+) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "result.json").write_text(json.dumps(together["tree"].to_json()))
+    worker("pass")
+    assert _grade(reference, tmp_path / "out").status is Status.NOT_GRADED
+
+
+def test_what_is_not_there_is_a_wrong_call(reference: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="there is no such file or folder"):
+        _grade(tmp_path / "nobody", tmp_path / "out")
+    with pytest.raises(UsageError, match="there are no checks for '77_none'"):
+        grade_submission(reference, "77_none", student="a", seed=1, out=tmp_path / "out")
+
+
+def test_a_machine_without_namespaces_refuses_rather_than_grades_weakly(
+    reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tiers, "namespaces_failure", lambda: "no user namespaces")
+    with pytest.raises(IsolationError, match="cannot isolate submissions: no user namespaces"):
+        _grade(reference, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path) -> None:
+    shutil.copytree(reference, tmp_path / "alice")
+    (tmp_path / "alice" / "src" / PACKAGE / "setup.py").unlink()
+    graded = grade_submission(
+        tmp_path / "alice", ASSIGNMENT, student="a", seed=1, out=tmp_path / "out", isolation=Tier.PROCESS
+    )
+    assert graded.result.isolation == "process"
+    assert graded.result.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
