@@ -1,0 +1,86 @@
+"""Notebooks that never end, flood, ask or die, in the sandboxed kernel."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.e2e.cell_support import in_cell
+
+
+def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
+    """Run cells in the sandboxed kernel; return what each printed, and which processes are left of it."""
+    from nbformat.v4 import new_code_cell, new_notebook
+
+    from autograder.grading.extract import execute
+    from autograder.lab import Workspace
+    from autograder.ros import activate
+
+    folder, home = scratch / "assignment", scratch / "home"
+    folder.mkdir()
+    home.mkdir()
+    book = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+    execute(book, folder, Workspace(scratch / "ws", activate(), home), cell_seconds=8)
+    deadline = time.monotonic() + 30
+    while (left := _kernels()) and time.monotonic() < deadline:
+        threading.Event().wait(0.05)
+    printed = ["".join(output.get("text", output.get("evalue", "")) for output in cell.outputs) for cell in book.cells]
+    return {"printed": printed, "files": sorted(path.name for path in folder.iterdir()), "left": left}
+
+
+def _kernels() -> list[str]:
+    """Return the kernels in this cell's network namespace and below it: every sandbox is a child of this process."""
+    children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+    return [pid for pid in children if Path(f"/proc/{pid}/comm").read_text().strip() == "bwrap"]
+
+
+@pytest.mark.parametrize(
+    ("cell", "printed"),
+    [
+        pytest.param("while True: pass", "", id="never ends"),
+        pytest.param("import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True: pass", "", id="deaf"),
+        pytest.param("import os\nos._exit(0)", "", id="dies"),
+        pytest.param("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)", "", id="kills itself"),
+        pytest.param("get_ipython().kernel.do_shutdown(True)", None, id="restarts its kernel"),
+        pytest.param("while True: print('x' * 10_000)", None, id="prints for ever"),
+    ],
+)
+def test_a_cell_that_runs_wild_ends_the_run_and_what_was_written_before_counts(cell: str, printed: str | None) -> None:
+    answer = in_cell(executed, ["%%writefile before.txt\nkept", cell])
+    assert "before.txt" in answer["files"]
+    assert printed is None or answer["printed"][1] == printed
+    assert answer["left"] == []
+
+
+def test_a_cell_that_asks_raises_or_exits_does_not_keep_the_next_from_running() -> None:
+    cells = [
+        "input('how many points? ')",
+        "1 / 0",
+        "raise SystemExit(0)",
+        "raise KeyboardInterrupt",
+        "print('still here')",
+    ]
+    answer = in_cell(executed, cells)
+    assert "division by zero" in answer["printed"][1]
+    assert answer["printed"][-1] == "still here\n"
+
+
+def test_the_kernel_sees_no_hidden_suite_and_no_network() -> None:
+    code = """
+import socket
+try:
+    import autograder.suites.ch02_nodes.worlds
+    print("SEEN")
+except ImportError:
+    print("hidden")
+try:
+    socket.create_connection(("127.0.0.1", 22), timeout=1)
+except OSError as error:
+    print(error.errno in (101, 111))
+"""
+    assert in_cell(executed, [code])["printed"] == ["hidden\nTrue\n"]
