@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import textwrap
@@ -62,4 +63,4 @@ def marks(result: Result) -> str:
     """Return a result's marks as text; one that was not graded has none."""
     if result.status is Status.NOT_GRADED:
         return "not graded"
-    return f"{result.score:g}/{result.max_score:g} = {result.percent:.0f} %"
+    return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to all
