@@ -54,7 +54,7 @@ def load_map(
     if not (math.isfinite(tolerance) and tolerance >= 0.0):
         raise WorldError(f"a tolerance of {tolerance} m makes no sense", "Give 0 or more", path=str(path))
     described = read_map_file(path)
-    occupied, free = _cells(described, read_image(described.image))
+    occupied, free = _cells(described, _picture(described, Path(path)))
     edges = count_edges(occupied)
     if edges == 0:
         raise WorldError(
@@ -109,3 +109,13 @@ def _to_map(described: MapFile, cells: npt.NDArray[np.float64]) -> npt.NDArray[n
     cosine, sine = math.cos(yaw), math.sin(yaw)
     across, up = (cells * described.resolution).T
     return np.column_stack([x + cosine * across - sine * up, y + sine * across + cosine * up])
+
+
+def _picture(described: MapFile, path: Path) -> Shades:
+    """Read a map's picture; one that lies elsewhere is complained of under the map's name, which led there."""
+    try:
+        return read_image(described.image)
+    except WorldError as error:
+        if described.image.is_relative_to(path.parent):
+            raise
+        raise WorldError(f"its picture {described.image}: {error.problem}", error.remedy, path=str(path)) from None

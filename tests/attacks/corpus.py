@@ -27,7 +27,10 @@ STEAL = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
 for _root in ("{layout.SUITES}", "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
-    _paths += [_os.path.join(_folder, _name) for _folder, _, _names in _os.walk(_root) for _name in _names]
+    for _folder, _, _names in _os.walk(_root):
+        # A clone below /tmp shows there what every student may read; its secrets are looked for by name.
+        if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
+            _paths += [_os.path.join(_folder, _name) for _name in _names]
 for _path in _paths:
     try:
         with open(_path, errors="replace") as _stream:

@@ -23,9 +23,12 @@ FLAGS = (
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    """A Chromium from this machine (`CHROMIUM` names another one), closed at the end."""
+    """A Chromium from this machine (`CHROMIUM` names another one), closed at the end of the module.
+
+    While it is open, Playwright keeps an event loop running in this thread, in which no other test can start its own.
+    """
     executable = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
     if executable is None:
         pytest.skip("no Chromium on this machine: apt-get install -y chromium")

@@ -144,6 +144,7 @@ BAD_FIELDS: list[tuple[dict[str, str | None], str]] = [
     ({"resolution": None, "origin": None}, "'resolution', 'origin' missing"),
     ({"image": "nowhere.pgm"}, "nowhere.pgm: there is no such picture"),
     ({"image": "."}, "there is no such picture"),
+    ({"image": "/nowhere/map.pgm"}, "map.yaml: its picture /nowhere/map.pgm: there is no such picture"),
     ({"image": "[a, b]"}, "map.yaml:1: 'image' is not one value"),
     ({"image": "''"}, "map.yaml:1: 'image' is not one value"),
     ({"image": '"a\\0b.pgm"'}, "map.yaml:1: 'image' is not one value"),
