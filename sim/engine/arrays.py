@@ -1,4 +1,4 @@
-"""The array engine: a scan in some forty numpy calls, with the same bits as the loops.
+"""The array engine: a scan in some sixty numpy calls, with the same bits as the loops.
 
 The (wall, beam) pairs that meet are laid out in one flat list, about two for each beam, and their inverse ranges are
 computed and reduced in it. The few walls that are hard (in line with the sensor, grazed, or ending so near a beam
@@ -31,6 +31,8 @@ __all__ = ["coast", "fan", "finish", "gap", "nearest", "push", "rays"]
 BEARING_ERROR = 1e-12
 # Above so many walls it pays to leave out first those that are out of reach.
 WORTH_A_LOOK = 200
+# A run of beams is looked for where it begins, and a turn earlier too, as it may go on past the end of a turn.
+LAPS = np.array(((0.0,), (1.0,)))
 
 
 def fan(
@@ -46,9 +48,13 @@ def fan(
 ) -> Floats:
     """Return the ranges of a fan: see `loops.fan`, whose arguments and bits these are."""
     s, c = sincos(yaw)
-    turned = np.array((((c,), (s,)), ((-s,), (c,)))) * table[:, None]
-    directions = turned[0] + turned[1]
-    best = np.full(table.shape[1], NOTHING)
+    directions = c * table
+    dx, dy = directions
+    x, y = s * table
+    dx -= y
+    dy += x
+    best = np.empty(table.shape[1])
+    best.fill(NOTHING)
     if walls.shape[1] > WORTH_A_LOOK:
         x1, x2, y1, y2 = walls[:4]
         beside = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
@@ -65,66 +71,65 @@ def fan(
 def _walls_into(
     best: Floats, directions: Floats, walls: Floats, ox: float, oy: float, zero: float, per_radian: float, reach: float
 ) -> None:
-    size = walls.shape[1]
-    ends = np.empty((4, size))  # x of both ends, y of both ends, from the sensor
-    np.subtract(walls[:2], ox, out=ends[:2])
-    np.subtract(walls[2:4], oy, out=ends[2:])
     edge, length = walls[4:6], walls[6]
-    firsts = ends[::2]
-    cross = firsts * edge
+    ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # from the sensor
+    cross = ends[::2] * edge
     h = cross[0] - cross[1]
-    apart = np.abs(firsts)
-    near = apart[0] + apart[1]
-    far = np.minimum(near + length, reach)
+    apart = np.abs(ends)
+    apart = apart[:2] + apart[2:]
+    near = apart[0]
+    far = np.minimum(np.maximum(near, apart[1]), reach)
     far += SMALL
     near += far
     near *= far
     near *= length
     hard = near >= LIMIT * np.abs(h)
 
+    # bearings and runs are in turns at first, so that a lap is 1.0
+    count, size = len(best), len(h)
     full = TAU * per_radian
-    doubt = BEARING_ERROR * per_radian + 1e-12 * full
+    doubt = BEARING_ERROR / TAU + 1e-12
     bearings = np.arctan2(ends[2:], ends[:2])
-    bearings *= per_radian
+    bearings *= 1.0 / TAU
     swing = bearings[1] - bearings[0]
-    swing -= full * np.rint(swing * (1.0 / full))
+    swing -= np.rint(swing)
     low = np.minimum(swing, 0.0)
     low += bearings[0]
-    low -= zero * per_radian
-    runs = np.empty((2, 2, size))  # begin and minus end, on the first lap and on the second
-    begins = runs[0]
-    np.remainder(low, full, out=begins[0])
-    np.subtract(begins[0], full, out=begins[1])
-    np.add(np.abs(swing), begins, out=runs[1])
-    np.negative(runs[1], out=runs[1])
-    runs += doubt
+    low -= zero / TAU - doubt
+    low -= np.floor(low)
+    runs = np.empty((2, 2, size))  # begin, and from end to last beam, on each lap; the doubt is added to both
+    begins, rests = runs
+    np.subtract(low, LAPS, out=begins)
+    np.add(begins, np.abs(swing), out=rests)
+    np.subtract((count - 1) / full + 2.0 * doubt, rests, out=rests)
+    runs *= full
     inner = np.ceil(runs)
-    unsure = inner - runs > 1.0 - 2.0 * doubt
+    unsure = inner - runs > 1.0 - 2.0 * doubt * full
 
-    starts = np.maximum(inner[0], 0.0)
-    counts = np.maximum(inner[1], 1.0 - len(best))  # minus the last beams
-    counts += starts
-    np.subtract(1.0, counts, out=counts)
-    np.maximum(counts, 0.0, out=counts)
-    suspects = np.flatnonzero(unsure | hard)
+    outside = np.maximum(inner, 0.0).astype(np.intp)  # how many beams are before the run, and after it
+    starts = outside[0]
+    lengths = count - starts
+    lengths -= outside[1]
+    np.maximum(lengths, 0, out=lengths)
+    suspects = (unsure | hard).ravel().nonzero()[0]
     if len(suspects):
         for k in {place % size for place in suspects.tolist()}:
             # a hard wall that no beam meets is left out, unless the sensor may stand on it
-            met = counts[0, k] + counts[1, k] > 0.0 or abs(swing[k]) > 0.4 * full or h[k] == 0.0
+            met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
             if met or unsure[:, :, k].any():
-                counts[:, k] = 0.0
+                lengths[:, k] = 0
                 px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
                 wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)
-    lengths = counts.astype(np.intp).ravel()
-    shifts = starts.astype(np.intp).ravel()
+    h += NOTHING
+    factors = np.empty((2, 2, size))  # of x and y, the same on both laps
+    np.divide(edge[:, None], h, out=factors)
+    lengths, shifts = lengths.ravel(), starts.ravel()
     shifts += lengths
     shifts -= lengths.cumsum()
-    pairs = np.repeat(np.arange(2 * size), lengths)
-    beams = shifts.take(pairs)
-    beams += np.arange(len(pairs))
+    beams = shifts.repeat(lengths)
+    beams += np.arange(len(beams))
     inverse = directions.take(beams, axis=1)
-    factors = edge / (h + NOTHING)
-    inverse *= np.concatenate((factors, factors), axis=1).take(pairs, axis=1)
+    inverse *= factors.reshape(2, -1).repeat(lengths, axis=1)
     np.maximum.at(best, beams, inverse[0] - inverse[1])
 
 
