@@ -77,7 +77,7 @@ def test_the_path_is_the_closed_form_of_an_arc(engine: str, v: float, w: float, 
     pose = drive(replace(FREE, start=Pose(1.0, 2.0, 0.5)), Command(v, w), seconds, engine).robots[0].pose
     t = round(seconds * 1e9) / 1e9
     half = w * t / 2
-    chord = v * t * math.sin(half) / half if half else v * t
+    chord = v * t * (math.sin(half) / half) if half else v * t
     end = (1.0 + chord * math.cos(0.5 + half), 2.0 + chord * math.sin(0.5 + half))
     assert (pose.x, pose.y) == pytest.approx(end, abs=1e-11, rel=0)
     assert math.cos(pose.theta - (0.5 + w * t)) == pytest.approx(1.0)
