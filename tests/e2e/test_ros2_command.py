@@ -300,9 +300,14 @@ def test_topic_echo_of_a_silent_topic_times_out_and_of_an_unknown_one_fails(aren
 
 
 def test_topic_pub_once_waits_for_the_listener(arena: Arena) -> None:
-    with arena.start("topic", "echo", "--once", "/told", "geometry_msgs/msg/TwistStamped") as listener:
+    # The publisher may see the listener before the listener sees it; a reliable message is then sent again, as long as
+    # the publisher lives.
+    reliable = ("--qos-reliability", "reliable")
+    with arena.start("topic", "echo", "--once", *reliable, "/told", "geometry_msgs/msg/TwistStamped") as listener:
         values = "{header: {stamp: now, frame_id: base}, twist: {linear: {x: 0.5}}}"
-        told = arena.ros2("topic", "pub", "--once", "/told", "geometry_msgs/msg/TwistStamped", values)
+        told = arena.ros2(
+            "topic", "pub", "--once", "--keep-alive", "10", "/told", "geometry_msgs/msg/TwistStamped", values
+        )
         heard, _ = listener.communicate(timeout=PATIENCE)
     assert told.code == 0
     assert "publisher: beginning loop\npublishing #1: geometry_msgs.msg.TwistStamped(" in told.out
