@@ -48,7 +48,8 @@ for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json",
         pass
 for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/host.py"):
     try:
-        open(_path, "a").write("raise SystemExit(0)")
+        # The file itself: below /tmp, a new one of its name can be made in the sandbox's own /tmp, and harms nobody.
+        open(_path, "r+").write("raise SystemExit(0)")
         print("STOLEN", "/the grader's code is writable")
     except OSError:
         pass
