@@ -12,7 +12,8 @@ from autograder.lab.drive import LISTENS, OFFERS
 from autograder.suites import temporal
 from autograder.suites.ch02_nodes import terrain
 from autograder.visible.ch02_nodes.contract import EXECUTABLE, PACKAGE
-from sim import Pose, Recording, RobotSpec, RobotState, Simulation, State, World, clearance
+from sim import Recording, RobotSpec, Simulation, World, clearance
+from sim.rows import row_at, state_at
 
 GROUP = "worlds"
 SECONDS = 60.0
@@ -69,7 +70,4 @@ def _path_length(recording: Recording) -> float:
 
 
 def _nearest(recording: Recording, when: float) -> str:
-    row = int(abs(recording.times - when).argmin())
-    simulation, pose = recording.simulation, Pose(*recording.poses[row, 0].tolist())
-    robot = RobotState(simulation.robots[0].name, pose)
-    return clearance(simulation, State(0, int(recording.times_ns[row]), (robot,))).what
+    return clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
