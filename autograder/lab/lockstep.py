@@ -30,7 +30,7 @@ class LockstepLab(Lab):
         self._sent: dict[str, int] = {}
         self._baseline: dict[str, int] = {}
         self._patience = DELIVERY_SECONDS
-        self._stepper = Stepper(self._sandbox, self._program, python=sys.executable)
+        self._stepper = Stepper(self._sandbox, self._program, python=sys.executable, arguments=self._arguments)
         self._stepper.wait_ready()
 
     def __exit__(

@@ -72,8 +72,10 @@ class Lab(ABC):
         *,
         offers: dict[str, type] | None = None,
         listens: dict[str, type] | None = None,
+        arguments: tuple[str, ...] = (),
     ) -> None:
         self._program = workspace.executable(package, executable)
+        self._arguments = arguments
         # Two labs may be open at once, with programs that have the same names: each pair meets in a domain of its own.
         workspace = replace(workspace, domain=(workspace.domain + next(_LABS)) % DOMAINS)
         self._sandbox = workspace.sandbox()

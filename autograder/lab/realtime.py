@@ -23,7 +23,7 @@ class RealtimeLab(Lab):
 
     def _start(self) -> None:
         self._began = time.monotonic()
-        self._process = launch([sys.executable, str(self._program)], self._sandbox)
+        self._process = launch([sys.executable, str(self._program), *self._arguments], self._sandbox)
         if not self.wait_for(lambda: self._alive() and bool(self.nodes()), START_SECONDS):
             raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self._process.output))
 

@@ -20,11 +20,17 @@ from autograder.suites import load
 
 @dataclass(frozen=True)
 class Edit:
-    """One replacement in one file; `find` stands in it exactly once."""
+    """One change of one file of the reference.
+
+    Attributes:
+        file: its path below `src`.
+        find: a text that stands exactly once in the file, or None when the change is of the whole file.
+        replace: what it becomes; None for a file that is deleted.
+    """
 
     file: str
-    find: str
-    replace: str
+    find: str | None
+    replace: str | None
 
 
 @dataclass(frozen=True)
@@ -76,11 +82,29 @@ def lay_down(mutant: Mutant, packages: tuple[str, ...], folder: Path) -> None:
     """
     lay_down_reference(packages, folder)
     for edit in mutant.edits:
-        path = folder / "src" / edit.file
-        text = path.read_text()
-        if text.count(edit.find) != 1:
-            raise GraderError(f"mutant {mutant.id}: {edit.find!r} stands {text.count(edit.find)} times in {edit.file}")
-        path.write_text(text.replace(edit.find, edit.replace))
+        _apply(mutant, edit, folder / "src" / edit.file)
+
+
+def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
+    if edit.replace is None:
+        path.unlink()
+        return
+    if edit.find is None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(edit.replace)
+        return
+    text = path.read_text()
+    if text.count(edit.find) != 1:
+        raise GraderError(f"mutant {mutant.id}: {edit.find!r} stands {text.count(edit.find)} times in {edit.file}")
+    path.write_text(text.replace(edit.find, edit.replace))
+
+
+def _edit(entry: dict[str, Any], file: str) -> Edit:
+    """Read `{find, replace}`, `{write: the whole text}` or `{delete: true}`, each with a `file` of its own if need be."""
+    file = entry.get("file", file)
+    if entry.get("delete"):
+        return Edit(file, None, None)
+    return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
 
 
 def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
@@ -90,7 +114,7 @@ def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
     return Mutant(
         id=entry["id"],
         title=entry["title"],
-        edits=tuple(Edit(edit.get("file", file), edit["find"], edit["replace"]) for edit in entry["edits"]),
+        edits=tuple(_edit(edit, file) for edit in entry["edits"]),
         loses=loses,
         diagnosis=Kind(entry.get("diagnosis", "ok")),
         demo=entry.get("demo", False),

@@ -82,3 +82,15 @@ def test_mutants_have_names_of_their_own_and_every_check_is_lost_by_one() -> Non
         assert len({mutant.id for mutant in every}) == len(every)
         lost = frozenset().union(*(mutant.loses for mutant in every))
         assert lost == {check.id for check in suites.load(assignment).checks}
+
+
+def test_a_mutant_can_write_and_delete_whole_files(described: Path, tmp_path: Path) -> None:
+    described.write_text(
+        HEAD + "  - {id: a, title: t, loses: [nan], edits: [{file: my_robot_package/new/notes.txt, write: hello},"
+        " {delete: true}]}\n"
+    )
+    (mutant,) = mutants("02_nodes")
+    lay_down(mutant, ("my_robot_package",), tmp_path / "submission")
+    package = tmp_path / "submission" / "src" / "my_robot_package"
+    assert (package / "new" / "notes.txt").read_text() == "hello"
+    assert not (package / "setup.py").exists()
