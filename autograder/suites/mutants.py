@@ -100,7 +100,7 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
 
 
 def _edit(entry: dict[str, Any], file: str) -> Edit:
-    """Read `{find, replace}`, `{write: the whole text}` or `{delete: true}`, each with a `file` of its own if need be."""
+    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`, each with a `file` of its own if need be."""
     file = entry.get("file", file)
     if entry.get("delete"):
         return Edit(file, None, None)
