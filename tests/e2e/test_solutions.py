@@ -23,6 +23,7 @@ PACKAGES = ("my_robot_interfaces", "my_robot_package")
 FIRST_WORDS = {
     "basic_node": "Basic node initialised",
     "robot_controller": "Robot controller initialised",
+    "sensor_processor": "Sensor processor initialised",
     "status_publisher": "Status of MyRobot01 every 1 s",
 }
 
@@ -139,6 +140,6 @@ def test_every_launched_executable_exists(workspace: Workspace) -> None:
         for keyword in node.keywords
         if keyword.arg == "executable"
     ]
-    assert launched == ["robot_controller", "status_publisher"]
+    assert launched == ["robot_controller", "sensor_processor", "status_publisher"]
     for name in launched:
         assert os.access(workspace.executables / name, os.X_OK)

@@ -22,7 +22,7 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    """Return the two nodes that the robot runs."""
+    """Return the three nodes that the robot runs."""
     share = Path(get_package_share_directory('my_robot_package'))
     config = str(share / 'config' / 'robot_params.yaml')
     return LaunchDescription([
@@ -30,6 +30,12 @@ def generate_launch_description():
             package='my_robot_package',
             executable='robot_controller',
             name='robot_controller',
+            output='screen',
+        ),
+        Node(
+            package='my_robot_package',
+            executable='sensor_processor',
+            name='sensor_processor',
             output='screen',
         ),
         Node(

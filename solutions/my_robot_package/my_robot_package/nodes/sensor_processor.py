@@ -1,0 +1,73 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Publish each laser scan again, with the readings that are no measurement masked."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float32
+
+from my_robot_package.utils.data_processing import DataProcessor
+
+
+class SensorProcessor(Node):
+    """
+    Cleans scans for the nodes that act on them.
+
+    Subscribes to scan (sensor_msgs/LaserScan). Publishes scan_filtered
+    (sensor_msgs/LaserScan), with nan where a reading is no measurement, and mean_distance
+    (std_msgs/Float32), the mean of a scan's measured distances in metres.
+    """
+
+    def __init__(self, **kwargs):
+        """Create the endpoints; kwargs are handed on to Node."""
+        super().__init__('sensor_processor', **kwargs)
+        self._processor = DataProcessor()
+        self._filtered = self.create_publisher(
+            LaserScan, 'scan_filtered', qos_profile_sensor_data)
+        self._mean = self.create_publisher(Float32, 'mean_distance', 10)
+        self.create_subscription(LaserScan, 'scan', self._clean, qos_profile_sensor_data)
+        self.get_logger().info('Sensor processor initialised')
+
+    def _clean(self, scan):
+        before = len(self._processor.history)
+        scan.ranges = self._processor.process(scan.ranges, scan.range_min, scan.range_max)
+        self._filtered.publish(scan)
+        if len(self._processor.history) > before:
+            self._mean.publish(Float32(data=self._processor.history[-1]))
+
+
+def main(args=None):
+    """Run the node until SIGINT (Ctrl-C) or SIGTERM."""
+    rclpy.init(args=args)
+    node = None
+    try:
+        node = SensorProcessor()
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except RuntimeError:
+        if rclpy.ok():  # if not, a signal fell between two waits, and rclpy tripped over it
+            raise
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()
