@@ -51,7 +51,7 @@ def test_a_scan_comes_out_masked_and_as_long_as_it_went_in(world):
 
     world.until(arrived)
     assert scans[0].header.frame_id == 'laser'
-    assert scans[0].angle_increment == sent.angle_increment
+    assert scans[0].angle_increment == pytest.approx(sent.angle_increment)  # a float32 came back
     assert [isnan(reading) for reading in scans[0].ranges] == [False, True, False, True, False]
     assert scans[0].ranges[2] == inf
     assert means[0].data == pytest.approx(1.5)

@@ -12,5 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-
 """Plain Python that the nodes share; nothing here needs ROS to run."""

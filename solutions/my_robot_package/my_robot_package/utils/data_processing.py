@@ -51,7 +51,7 @@ class DataProcessor:
 
     @property
     def history(self) -> tuple[float, ...]:
-        """The mean distances of the newest scans in metres, oldest first."""
+        """Return the mean distances of the newest scans in metres, oldest first."""
         return tuple(self._means)
 
     def process(
