@@ -25,6 +25,7 @@ setup(
         'console_scripts': [
             'basic_node = my_robot_package.nodes.basic_node:main',
             'robot_controller = my_robot_package.nodes.robot_controller:main',
+            'robust_node = my_robot_package.nodes.robust_node:main',
             'sensor_processor = my_robot_package.nodes.sensor_processor:main',
             'status_publisher = my_robot_package.nodes.status_publisher:main',
         ],

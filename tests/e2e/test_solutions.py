@@ -23,6 +23,7 @@ PACKAGES = ("my_robot_interfaces", "my_robot_package")
 FIRST_WORDS = {
     "basic_node": "Basic node initialised",
     "robot_controller": "Robot controller initialised",
+    "robust_node": "Robust node initialised",
     "sensor_processor": "Sensor processor initialised",
     "status_publisher": "Status of MyRobot01 every 1 s",
 }

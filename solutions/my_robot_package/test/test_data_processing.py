@@ -53,4 +53,10 @@ def test_only_the_newest_means_are_kept():
     processor = DataProcessor(history=2)
     for ranges in ([1.0], [nan], [2.0], [3.0]):
         processor.process(ranges, **LIMITS)
-    assert processor.history == (2.0, 3.0)
+    assert list(processor.history) == [2.0, 3.0]
+    assert processor.average() == pytest.approx(2.5)
+
+
+def test_without_a_distance_there_is_no_average():
+    """Nothing seen is not zero metres."""
+    assert DataProcessor().average() is None

@@ -21,7 +21,10 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
 
-from my_robot_package.utils.data_processing import DataProcessor
+from my_robot_package.utils.data_processing import DataProcessor, mean_distance
+
+HISTORY = 10  # scans that the published mean is taken over
+WARN_PERIOD = 1.0  # s between two warnings
 
 
 class SensorProcessor(Node):
@@ -30,25 +33,39 @@ class SensorProcessor(Node):
 
     Subscribes to scan (sensor_msgs/LaserScan). Publishes scan_filtered
     (sensor_msgs/LaserScan), with nan where a reading is no measurement, and mean_distance
-    (std_msgs/Float32), the mean of a scan's measured distances in metres.
+    (std_msgs/Float32), how far away things were on average in the newest HISTORY scans.
     """
 
     def __init__(self, **kwargs):
-        """Create the endpoints; kwargs are handed on to Node."""
+        """
+        Name the node sensor_processor; create its publishers and its subscription.
+
+        scan and scan_filtered: qos_profile_sensor_data. mean_distance: a queue of 10.
+        kwargs are handed on to Node.
+        """
         super().__init__('sensor_processor', **kwargs)
-        self._processor = DataProcessor()
-        self._filtered = self.create_publisher(
+        self.processor = DataProcessor(HISTORY)
+        self.filtered_pub = self.create_publisher(
             LaserScan, 'scan_filtered', qos_profile_sensor_data)
-        self._mean = self.create_publisher(Float32, 'mean_distance', 10)
-        self.create_subscription(LaserScan, 'scan', self._clean, qos_profile_sensor_data)
+        self.mean_pub = self.create_publisher(Float32, 'mean_distance', 10)
+        self.create_subscription(
+            LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data)
         self.get_logger().info('Sensor processor initialised')
 
-    def _clean(self, scan):
-        before = len(self._processor.history)
-        scan.ranges = self._processor.process(scan.ranges, scan.range_min, scan.range_max)
-        self._filtered.publish(scan)
-        if len(self._processor.history) > before:
-            self._mean.publish(Float32(data=self._processor.history[-1]))
+    def scan_callback(self, msg):
+        """
+        Publish the scan with its ranges masked and all else as it came, then the mean.
+
+        A scan without a finite distance changes no mean: it is published masked, no mean
+        with it, and a warning says so, at most one every WARN_PERIOD.
+        """
+        msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max)
+        self.filtered_pub.publish(msg)
+        if mean_distance(msg.ranges) is None:
+            self.get_logger().warning(
+                'No distance in this scan', throttle_duration_sec=WARN_PERIOD)
+        else:
+            self.mean_pub.publish(Float32(data=self.processor.average()))
 
 
 def main(args=None):

@@ -18,7 +18,7 @@ from collections import deque
 from collections.abc import Sequence
 import math
 
-HISTORY = 100
+HISTORY = 100  # scans
 
 
 def mask_invalid(ranges: Sequence[float], range_min: float, range_max: float) -> list[float]:
@@ -43,16 +43,11 @@ def mean_distance(ranges: Sequence[float]) -> float | None:
 
 
 class DataProcessor:
-    """Cleans scans and remembers the mean distance of the newest ones."""
+    """Cleans scans, and remembers the mean distance of the newest ones."""
 
     def __init__(self, history: int = HISTORY) -> None:
-        """Keep the means of at most `history` scans."""
-        self._means: deque[float] = deque(maxlen=history)
-
-    @property
-    def history(self) -> tuple[float, ...]:
-        """Return the mean distances of the newest scans in metres, oldest first."""
-        return tuple(self._means)
+        """Remember the means of at most `history` scans; an old one makes room for a new."""
+        self.history: deque[float] = deque(maxlen=history)
 
     def process(
         self, ranges: Sequence[float], range_min: float, range_max: float
@@ -61,5 +56,9 @@ class DataProcessor:
         masked = mask_invalid(ranges, range_min, range_max)
         mean = mean_distance(masked)
         if mean is not None:
-            self._means.append(mean)
+            self.history.append(mean)
         return masked
+
+    def average(self) -> float | None:
+        """Return the mean of the remembered means in metres, or None when there is none."""
+        return mean_distance(self.history)

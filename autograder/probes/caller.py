@@ -1,0 +1,62 @@
+"""Runs inside the sandbox: calls functions and classes of a student's module as JSON says, and answers in JSON.
+
+    python caller.py ANSWER_FD
+
+The order comes on standard input, `{"module": ..., "steps": [...]}`; steps are as in `autograder.probes.calls`. The
+answer goes to a descriptor of its own, so that what the student's code prints is not part of it. It is a claim of the
+process that the student's code runs in; the trusted side compares its values and believes nothing else of it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import sys
+import traceback
+from typing import Any
+
+TEXT = 2000
+
+
+def main() -> None:
+    """Carry out the order of standard input."""
+    answer = os.fdopen(int(sys.argv[1]), "w", encoding="utf-8")
+    order = json.loads(sys.stdin.read())
+    try:
+        module = importlib.import_module(order["module"])
+    except Exception as error:
+        json.dump({"failed": _exception(error)}, answer)
+        return
+    made: list[Any] = []
+    outcomes = [_step(module, made, step) for step in order["steps"]]
+    json.dump({"outcomes": outcomes}, answer)
+    answer.flush()
+
+
+def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
+    arguments, keywords = step.get("args", []), step.get("kwargs", {})
+    target: Any = None
+    try:
+        owner = module if "on" not in step else made[step["on"]]
+        target = getattr(owner, step["name"])
+        value = target(*arguments, **keywords) if step["called"] else target
+    except Exception as error:
+        made.append(None)
+        return _exception(error)
+    made.append(value)
+    if step["keep"]:
+        return {"value": None}
+    try:
+        return {"value": json.loads(json.dumps(value)), "arguments": json.loads(json.dumps(arguments))}
+    except (TypeError, ValueError, RecursionError):
+        return {"type": type(value).__name__}
+
+
+def _exception(error: Exception) -> dict[str, Any]:
+    trace = "".join(traceback.format_exception(error))
+    return {"raised": type(error).__name__, "message": str(error)[:TEXT], "traceback": trace[-TEXT:]}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,204 @@
+"""Calls of a student's own functions: in the sandbox, JSON in and JSON out, bounded, compared by exact type.
+
+    outcomes = calls(workspace, "my_robot_package.utils.data_processing",
+                     call("mask_invalid", [1.0, nan], 0.1, 3.5),
+                     make("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1), look("history", on=1))
+
+Values are what JSON holds: bool, int, float (nan and infinities too), str, list, dict and None; a tuple comes back as a
+list. Anything else comes back as the name of its type. Each step has an outcome, in order.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import selectors
+import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from autograder.checks import CheckFailed
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.lab.workspace import Workspace
+from autograder.lockstep.failures import diagnose_crash, diagnose_ending
+from autograder.lockstep.protocol import Crash
+from autograder.sandbox import Limits, Mount
+from autograder.sandbox.launcher import launch
+
+CALLER = Path(__file__).with_name("caller.py")
+LIMITS = Limits(wall_seconds=30.0, cpu_seconds=30)
+MAX_ANSWER = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Step:
+    """One thing to do with the module, or with what an earlier step made (`on`, its number)."""
+
+    name: str
+    args: tuple[Any, ...] = ()
+    kwargs: tuple[tuple[str, Any], ...] = ()
+    on: int | None = None
+    called: bool = True
+    keep: bool = False
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a step.
+
+    Attributes:
+        value: what was returned, as JSON; None when there is none.
+        type: the name of the returned value's type when JSON cannot hold it; empty otherwise.
+        raised: the name of the exception; empty without one.
+        message: the exception's text.
+        arguments: the arguments after the call, to see whether it changed them.
+    """
+
+    value: Any = None
+    type: str = ""
+    raised: str = ""
+    message: str = ""
+    arguments: tuple[Any, ...] = ()
+
+
+def call(name: str, *args: Any, on: int | None = None, **kwargs: Any) -> Step:
+    """Call a function of the module, or a method of what step `on` made."""
+    return Step(name, args, tuple(kwargs.items()), on)
+
+
+def make(name: str, *args: Any, **kwargs: Any) -> Step:
+    """Make an object of a class of the module, for later steps."""
+    return Step(name, args, tuple(kwargs.items()), keep=True)
+
+
+def look(name: str, *, on: int | None = None) -> Step:
+    """Read an attribute of the module, or of what step `on` made."""
+    return Step(name, on=on, called=False)
+
+
+def calls(workspace: Workspace, module: str, *steps: Step) -> list[Outcome]:
+    """Carry the steps out in one sandboxed process.
+
+    Raises:
+        StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
+    """
+    spec = workspace.sandbox(LIMITS)
+    spec = replace(spec, network=False, mounts=(*spec.mounts, Mount(CALLER)))
+    order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
+    read_fd, write_fd = os.pipe()
+    order_read, order_write = os.pipe()
+    command = [sys.executable, "-c", _REDIRECT, str(order_read), str(CALLER), str(write_fd)]
+    try:
+        process = launch(command, spec, pass_fds=(write_fd, order_read))
+    finally:
+        os.close(write_fd)
+        os.close(order_read)
+    with process:
+        _write(order_write, order)
+        text = _read(read_fd, time.monotonic() + LIMITS.wall_seconds)
+        process.wait(LIMITS.wall_seconds)
+        answer = _parse(text)
+        if answer is None:
+            raise StudentError(diagnose_ending(process))
+    if "failed" in answer:
+        raise StudentError(_not_imported(module, answer["failed"]))
+    outcomes = answer.get("outcomes")
+    if not isinstance(outcomes, list) or len(outcomes) != len(steps):
+        raise StudentError(diagnose_ending(process))
+    return [_outcome(outcome) for outcome in outcomes]
+
+
+def value(outcome: Outcome, shown: str) -> Any:
+    """Return an outcome's value; `shown` is the call as the student would write it.
+
+    Raises:
+        CheckFailed: it raised, or returned what is no plain value.
+    """
+    if outcome.raised == "NotImplementedError":
+        raise CheckFailed(f"{shown} is still to be written.")
+    if outcome.raised:
+        raise CheckFailed(f"{shown} raised {outcome.raised}: {outcome.message}")
+    if outcome.type:
+        raise CheckFailed(f"{shown} returned a {outcome.type}, instead of plain Python numbers.")
+    return outcome.value
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether two JSON values are equal, nan to nan, an int never to a bool; floats to within 1e-9."""
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, bool) or isinstance(other, bool) or one is None or other is None:
+        return one is other
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return (math.isnan(one) and math.isnan(other)) or one == other or math.isclose(one, other, rel_tol=1e-9)
+    return type(one) is type(other) and one == other
+
+
+# The order is longer than a command line may be, and a sandboxed process has no standard input.
+_REDIRECT = (
+    "import os, runpy, sys; os.dup2(int(sys.argv[1]), 0); sys.argv = sys.argv[2:]; "
+    "runpy.run_path(sys.argv[0], run_name='__main__')"
+)
+
+
+def _plain(step: Step) -> dict[str, Any]:
+    plain: dict[str, Any] = {"name": step.name, "args": list(step.args), "kwargs": dict(step.kwargs)}
+    plain |= {"called": step.called, "keep": step.keep}
+    return plain if step.on is None else {**plain, "on": step.on}
+
+
+def _write(fd: int, text: str) -> None:
+    """Write the whole order; a process that has ended reads none of it."""
+    with os.fdopen(fd, "w", encoding="utf-8") as stream:
+        try:
+            stream.write(text)
+            stream.flush()
+        except BrokenPipeError:
+            return
+
+
+def _read(fd: int, deadline: float) -> bytes:
+    """Read to the end of the stream, to the deadline or to `MAX_ANSWER`."""
+    data = bytearray()
+    with selectors.DefaultSelector() as selector:
+        selector.register(fd, selectors.EVENT_READ)
+        while len(data) <= MAX_ANSWER and selector.select(max(0.0, deadline - time.monotonic())):
+            chunk = os.read(fd, 65536)
+            if not chunk:
+                break
+            data += chunk
+    os.close(fd)
+    return bytes(data)
+
+
+def _parse(text: bytes) -> dict[str, Any] | None:
+    try:
+        answer = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return answer if isinstance(answer, dict) else None
+
+
+def _not_imported(module: str, failed: object) -> Diagnosis:
+    data = failed if isinstance(failed, dict) else {}
+    kind, message, trace = (str(data.get(name, "")) for name in ("raised", "message", "traceback"))
+    if kind == "ModuleNotFoundError" and module in message:
+        sentence = f"The package installs no module {module}: look at its place, at __init__.py and at packages in "
+        return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}setup.py.", trace)
+    return diagnose_crash(Crash("import", kind, message, trace))
+
+
+def _outcome(data: object) -> Outcome:
+    data = data if isinstance(data, dict) else {}
+    arguments = data.get("arguments")
+    return Outcome(
+        value=data.get("value"),
+        type=str(data.get("type", "")),
+        raised=str(data.get("raised", "")),
+        message=str(data.get("message", ""))[:300],
+        arguments=tuple(arguments) if isinstance(arguments, list) else (),
+    )
