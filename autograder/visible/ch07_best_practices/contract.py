@@ -1,0 +1,23 @@
+"""The contracts of the exercises, in numbers, and the names that the checks use."""
+
+from __future__ import annotations
+
+PACKAGE = "my_robot_package"
+UTILS = "my_robot_package.utils.data_processing"
+ROBUST = "my_robot_package.nodes.robust_node"
+
+HISTORY = 10  # scans that mean_distance is taken over
+PERIOD = 1.0  # s between two readings of RobustNode
+MAX_ERRORS = 10
+TOLERANCE = 1e-4  # m: a range is a 32-bit float
+
+RULE_MASK = "A reading is kept when it is an infinity or range_min <= reading <= range_max; else it becomes nan."
+RULE_PLACE = "The place in the list is the bearing: the list that comes back is as long as the one that went in."
+RULE_MEAN = "math.isfinite(reading) leaves nan and both infinities out."
+RULE_STATUS = "ok; failed: N in a row; unstable: N in a row."
+REP_117 = "https://www.ros.org/reps/rep-0117.html"
+QOS = "https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html"
+LOGGING = "https://docs.ros.org/en/jazzy/Tutorials/Demos/Logging-and-logger-configuration.html"
+RANDOM = "https://docs.python.org/3/library/random.html#random.Random"
+ERRORS = "https://docs.python.org/3/tutorial/errors.html"
+DEQUE = "https://docs.python.org/3/library/collections.html#collections.deque"

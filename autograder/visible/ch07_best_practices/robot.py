@@ -1,0 +1,77 @@
+"""The student's two nodes in the lab: one is shown scans, the other is left to its failing sensor."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from itertools import islice
+
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float32, String
+
+from autograder.lab import LockstepLab, Workspace
+from autograder.visible.ch07_best_practices.contract import MAX_ERRORS, PACKAGE
+
+SCAN_SECONDS = 0.1
+WORDS = "/status"
+
+
+class Processor(LockstepLab):
+    """The lab of sensor_processor: it is shown one scan after the other."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__(
+            workspace,
+            PACKAGE,
+            "sensor_processor",
+            offers={"/scan": LaserScan},
+            listens={"/scan_filtered": LaserScan, "/mean_distance": Float32},
+        )
+
+    def show(self, *scans: LaserScan) -> tuple[list[LaserScan], list[float]]:
+        """Show scans, 0.1 s apart; return the filtered ones and the means that came."""
+        began = self.seconds
+        for scan in scans:
+            self.publish("/scan", scan)
+            self.run(SCAN_SECONDS)
+        filtered = [stamped.message for stamped in self.messages("/scan_filtered", since=began)]
+        return filtered, [stamped.message.data for stamped in self.messages("/mean_distance", since=began)]
+
+
+class Robust(LockstepLab):
+    """The lab of robust_node, started with parameters of the check's choice."""
+
+    def __init__(self, workspace: Workspace, **parameters: float) -> None:
+        arguments = [part for name, value in parameters.items() for part in ("-p", f"{name}:={value}")]
+        super().__init__(
+            workspace, PACKAGE, "robust_node", listens={WORDS: String}, arguments=("--ros-args", *arguments)
+        )
+
+    def hear(self, seconds: float) -> list[str]:
+        """Let it work for a while; return what it said on status."""
+        began = self.seconds
+        self.run(seconds)
+        return [stamped.message.data for stamped in self.messages(WORDS, since=began)]
+
+
+def expected(seed: int, probability: float, count: int, max_errors: int = MAX_ERRORS) -> list[str]:
+    """Return what a node with this seed says at its first `count` readings, by the contract."""
+    return list(islice(_words(random.Random(seed), probability, max_errors), count))
+
+
+def _words(generator: random.Random, probability: float, max_errors: int) -> Iterator[str]:
+    errors = 0
+    while True:
+        errors = errors + 1 if generator.random() < probability else 0
+        word = "unstable" if errors > max_errors else "failed"
+        yield f"{word}: {errors} in a row" if errors else "ok"
+
+
+def scan(ranges: list[float], *, range_min: float = 0.12, range_max: float = 3.5) -> LaserScan:
+    """Return a scan with these ranges, spread over a full turn."""
+    message = LaserScan(range_min=range_min, range_max=range_max, ranges=ranges)
+    message.header.frame_id = "laser"
+    message.angle_increment = 6.283185 / max(1, len(ranges))
+    message.angle_max = message.angle_increment * max(0, len(ranges) - 1)
+    message.scan_time = SCAN_SECONDS
+    return message
