@@ -24,6 +24,7 @@ setup(
     entry_points={
         'console_scripts': [
             'basic_node = my_robot_package.nodes.basic_node:main',
+            'configured_node = my_robot_package.nodes.configured_node:main',
             'robot_controller = my_robot_package.nodes.robot_controller:main',
             'robust_node = my_robot_package.nodes.robust_node:main',
             'sensor_processor = my_robot_package.nodes.sensor_processor:main',
