@@ -17,8 +17,8 @@
 from math import inf, nan
 from pathlib import Path
 
+from my_robot_package.configuration import contradiction
 from my_robot_package.nodes.configured_node import ConfiguredNode
-from my_robot_package.utils.configuration import contradiction
 import pytest
 from rclpy.exceptions import (
     InvalidParameterTypeException, InvalidParameterValueException,
@@ -27,7 +27,7 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import BatteryState, LaserScan
 import yaml
 
-FLEET = Path(__file__).parents[1] / 'config' / 'fleet_params.yaml'
+CONFIG = Path(__file__).parents[1] / 'config'
 
 
 @pytest.fixture
@@ -153,8 +153,17 @@ def test_it_does_not_start_with_values_that_make_no_sense(make, values, error):
 @pytest.mark.parametrize('name', ['scout', 'porter', 'another'])
 def test_the_fleet_file_serves_each_robot(make, name):
     """The shared values, and over them the robot's own."""
-    node = make('--ros-args', '-r', f'__node:={name}', '--params-file', str(FLEET))
-    config = yaml.safe_load(FLEET.read_text())
+    path = CONFIG / 'fleet_params.yaml'
+    node = make('--ros-args', '-r', f'__node:={name}', '--params-file', str(path))
+    config = yaml.safe_load(path.read_text())
     own = config.get(name, {'ros__parameters': {}})['ros__parameters']
     expected = {**config['/**']['ros__parameters'], **own}
     assert {parameter: node.value(parameter) for parameter in expected} == expected
+
+
+def test_the_file_for_one_robot_names_only_declared_parameters(make):
+    """A name that the node does not declare would be ignored without a word."""
+    path = CONFIG / 'configured_node.yaml'
+    node = make('--ros-args', '--params-file', str(path))
+    values = yaml.safe_load(path.read_text())[node.get_name()]['ros__parameters']
+    assert {name: node.value(name) for name in values} == values

@@ -22,7 +22,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from my_robot_package.utils.configuration import contradiction, declare_configuration
+from my_robot_package.configuration import contradiction, declare_configuration
 
 SCAN_TIMEOUT = 0.5  # s without a scan, after which the robot counts as blind
 
