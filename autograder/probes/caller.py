@@ -9,7 +9,9 @@ process that the student's code runs in; the trusted side compares its values an
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import io
 import json
 import os
 import sys
@@ -17,6 +19,7 @@ import traceback
 from typing import Any
 
 TEXT = 2000
+REFERENCE = "$made"
 
 
 def main() -> None:
@@ -35,22 +38,30 @@ def main() -> None:
 
 
 def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
-    arguments, keywords = step.get("args", []), step.get("kwargs", {})
-    target: Any = None
+    arguments = [_resolved(made, value) for value in step["args"]]
+    keywords = {name: _resolved(made, value) for name, value in step["kwargs"].items()}
+    printed = io.StringIO()
     try:
-        owner = module if "on" not in step else made[step["on"]]
-        target = getattr(owner, step["name"])
-        value = target(*arguments, **keywords) if step["called"] else target
+        owner = importlib.import_module(step["module"]) if step["module"] else module
+        target = getattr(owner if step["on"] is None else made[step["on"]], step["name"])
+        with contextlib.redirect_stdout(printed):
+            value = target(*arguments, **keywords) if step["called"] else target
     except Exception as error:
         made.append(None)
         return _exception(error)
     made.append(value)
+    outcome: dict[str, Any] = {"printed": printed.getvalue()[:TEXT]}
     if step["keep"]:
-        return {"value": None}
+        return outcome
     try:
-        return {"value": json.loads(json.dumps(value)), "arguments": json.loads(json.dumps(arguments))}
+        return {**outcome, "value": json.loads(json.dumps(value)), "arguments": json.loads(json.dumps(arguments))}
     except (TypeError, ValueError, RecursionError):
-        return {"type": type(value).__name__}
+        return {**outcome, "type": type(value).__name__}
+
+
+def _resolved(made: list[Any], value: Any) -> Any:
+    """Return the argument, or what an earlier step made where it refers to one."""
+    return made[value[REFERENCE]] if isinstance(value, dict) and REFERENCE in value else value
 
 
 def _exception(error: Exception) -> dict[str, Any]:

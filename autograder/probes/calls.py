@@ -16,7 +16,7 @@ import os
 import selectors
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ from autograder.lockstep.protocol import Crash
 from autograder.sandbox import Limits, Mount
 from autograder.sandbox.launcher import launch
 
+REFERENCE = "$made"  # as in caller.py, which runs alone in the sandbox
 CALLER = Path(__file__).with_name("caller.py")
 LIMITS = Limits(wall_seconds=30.0, cpu_seconds=30)
 MAX_ANSWER = 1024 * 1024
@@ -36,12 +37,23 @@ MAX_ANSWER = 1024 * 1024
 
 @dataclass(frozen=True)
 class Step:
-    """One thing to do with the module, or with what an earlier step made (`on`, its number)."""
+    """One thing to do.
+
+    Attributes:
+        name: a function, class or attribute.
+        args: positional arguments, JSON or `made(N)`.
+        kwargs: keyword arguments likewise.
+        on: the number of the step whose object has `name`; None for the module.
+        module: another module that has `name`, such as `random`; None for the student's.
+        called: whether it is called, or only read.
+        keep: whether the value is kept for later steps and not answered.
+    """
 
     name: str
     args: tuple[Any, ...] = ()
     kwargs: tuple[tuple[str, Any], ...] = ()
     on: int | None = None
+    module: str | None = None
     called: bool = True
     keep: bool = False
 
@@ -56,6 +68,7 @@ class Outcome:
         raised: the name of the exception; empty without one.
         message: the exception's text.
         arguments: the arguments after the call, to see whether it changed them.
+        printed: what it printed.
     """
 
     value: Any = None
@@ -63,16 +76,22 @@ class Outcome:
     raised: str = ""
     message: str = ""
     arguments: tuple[Any, ...] = ()
+    printed: str = ""
 
 
-def call(name: str, *args: Any, on: int | None = None, **kwargs: Any) -> Step:
-    """Call a function of the module, or a method of what step `on` made."""
-    return Step(name, args, tuple(kwargs.items()), on)
+def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
+    """Call a function of a module, or a method of what step `on` made."""
+    return Step(name, args, tuple(kwargs.items()), on, module)
 
 
-def make(name: str, *args: Any, **kwargs: Any) -> Step:
-    """Make an object of a class of the module, for later steps."""
-    return Step(name, args, tuple(kwargs.items()), keep=True)
+def make(name: str, *args: Any, module: str | None = None, **kwargs: Any) -> Step:
+    """Make an object of a class of a module, for later steps."""
+    return Step(name, args, tuple(kwargs.items()), module=module, keep=True)
+
+
+def made(number: int) -> dict[str, int]:
+    """Stand for what step `number` made, as an argument."""
+    return {REFERENCE: number}
 
 
 def look(name: str, *, on: int | None = None) -> Step:
@@ -80,14 +99,14 @@ def look(name: str, *, on: int | None = None) -> Step:
     return Step(name, on=on, called=False)
 
 
-def calls(workspace: Workspace, module: str, *steps: Step) -> list[Outcome]:
-    """Carry the steps out in one sandboxed process.
+def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[Outcome]:
+    """Carry the steps out in one sandboxed process; `network` is for steps that need ROS.
 
     Raises:
         StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
     """
     spec = workspace.sandbox(LIMITS)
-    spec = replace(spec, network=False, mounts=(*spec.mounts, Mount(CALLER)))
+    spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(CALLER)))
     order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
     read_fd, write_fd = os.pipe()
     order_read, order_write = os.pipe()
@@ -146,9 +165,7 @@ _REDIRECT = (
 
 
 def _plain(step: Step) -> dict[str, Any]:
-    plain: dict[str, Any] = {"name": step.name, "args": list(step.args), "kwargs": dict(step.kwargs)}
-    plain |= {"called": step.called, "keep": step.keep}
-    return plain if step.on is None else {**plain, "on": step.on}
+    return {**asdict(step), "kwargs": dict(step.kwargs)}
 
 
 def _write(fd: int, text: str) -> None:
@@ -201,4 +218,5 @@ def _outcome(data: object) -> Outcome:
         raised=str(data.get("raised", "")),
         message=str(data.get("message", ""))[:300],
         arguments=tuple(arguments) if isinstance(arguments, list) else (),
+        printed=str(data.get("printed", "")),
     )
