@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 import re
@@ -34,7 +35,7 @@ from autograder.sandbox.process import measure
 
 LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
-_STEP = 0.02  # s between two looks at a condition while nothing arrives
+_STEP = 0.05  # s between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
 _LABS = itertools.count(1)
 
@@ -149,10 +150,8 @@ class LaunchLab:
     @property
     def status(self) -> int | None:
         """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
-        try:
+        with contextlib.suppress(BlockingIOError):
             self._said += os.read(self._pipe, 64)
-        except BlockingIOError:
-            pass
         return int(self._said) if self._said.endswith(b"\n") else None
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:

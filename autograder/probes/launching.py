@@ -27,6 +27,8 @@ _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>\[.*\])")
 _QUOTED = re.compile(r"'([^']*)'")
 _CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+)")
+_STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
+_ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
 _DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
 _RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
 
@@ -171,6 +173,16 @@ def expect_stopped(stop: Stop, status: int | None = 0) -> None:
     expect(status is None or stop.status == status, f"It ended with exit status {stop.status}, instead of {status}.")
 
 
+def started(output: str) -> list[str]:
+    """Return the programs that a launch says it has started, in order, without their numbers."""
+    return [match["name"] for match in _STARTED.finditer(output)]
+
+
+def ended(output: str) -> list[str]:
+    """Return the programs that a launch says have ended, in order, without their numbers."""
+    return [match["name"] for match in _ENDED.finditer(output)]
+
+
 def trouble(output: str) -> str:
     """Return in a line what went wrong by the words of a launch; empty if it names nothing."""
     if caught := _CAUGHT.search(output):
@@ -203,7 +215,7 @@ def with_files(workspace: Workspace, name: str, package: str, files: Mapping[str
         package: the package.
         files: texts by path below `share/PACKAGE`.
     """
-    root = workspace.scratch / "copies" / name
+    root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
     shutil.copytree(workspace.install, root / "install", symlinks=True)
     for path, text in files.items():
         target = root / "install" / package / "share" / package / path

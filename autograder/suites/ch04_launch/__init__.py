@@ -1,0 +1,4 @@
+"""The hidden suite of 04_launch: launch files for one robot, for two, and for a start that waits for a self-test."""
+
+PACKAGES = ("my_robot_bringup",)
+MODULES = ("robot", "fleet", "safe_start")

@@ -1,0 +1,60 @@
+"""Hidden inputs: what is written into the parameters file, and which arguments are given."""
+
+from __future__ import annotations
+
+import random
+import re
+from dataclasses import dataclass
+
+NAMES = ("alba", "bruno", "cleo", "dora", "emil", "fritz", "gina", "hugo")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Drawn once a run.
+
+    Attributes:
+        file: values by name for the parameters file.
+        speed: of a robot, m/s, with a fraction.
+        whole_speed: of a robot, m/s, written without a point.
+        number_name: a robot's name that looks like a number.
+        names: of two robots.
+        enough: a battery that is good enough, in percent, with a fraction.
+        whole_battery: one that is good enough, written without a point.
+        empty: one that is not.
+    """
+
+    file: dict[str, float]
+    speed: float
+    whole_speed: int
+    number_name: str
+    names: tuple[str, str]
+    enough: float
+    whole_battery: int
+    empty: float
+
+
+def draw_inputs(draw: random.Random) -> Inputs:
+    """Draw the inputs of one run."""
+    first, second = draw.sample(NAMES, 2)
+    return Inputs(
+        file={
+            "speed": round(draw.uniform(0.5, 0.9), 3),
+            "turn_rate": round(draw.uniform(-0.9, -0.1), 3),
+            "report_period": round(draw.uniform(0.2, 0.4), 3),
+        },
+        speed=round(draw.uniform(0.21, 0.45), 3),
+        whole_speed=draw.randint(1, 3),
+        number_name=str(draw.randint(10, 99)),
+        names=(first, second),
+        enough=draw.randint(21, 98) + 0.5,
+        whole_battery=draw.randint(21, 99),
+        empty=draw.randint(1, 18) + 0.5,
+    )
+
+
+def with_values(text: str, values: dict[str, float]) -> str:
+    """Return a parameters file with other numbers in it; what it does not have is not added."""
+    for name, value in values.items():
+        text = re.sub(rf"(?m)^(\s+{name}:\s*)[-+.\deE]+", rf"\g<1>{value}", text)
+    return text

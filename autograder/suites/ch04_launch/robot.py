@@ -1,0 +1,175 @@
+"""One robot: arguments, parameters, a condition, a clean end."""
+
+from __future__ import annotations
+
+from autograder.checks import check, expect
+from autograder.lab import Workspace
+from autograder.lab.launching import LaunchLab
+from autograder.probes import launching
+from autograder.suites.ch04_launch.inputs import Inputs
+from autograder.suites.ch04_launch.shared import Shared
+from autograder.visible.ch04_launch import contract
+from autograder.visible.ch04_launch.contract import DRIVER, PACKAGE, REPORTER, ROBOT
+
+GROUP = "robot"
+TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
+
+
+@check(
+    points=2,
+    group=GROUP,
+    hints=(
+        "ros2 launch -s my_robot_bringup robot.launch.py shows what you have declared.",
+        "DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_arguments(workspace: Workspace) -> None:
+    """robot.launch.py declares robot_name, speed and report, each with its default and a description."""
+    arguments = launching.shown_arguments(workspace, PACKAGE, ROBOT)
+    for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
+        launching.expect_argument(arguments, name, default)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("arguments",),
+    hints=(
+        "DeclareLaunchArgument takes choices=[...], a list of texts.",
+        "A value that is none of the choices ends the launch before anything is started.",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_choices(workspace: Workspace) -> None:
+    """Report can be true or false, and nothing else."""
+    found = launching.shown_arguments(workspace, PACKAGE, ROBOT)["report"].choices
+    shown = ", ".join(found) if found else "any value"
+    expect(sorted(found) == ["false", "true"], f"The argument report takes {shown}, instead of true and false.")
+    with LaunchLab(workspace, PACKAGE, ROBOT, {"report": "maybe"}) as lab:
+        ended = lab.wait_for(lambda: lab.status is not None, launching.START_SECONDS)
+        expect(ended and lab.status != 0, "With report:=maybe, the launch goes on as if nothing were wrong.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    hints=(
+        "Run the launch file in the notebook and read its first lines that say ERROR.",
+        "Node(package='my_robot_bringup', executable='driver', name='driver', ...), and the same for the reporter.",
+    ),
+    doc=contract.LAUNCH,
+)
+def test_starts(shared: Shared) -> None:
+    """robot.launch.py starts driver and reporter, and nothing else."""
+    launching.expect_nodes(shared.robot(), [DRIVER, REPORTER])
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("starts",),
+    hints=("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED),
+)
+def test_defaults(shared: Shared) -> None:
+    """Without arguments, the robot is called robot1 and drives at 0.2 m/s, whatever the parameters file says."""
+    launching.expect_parameters(shared.robot(), DRIVER, {"speed": contract.SPEED})
+    launching.expect_parameters(shared.robot(), REPORTER, {"robot_name": contract.ROBOT_NAME})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=(
+        "config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').",
+        "parameters=[config, {...}] is a list: first the file, then what has to win over it.",
+    ),
+    doc=contract.LARGE,
+)
+def test_parameters_file(shared: Shared, inputs: Inputs) -> None:
+    """Both nodes get the parameters of config/robot.yaml."""
+    launching.expect_parameters(shared.robot(), DRIVER, {"turn_rate": inputs.file["turn_rate"]})
+    launching.expect_parameters(shared.robot(), REPORTER, {"report_period": inputs.file["report_period"]})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_speed(shared: Shared, inputs: Inputs) -> None:
+    """The argument speed reaches the driver."""
+    lab = shared.robot(speed=inputs.speed, robot_name=inputs.number_name)
+    launching.settle(lab, [DRIVER, REPORTER])
+    launching.expect_parameters(lab, DRIVER, {"speed": inputs.speed})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_name(shared: Shared, inputs: Inputs) -> None:
+    """The argument robot_name reaches the reporter, even if it looks like a number."""
+    lab = shared.robot(speed=inputs.speed, robot_name=inputs.number_name)
+    nodes = launching.settle(lab, [DRIVER, REPORTER])
+    expect(
+        REPORTER in nodes,
+        f"With robot_name:={inputs.number_name}, the reporter does not run. {launching.trouble(lab.output)}",
+    )
+    launching.expect_parameters(lab, REPORTER, {"robot_name": inputs.number_name})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=(
+        "condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.",
+        "UnlessCondition is the other way round.",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_quiet(shared: Shared, inputs: Inputs) -> None:
+    """With report:=false, the reporter is not started."""
+    lab = shared.robot(report="false", speed=inputs.whole_speed)
+    nodes = launching.settle(lab, [DRIVER])
+    expect(
+        REPORTER not in nodes and "reporter" not in launching.started(lab.output),
+        "With report:=false, the reporter is started all the same.",
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("speed",),
+    hints=("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED),
+)
+def test_whole_speed(shared: Shared, inputs: Inputs) -> None:
+    """speed:=1, without a point, is a speed too."""
+    lab = shared.robot(report="false", speed=inputs.whole_speed)
+    nodes = launching.settle(lab, [DRIVER])
+    expect(
+        DRIVER in nodes, f"With speed:={inputs.whole_speed}, the driver does not run. {launching.trouble(lab.output)}"
+    )
+    launching.expect_parameters(lab, DRIVER, {"speed": float(inputs.whole_speed)})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=(
+        "What a launch file starts with Node(...) ends with the launch.",
+        "A program that the launch file starts by other means, such as subprocess, is nobody's child in the end.",
+    ),
+)
+def test_clean_stop(shared: Shared) -> None:
+    """Ctrl-C ends both nodes cleanly and leaves nothing behind."""
+    launching.expect_clean_stop(shared.robot())

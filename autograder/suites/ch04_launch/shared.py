@@ -1,0 +1,72 @@
+"""Launches that several checks look at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+
+from std_msgs.msg import String
+
+from autograder.lab import Workspace
+from autograder.lab.launching import LaunchLab
+from autograder.probes.launching import with_files
+from autograder.suites.ch04_launch import given
+from autograder.suites.ch04_launch.inputs import Inputs, with_values
+from autograder.visible.ch04_launch.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
+
+CONFIG = "config/robot.yaml"
+GIVEN = {"like": given.LIKE_THE_REFERENCE, "wheels": given.WITH_ONE_NODE}
+
+
+class Shared:
+    """Starts each launch once, when it is first asked for, and ends all at the end.
+
+    One robot is launched with other numbers in its parameters file. Two robots include a robot.launch.py of the
+    grader's own, so that a mistake in the student's counts once.
+    """
+
+    def __init__(self, workspace: Workspace, inputs: Inputs) -> None:
+        self._workspace, self._inputs = workspace, inputs
+        self._stack = ExitStack()
+        self._labs: dict[str, LaunchLab] = {}
+        self._copies: dict[str, Workspace] = {}
+
+    def robot(self, **arguments: object) -> LaunchLab:
+        """Return robot.launch.py as it runs with these arguments."""
+        return self._lab(ROBOT, arguments, {})
+
+    def fleet(self, **arguments: object) -> LaunchLab:
+        """Return two_robots.launch.py as it runs with these arguments."""
+        return self._lab(FLEET, arguments, {SHARED: String}, robot="like")
+
+    def renamed_fleet(self) -> LaunchLab:
+        """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
+        return self._lab(FLEET, {}, {}, robot="wheels")
+
+    def safe(self, **arguments: object) -> LaunchLab:
+        """Return safe_start.launch.py as it runs with these arguments."""
+        return self._lab(SAFE, arguments, {})
+
+    def close(self) -> None:
+        """End what still runs."""
+        self._stack.close()
+
+    def _lab(
+        self, file: str, arguments: Mapping[str, object], listens: Mapping[str, type], robot: str | None = None
+    ) -> LaunchLab:
+        key = f"{file} {robot} {sorted(arguments.items())}"
+        if key not in self._labs:
+            words = {name: str(value) for name, value in arguments.items()}
+            lab = LaunchLab(self._copy(file, robot), PACKAGE, file, words, listens=listens)
+            self._labs[key] = self._stack.enter_context(lab)
+        return self._labs[key]
+
+    def _copy(self, file: str, robot: str | None) -> Workspace:
+        name = robot or file.partition(".")[0]
+        if name not in self._copies:
+            files = {} if robot is None else {f"launch/{ROBOT}": GIVEN[robot]}
+            config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
+            if config.is_file():
+                files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)
+            self._copies[name] = with_files(self._workspace, name, PACKAGE, files)
+        return self._copies[name]

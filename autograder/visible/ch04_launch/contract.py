@@ -1,0 +1,23 @@
+"""The contract of the three exercises, and the names that the checks use."""
+
+from __future__ import annotations
+
+PACKAGE = "my_robot_bringup"
+ROBOT = "robot.launch.py"
+FLEET = "two_robots.launch.py"
+SAFE = "safe_start.launch.py"
+
+DRIVER, REPORTER = "/driver", "/reporter"
+SHARED = "/fleet/status"
+ROBOT_NAME, SPEED = "robot1", 0.2  # the defaults of robot.launch.py
+FIRST, SECOND = "robot1", "robot2"  # those of two_robots.launch.py
+
+LAUNCH = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
+SUBSTITUTIONS = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-Substitutions.html"
+EVENTS = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-Event-Handlers.html"
+LARGE = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-ROS2-Launch-For-Large-Projects.html"
+
+
+def in_spaces(*spaces: str) -> list[str]:
+    """Return the full names of the nodes of robots in these namespaces."""
+    return sorted(f"/{space}{node}" for space in spaces for node in (DRIVER, REPORTER))

@@ -1,0 +1,109 @@
+"""What the three launch files start, at once."""
+
+from __future__ import annotations
+
+from std_msgs.msg import String
+
+from autograder.checks import Visibility, check, expect
+from autograder.lab import Workspace
+from autograder.lab.launching import LaunchLab
+from autograder.probes import launching
+from autograder.visible.ch04_launch import contract
+from autograder.visible.ch04_launch.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
+
+SEEN = Visibility.VISIBLE
+HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    hints=(
+        "DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.",
+        "The names are robot_name, speed and report.",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_arguments(workspace: Workspace) -> None:
+    """robot.launch.py declares robot_name, speed and report."""
+    arguments = launching.shown_arguments(workspace, PACKAGE, ROBOT)
+    for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
+        launching.expect_argument(arguments, name, default)
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    depends=("arguments",),
+    hints=(
+        "Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).",
+        "parameters=[config, {'speed': speed}]: what stands later wins.",
+    ),
+    doc=contract.LAUNCH,
+)
+def test_robot(workspace: Workspace) -> None:
+    """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
+    with LaunchLab(workspace, PACKAGE, ROBOT, {"speed": "0.35", "robot_name": "Zoe"}) as lab:
+        launching.expect_nodes(lab, [DRIVER, REPORTER])
+        launching.expect_parameters(lab, DRIVER, {"speed": 0.35})
+        launching.expect_parameters(lab, REPORTER, {"robot_name": "Zoe"})
+        launching.expect_clean_stop(lab)
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    depends=("robot",),
+    hints=("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.",),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_quiet(workspace: Workspace) -> None:
+    """With report:=false, robot.launch.py starts the driver alone."""
+    with LaunchLab(workspace, PACKAGE, ROBOT, {"report": "false"}) as lab:
+        launching.expect_nodes(lab, [DRIVER])
+
+
+@check(
+    points=1,
+    group="fleet",
+    visibility=SEEN,
+    hints=(
+        "GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])",
+        "SetRemap must stand before the include: it holds for what follows it in its group.",
+    ),
+    doc=contract.LARGE,
+)
+def test_two_robots(workspace: Workspace) -> None:
+    """two_robots.launch.py starts two robots, and both report on /fleet/status."""
+    with LaunchLab(workspace, PACKAGE, FLEET, listens={SHARED: String}) as lab:
+        launching.expect_nodes(lab, contract.in_spaces(contract.FIRST, contract.SECOND))
+        lab.wait_for(lambda: len(speakers(lab)) == 2, HEAR_SECONDS)
+        expect(len(speakers(lab)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(lab))) or 'nobody'} was heard.")
+
+
+@check(
+    points=1,
+    group="safe_start",
+    visibility=SEEN,
+    hints=(
+        "The driver is in no list but the one that after_self_test returns.",
+        "event.returncode is the exit status of the process that has ended; 0 is success.",
+    ),
+    doc=contract.EVENTS,
+)
+def test_safe_start(workspace: Workspace) -> None:
+    """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
+    with LaunchLab(workspace, PACKAGE, SAFE, {"battery": "90"}) as lab:
+        launching.expect_nodes(lab, [DRIVER, REPORTER])
+    with LaunchLab(workspace, PACKAGE, SAFE, {"battery": "5"}) as lab:
+        ended = lab.wait_for(lambda: lab.status is not None, launching.START_SECONDS)
+        expect("driver" not in launching.started(lab.output), "With the battery at 5 %, the driver was started.")
+        expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+
+
+def speakers(lab: LaunchLab) -> set[str]:
+    """Return the names of the robots that have reported on the shared topic."""
+    return {str(message.data).split(" ", maxsplit=1)[0] for message in lab.messages(SHARED)}
