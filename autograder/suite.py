@@ -2,6 +2,10 @@
 
 A suite's package says in `PACKAGES` which ROS 2 packages a submission must bring, and in `MODULES` which of its modules
 hold checks, in the order in which they are run.
+
+A suite that looks at the sources, too, says `BUILD_MAY_FAIL = True`: then a package that is missing or does not build
+does not end the grading. It is something that the checks see, by the fixture `builds`, and those that need a built
+package depend on one that asks for it.
 """
 
 from __future__ import annotations
@@ -26,6 +30,7 @@ class Suite:
         files: its modules, in the order in which they are run.
         checks: every check in that order.
         version: changes whenever a file of the suite does.
+        build_may_fail: whether its checks are run even if a package is missing or does not build.
     """
 
     assignment: str
@@ -33,6 +38,7 @@ class Suite:
     files: tuple[Path, ...]
     checks: tuple[Check, ...]
     version: str
+    build_may_fail: bool = False
 
     @property
     def max_score(self) -> float:
@@ -69,7 +75,14 @@ def read(home: str, assignment: str) -> Suite:
     digest = hashlib.sha256()
     for path in sorted(Path(inspect.getfile(described)).parent.glob("*.py")):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
-    return Suite(assignment, tuple(described.PACKAGES), files, tuple(checks), digest.hexdigest()[:12])
+    return Suite(
+        assignment,
+        tuple(described.PACKAGES),
+        files,
+        tuple(checks),
+        digest.hexdigest()[:12],
+        getattr(described, "BUILD_MAY_FAIL", False),
+    )
 
 
 def names(home: str) -> list[str]:

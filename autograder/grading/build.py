@@ -21,38 +21,43 @@ MAX_MANIFEST = 64 * 1024
 LOG_LINES = 40
 
 
-def find_packages(source: Path) -> dict[str, Path]:
-    """Return the packages below `source`, by the name in their package.xml.
-
-    Raises:
-        StudentError: a package.xml cannot be read.
-    """
+def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
+    """Return the packages by name, and what is wrong with each folder whose package.xml cannot be read."""
     found: dict[str, Path] = {}
+    broken: dict[Path, str] = {}
     for manifest in sorted(source.rglob("package.xml")):
         where = manifest.relative_to(source)
         if manifest.stat().st_size > MAX_MANIFEST:
-            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, f"src/{where} is far larger than a manifest."))
+            broken[manifest.parent] = f"src/{where} is far larger than a manifest."
+            continue
         try:
-            name = ET.fromstring(manifest.read_bytes()).findtext("name", "").strip()
+            found[ET.fromstring(manifest.read_bytes()).findtext("name", "").strip()] = manifest.parent
         except ET.ParseError as error:
             sentence = f"src/{where} is no well-formed XML ({error}): mend that line, colcon cannot read the package."
-            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
-        found[name] = manifest.parent
-    return found
+            broken[manifest.parent] = sentence
+    return found, broken
 
 
-def require_packages(source: Path, wanted: tuple[str, ...]) -> None:
+def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> None:
     """See that the wanted packages are there and whole enough for colcon to build.
 
+    Args:
+        source: the workspace's `src` folder.
+        wanted: the packages' names.
+        whole: whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
+
     Raises:
-        StudentError: one is missing, or lacks a file that every Python package of ROS 2 has.
+        StudentError: one is missing, cannot be read, or lacks such a file.
     """
-    found = find_packages(source) if source.is_dir() else {}
+    found, broken = find_packages(source)
     for name in wanted:
         folder = found.get(name)
+        if folder is None and broken:
+            sentence = broken.get(source / name, next(iter(broken.values())))
+            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
         if folder is None:
             raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, found)))
-        if (folder / "CMakeLists.txt").is_file():
+        if not whole or (folder / "CMakeLists.txt").is_file():
             continue
         for part in ("setup.py", "setup.cfg", f"resource/{name}", f"{name}/__init__.py"):
             if not (folder / part).exists():
@@ -67,7 +72,7 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
         StudentError: it did not build; the detail holds the end of colcon's output.
     """
     started = time.monotonic()
-    packages = tuple(sorted(find_packages(workspace.root / "src")))
+    packages = tuple(sorted(find_packages(workspace.root / "src")[0]))
     colcon = str(Path(sys.executable).with_name("colcon"))
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
@@ -95,11 +100,11 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     log = tail(output, LOG_LINES)
     if ending is not Ending.EXITED or status != 0:
         raise StudentError(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), log))
-    _require_contained(workspace.install)
+    require_contained(workspace.install)
     return Build(True, round(time.monotonic() - started, 2), packages, log)
 
 
-def _require_contained(install: Path) -> None:
+def require_contained(install: Path) -> None:
     """See that no link leads out of the install space: it is mounted for nodes, and a mount would follow the link.
 
     Raises:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +27,11 @@ class GradingPlugin:
         failures: tracebacks of the grader's own errors; any of them makes the submission "not graded".
     """
 
-    def __init__(self, workspace: Workspace, seed: int, gallery: Gallery) -> None:
+    def __init__(
+        self, workspace: Workspace, seed: int, gallery: Gallery, builds: Mapping[str, Diagnosis] | None = None
+    ) -> None:
         self._workspace = workspace
+        self._builds = builds or {}
         self._seed = seed
         self._gallery = gallery
         self.results: dict[str, CheckResult] = {}
@@ -40,6 +43,11 @@ class GradingPlugin:
     def workspace(self) -> Workspace:
         """The student's built workspace."""
         return self._workspace
+
+    @pytest.fixture(scope="session")
+    def builds(self) -> Mapping[str, Diagnosis]:
+        """What became of each package that the suite wants: OK, or why it was not built."""
+        return self._builds
 
     @pytest.fixture(scope="session")
     def seed(self) -> int:

@@ -13,7 +13,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime, timezone
 from pathlib import Path
@@ -53,14 +53,16 @@ class Grading:
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
         self._build: Build | None = None
+        self._builds: Mapping[str, Diagnosis] = {}
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
         began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
         try:
-            self._prepare()
-            diagnosis = self._check(results)
+            observed = self._prepare()
+            checked = self._check(results)
+            diagnosis = checked if observed is OK else observed
         except StudentError as error:
             diagnosis = error.diagnosis
         if self._build is None and diagnosis is not OK:
@@ -86,8 +88,9 @@ class Grading:
             phases=self._phases,
         )
 
-    def _prepare(self) -> None:
-        from autograder.grading import build, intake
+    def _prepare(self) -> Diagnosis:
+        """Read, extract and build; return what was wrong with a build that the suite lets fail."""
+        from autograder.grading import intake, observed
 
         with self._phase("intake"):
             submission = intake.take(self._job.path, self._job.assignment)
@@ -108,8 +111,9 @@ class Grading:
         source = self._workspace.root / "src"
         lay_down(packages, source)
         with self._phase("build"):
-            build.require_packages(source, self._suite.packages)
-            self._build = build.build(self._workspace, self._suite.packages)
+            seen = observed.bring(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
+        self._build, self._builds = seen.build, seen.diagnoses
+        return seen.diagnosis
 
     def _clear(self) -> None:
         """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""
@@ -124,7 +128,7 @@ class Grading:
                 shutil.copytree(package, source / package.name)
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
-        plugin = GradingPlugin(self._workspace, self._job.seed, self._gallery)
+        plugin = GradingPlugin(self._workspace, self._job.seed, self._gallery, self._builds)
         with self._phase("checks"):
             run(self._suite.files, plugin)
         missing = {check.id for check in self._suite.checks} - set(plugin.results)

@@ -22,10 +22,12 @@ from autograder.sandbox.launcher import current_tier
 from autograder.sandbox.tiers import Tier
 
 if TYPE_CHECKING:
+    from autograder.grading.observed import Observed
     from autograder.lab.workspace import Workspace
     from autograder.suite import Suite
 
-    Run = Callable[[Workspace, Path], dict[str, Any]]
+    Run = Callable[[Workspace, Observed, Path], dict[str, Any]]
+    Errand = tuple[tuple[str, ...], bool, Run]  # the packages, whether their build may fail, what to do then
 
 SEED = 1  # of the visible checks' inputs
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
@@ -36,7 +38,7 @@ def main() -> None:
     errand = json.loads(sys.argv[1])
     ros = activate()
     # Imported once ROS is switched on: these reach rclpy.
-    from autograder.grading.build import build, require_packages
+    from autograder.grading.observed import bring
     from autograder.lab.workspace import Workspace
 
     scratch, out = Path(errand["scratch"]), Path(errand["out"])
@@ -45,12 +47,10 @@ def main() -> None:
     domain = 0 if current_tier() is Tier.BUBBLEWRAP else 1 + hash(str(scratch)) % 100
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     shutil.copytree(errand["source"], workspace.root / "src", ignore=NOT_COPIED)
-    packages, run = {"drive": _for_drive, "check": _for_check}[errand["verb"]](errand["arguments"])
+    packages, may_fail, run = {"drive": _for_drive, "check": _for_check}[errand["verb"]](errand["arguments"])
     answer: dict[str, Any] = {"diagnosis": _plain(OK)}
     try:
-        require_packages(workspace.root / "src", packages)
-        build(workspace, packages)
-        answer |= run(workspace, out)
+        answer |= run(workspace, bring(workspace, packages, may_fail=may_fail), out)
     except StudentError as error:
         answer["diagnosis"] = _plain(error.diagnosis)
     if errand["verb"] == "check":
@@ -58,8 +58,8 @@ def main() -> None:
     write_json(out / ANSWER, answer)
 
 
-def _for_drive(arguments: dict[str, Any]) -> tuple[tuple[str, ...], Run]:
-    def run(workspace: Workspace, out: Path) -> dict[str, Any]:
+def _for_drive(arguments: dict[str, Any]) -> Errand:
+    def run(workspace: Workspace, _: Observed, out: Path) -> dict[str, Any]:
         from autograder.lab import LockstepLab, drive
         from autograder.lab.drive import LISTENS, OFFERS
         from sim.codec import from_json
@@ -71,25 +71,26 @@ def _for_drive(arguments: dict[str, Any]) -> tuple[tuple[str, ...], Run]:
         commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in done.commands]
         return {"output": done.output, "commands": commands}
 
-    return (arguments["package"],), run
+    return (arguments["package"],), False, run
 
 
-def _for_check(arguments: dict[str, Any]) -> tuple[tuple[str, ...], Run]:
+def _for_check(arguments: dict[str, Any]) -> Errand:
     suite = _visible(arguments)
 
-    def run(workspace: Workspace, out: Path) -> dict[str, Any]:
+    def run(workspace: Workspace, observed: Observed, out: Path) -> dict[str, Any]:
         from autograder.grading.gallery import Gallery
         from autograder.grading.plugin import GradingPlugin
         from autograder.grading.plugin import run as run_suite
 
-        plugin = GradingPlugin(workspace, SEED, Gallery(out))
+        plugin = GradingPlugin(workspace, SEED, Gallery(out), observed.diagnoses)
         run_suite(suite.files, plugin)
         if plugin.failures:
             raise GraderError("\n".join(plugin.failures))
         checks = [dataclasses.asdict(result) for result in plugin.results.values()]
-        return {"diagnosis": _plain(plugin.diagnosis), "checks": checks}
+        diagnosis = plugin.diagnosis if observed.diagnosis is OK else observed.diagnosis
+        return {"diagnosis": _plain(diagnosis), "checks": checks}
 
-    return suite.packages, run
+    return suite.packages, suite.build_may_fail, run
 
 
 def _visible(arguments: dict[str, Any]) -> Suite:

@@ -36,7 +36,7 @@ def _fault(source: Path) -> tuple[Kind, str]:
 
 def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) -> None:
     build.require_packages(_package(tmp_path), (NAME,))
-    assert build.find_packages(tmp_path) == {NAME: tmp_path / NAME}
+    assert build.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
 
 
 def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
@@ -65,10 +65,24 @@ def test_a_half_written_package_is_told_what_it_lacks(tmp_path: Path, part: str)
     assert f"src/my_robot_package has no {part}: the package is only half written" in sentence
 
 
+@pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
+def test_where_colcon_judges_a_package_may_lack_any_file_but_its_manifest(tmp_path: Path, part: str) -> None:
+    build.require_packages(_package(tmp_path, without=part), (NAME,), whole=False)
+
+
+def test_a_malformed_manifest_of_another_package_is_not_this_ones_fault(tmp_path: Path) -> None:
+    _package(tmp_path)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "package.xml").write_text("<package><name>")
+    build.require_packages(tmp_path, (NAME,))
+    with pytest.raises(StudentError, match=r"src/other/package\.xml is no well-formed XML"):
+        build.require_packages(tmp_path, ("other",))
+
+
 def test_a_cmake_package_needs_none_of_pythons_files(tmp_path: Path) -> None:
     _package(tmp_path, without="setup.py", **{"CMakeLists.txt": ""})
     build.require_packages(tmp_path, (NAME,))
-    assert build.find_packages(tmp_path)
+    assert build.find_packages(tmp_path)[0]
 
 
 @pytest.mark.parametrize(
@@ -92,7 +106,7 @@ def test_links_inside_the_install_space_are_fine(tmp_path: Path) -> None:
     (install / "pkg" / "lib").mkdir(parents=True)
     (install / "pkg/lib/libx.so.1").write_text("")
     (install / "pkg/lib/libx.so").symlink_to("libx.so.1")
-    build._require_contained(install)
+    build.require_contained(install)
     assert (install / "pkg/lib/libx.so").exists()
 
 
@@ -102,5 +116,5 @@ def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, t
     (tmp_path / link).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / link).symlink_to((tmp_path / link).name if target == "loop" else target)
     with pytest.raises(StudentError, match="which leads out of the install space") as caught:
-        build._require_contained(tmp_path / "install")
+        build.require_contained(tmp_path / "install")
     assert caught.value.diagnosis.kind is Kind.BUILD_FAILED

@@ -1,0 +1,66 @@
+"""Bringing a suite's packages to life: a build that fails ends the grading, or is something that the checks see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.grading.build import build, require_contained, require_packages
+from autograder.lab.workspace import Workspace
+from autograder.result import Build
+
+
+@dataclass(frozen=True)
+class Observed:
+    """What became of the packages of a suite.
+
+    Attributes:
+        build: how building them went, all together.
+        diagnoses: by package; OK for one that was built.
+    """
+
+    build: Build
+    diagnoses: Mapping[str, Diagnosis]
+
+    @property
+    def diagnosis(self) -> Diagnosis:
+        """The first package's that was not built, or OK."""
+        return next((found for found in self.diagnoses.values() if found is not OK), OK)
+
+
+def bring(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> Observed:
+    """Build packages of a workspace.
+
+    Where a build may fail, each package is built by itself, so that one's error is not the other's, and colcon alone
+    judges whether it is whole.
+
+    Args:
+        workspace: with the sources in its `src` folder.
+        packages: which to build.
+        may_fail: whether a package that is missing or does not build is seen, rather than the end.
+
+    Raises:
+        StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.
+    """
+    source = workspace.root / "src"
+    if not may_fail:
+        require_packages(source, packages)
+        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+    builds: list[Build] = []
+    diagnoses: dict[str, Diagnosis] = {}
+    for name in packages:
+        try:
+            require_packages(source, (name,), whole=False)
+            builds.append(build(workspace, (name,)))
+            diagnoses[name] = OK
+        except StudentError as error:
+            builds.append(Build(False, 0.0, log=error.diagnosis.detail))
+            diagnoses[name] = error.diagnosis
+    require_contained(workspace.install)  # a build that failed was not looked at yet
+    seen = tuple(sorted({name for each in builds for name in each.packages}))
+    log = "\n".join(filter(None, (each.log for each in builds)))
+    seconds = round(math.fsum(each.seconds for each in builds), 2)
+    return Observed(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)

@@ -1,0 +1,64 @@
+"""Where a build may fail, colcon's verdict on each package is seen, and harms no other package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.diagnosis import OK, Kind
+from autograder.exceptions import StudentError
+from autograder.grading.observed import bring
+from autograder.lab.workspace import Workspace
+from autograder.ros import activate
+
+MANIFEST = """<package format="3">
+  <name>{name}</name><version>0.1.0</version><description>A package</description>
+  <maintainer email="a@example.com">A</maintainer><license>Apache-2.0</license>
+  <export><build_type>ament_python</build_type></export>
+</package>
+"""
+SETUP = """from setuptools import setup
+setup(name='{name}', version='0.1.0', packages=['{name}'], data_files=[
+    ('share/ament_index/resource_index/packages', ['resource/{name}']), ('share/{name}', ['package.xml'])])
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    """A workspace with the packages `good` and `bad`; `bad` lacks its marker, `good` has no setup.cfg."""
+    for name in ("good", "bad"):
+        folder = tmp_path / "ws" / "src" / name
+        for part, text in (("package.xml", MANIFEST), ("setup.py", SETUP), (f"{name}/__init__.py", "")):
+            (folder / part).parent.mkdir(parents=True, exist_ok=True)
+            (folder / part).write_text(text.format(name=name))
+    marker = tmp_path / "ws/src/good/resource/good"
+    marker.parent.mkdir()
+    marker.touch()
+    home = tmp_path / "home"
+    home.mkdir()
+    return Workspace(tmp_path / "ws", activate(), home)
+
+
+def test_one_packages_failure_is_not_the_others(workspace: Workspace) -> None:
+    seen = bring(workspace, ("bad", "good", "missing"), may_fail=True)
+    assert seen.diagnoses["good"] is OK
+    assert (workspace.install / "good/share/good/package.xml").is_file()
+    assert seen.diagnosis is seen.diagnoses["bad"]
+    assert seen.diagnosis.kind is Kind.BUILD_FAILED
+    assert "can't copy 'resource/bad'" in seen.diagnosis.sentence
+    assert seen.diagnoses["missing"].kind is Kind.MISSING_PACKAGE
+    assert not seen.build.ok
+    assert seen.build.packages == ("bad", "good")
+
+
+def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) -> None:
+    workspace.install.mkdir()
+    (workspace.install / "bad").symlink_to("/etc")
+    with pytest.raises(StudentError, match="leads out of the install space"):
+        bring(workspace, ("missing",), may_fail=True)
+
+
+def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:
+    with pytest.raises(StudentError, match="only half written"):
+        bring(workspace, ("good",))
