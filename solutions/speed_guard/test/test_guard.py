@@ -1,0 +1,100 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the node speed_guard promises, asked over its topics."""
+
+from geometry_msgs.msg import Twist
+import pytest
+from rclpy.parameter import Parameter
+from speed_guard.guard import SpeedGuard
+
+PATIENT = 60.0  # s: nothing becomes old while a test runs
+HASTY = 0.2  # s
+
+
+@pytest.fixture
+def guard(robot):
+    """Return a function that starts a guard with parameters, for the robot to meet."""
+    def start(**parameters):
+        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+        robot.add(SpeedGuard(context=robot.context, parameter_overrides=overrides))
+        robot.meet()
+    return start
+
+
+def test_it_is_called_speed_guard(robot, guard):
+    """Parameters in a file reach it by its name."""
+    guard()
+    assert ('speed_guard', '/') in robot.get_node_names_and_namespaces()
+
+
+def test_before_the_first_distance_it_stands(robot, guard):
+    """No distance is not a clear way; the way back is free all the same."""
+    guard(timeout=PATIENT)
+    assert robot.ask(0.8).linear.x == 0.0
+    assert robot.ask(-0.3).linear.x == -0.3
+
+
+def test_the_newest_distance_counts(robot, guard):
+    """Each command is judged by what the sensor said last."""
+    guard(timeout=PATIENT)
+    for distance, speed in ((4.0, 0.8), (1.0, 0.4), (0.2, 0.0), (1.25, 0.6)):
+        robot.see(distance)
+        assert robot.ask(0.8).linear.x == pytest.approx(speed)
+
+
+def test_a_turn_stays_as_it_is(robot, guard):
+    """Only linear.x is changed."""
+    guard(timeout=PATIENT)
+    robot.see(0.2)
+    answer = robot.ask(0.8, turn=0.7)
+    assert (answer.linear.x, answer.angular.z) == (0.0, 0.7)
+
+
+def test_each_command_has_one_answer(robot, guard):
+    """As many commands come out as went in."""
+    guard(timeout=PATIENT)
+    for _ in range(5):
+        robot.ask(0.8)
+    robot.spin(0.1)
+    assert len(robot.commands) == 5
+
+
+def test_its_distances_are_parameters(robot, guard):
+    """stop_distance and slow_distance move both ends of the line."""
+    guard(timeout=PATIENT, stop_distance=1.0, slow_distance=3.0)
+    for distance, speed in ((0.9, 0.0), (2.0, 0.4), (3.5, 0.8)):
+        robot.see(distance)
+        assert robot.ask(0.8).linear.x == pytest.approx(speed)
+
+
+def test_an_old_distance_is_not_known(robot, guard):
+    """A sensor that has fallen silent says nothing about now."""
+    guard(timeout=HASTY)
+    robot.see(4.0)
+    robot.spin(2 * HASTY)
+    assert robot.ask(0.8).linear.x == 0.0
+
+
+def test_the_motors_stop_once_when_the_planner_falls_silent(robot, guard):
+    """One command of zeros follows the last command, and none comes before the first."""
+    guard(timeout=HASTY)
+    robot.spin(2 * HASTY)
+    assert robot.commands == []
+    for answers in (2, 4):
+        robot.ask(-0.3, turn=0.7)
+        robot.until(lambda count=answers: len(robot.commands) >= count)
+        robot.spin(2 * HASTY)
+        assert len(robot.commands) == answers
+        assert robot.commands[-1] == Twist()

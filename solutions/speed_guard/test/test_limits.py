@@ -1,0 +1,71 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What safe_speed promises, line by line of its contract."""
+
+import math
+
+import pytest
+from speed_guard.limits import safe_speed
+
+
+@pytest.mark.parametrize('distance', [-math.inf, 0.0, 0.3, 0.5])
+def test_near_things_stop_it(distance):
+    """At stop_distance and nearer it stands still."""
+    assert safe_speed(0.8, distance) == 0.0
+
+
+def test_in_between_it_slows_down():
+    """From stop_distance to slow_distance the speed grows in a straight line."""
+    assert safe_speed(0.8, 0.75) == pytest.approx(0.2)
+    assert safe_speed(0.8, 1.0) == pytest.approx(0.4)
+    assert safe_speed(0.8, 1.25) == pytest.approx(0.6)
+
+
+def test_far_things_do_not_matter():
+    """At slow_distance and farther it goes as fast as it was asked to, never faster."""
+    assert safe_speed(0.8, 1.5) == pytest.approx(0.8)
+    assert safe_speed(0.8, 4.0) == pytest.approx(0.8)
+
+
+def test_nothing_ahead_is_far_away():
+    """Nothing seen, inf, is a clear way."""
+    assert safe_speed(0.8, math.inf) == pytest.approx(0.8)
+
+
+def test_an_unknown_distance_is_not_a_clear_way():
+    """Neither None nor nan lets it move."""
+    assert safe_speed(0.8, None) == 0.0
+    assert safe_speed(0.8, math.nan) == 0.0
+
+
+def test_the_way_back_is_not_guarded():
+    """Backwards, or standing, it is left alone, whatever is in front or not known."""
+    for distance in (0.1, 1.0, math.inf, math.nan, None):
+        assert safe_speed(-0.3, distance) == -0.3
+        assert safe_speed(0.0, distance) == 0.0
+
+
+def test_the_two_distances_can_be_chosen():
+    """Other distances move both ends of the line."""
+    assert safe_speed(1.0, 2.0, stop_distance=1.0, slow_distance=3.0) == pytest.approx(0.5)
+    assert safe_speed(1.0, 0.9, stop_distance=1.0, slow_distance=3.0) == 0.0
+    assert safe_speed(1.0, 0.2, stop_distance=0.0, slow_distance=0.4) == pytest.approx(0.5)
+
+
+def test_distances_that_make_no_sense_are_refused():
+    """It raises ValueError unless 0 <= stop_distance < slow_distance."""
+    for stop, slow in ((-0.1, 1.0), (1.0, 1.0), (2.0, 1.0)):
+        with pytest.raises(ValueError):
+            safe_speed(0.8, 1.0, stop, slow)
