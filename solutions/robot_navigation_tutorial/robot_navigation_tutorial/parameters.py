@@ -1,0 +1,31 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Parameters that know their limits."""
+
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+
+
+def declare(node, name, default, lowest, highest, description):
+    """
+    Declare a number of a node, with a description and a range.
+
+    rclpy refuses a value of another type, and one that is not from lowest to highest, at the
+    start and later. The node asks get_parameter(name).value whenever it needs the number, so
+    a change has an effect at once.
+    """
+    bounds = FloatingPointRange(from_value=lowest, to_value=highest)
+    node.declare_parameter(
+        name, default, ParameterDescriptor(
+            description=description, floating_point_range=[bounds]))

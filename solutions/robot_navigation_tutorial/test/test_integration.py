@@ -1,0 +1,68 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The whole system as a user starts it: the launch file, its parameters, and real topics."""
+
+import os
+from pathlib import Path
+
+from ament_index_python.packages import get_package_share_directory
+from geometry_msgs.msg import Twist
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription, SetEnvironmentVariable
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+import launch_pytest
+import pytest
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from robot_navigation_interfaces.msg import Health
+from robot_navigation_tutorial.status_monitor import HEALTH_QOS
+from sensor_msgs.msg import LaserScan
+
+
+@launch_pytest.fixture
+def navigation():
+    """Launch the package's own launch file, in this test's domain."""
+    share = Path(get_package_share_directory('robot_navigation_tutorial'))
+    launch_file = str(share / 'launch' / 'navigation.launch.py')
+    return LaunchDescription([
+        SetEnvironmentVariable('ROS_DOMAIN_ID', str(1 + os.getpid() % 100)),
+        IncludeLaunchDescription(PythonLaunchDescriptionSource(launch_file)),
+        launch_pytest.actions.ReadyToTest(),
+    ])
+
+
+@pytest.mark.launch(fixture=navigation)
+def test_the_robot_drives_while_it_sees_and_stops_when_the_lidar_dies(world):
+    """Forward and healthy with scans, still and unhealthy without."""
+    peer = world.add(Node('peer', context=world.context))
+    commands, reports = [], []
+    peer.create_subscription(Twist, 'cmd_vel', commands.append, 10)
+    peer.create_subscription(Health, 'health', reports.append, HEALTH_QOS)
+    lidar = peer.create_publisher(LaserScan, 'scan', qos_profile_sensor_data)
+    scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=0.01, ranges=[2.0] * 628)
+
+    def see():
+        scan.header.stamp = peer.get_clock().now().to_msg()
+        lidar.publish(scan)
+
+    def is_now(speed, level):
+        return (
+            commands and commands[-1].linear.x == speed
+            and reports and reports[-1].level == level)
+
+    seeing = peer.create_timer(0.1, see)
+    world.until(lambda: is_now(0.3, Health.OK))
+    seeing.cancel()
+    world.until(lambda: is_now(0.0, Health.FAILED))
