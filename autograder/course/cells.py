@@ -6,6 +6,11 @@ In a cell's metadata, for a file that the cell writes into the student's workspa
                 "target": "ws/src/my_robot_package/my_robot_package/nodes/robot_controller.py",
                 "hide": ["RobotController.control_loop"]}}
 
+For a file that is not Python, or has no functions, `cut` names the lines around what the student writes:
+
+    {"course": {"source": "square_dance/package.xml", "target": "ws/src/square_dance/package.xml",
+                "cut": [["<package format=\"3\">", "</package>"]]}}
+
 In the notebook's metadata, for files of the chapter's folder that equal the reference's:
 
     {"course": {"given": {"ws/src/my_robot_package/setup.cfg": "my_robot_package/setup.cfg"}}}
@@ -23,7 +28,7 @@ from typing import Any
 from nbformat import NotebookNode
 
 from autograder.course.exceptions import CourseError
-from autograder.course.holes import with_holes, without_licence
+from autograder.course.holes import with_cuts, with_holes, without_licence
 
 
 @dataclass(frozen=True)
@@ -34,21 +39,24 @@ class Origin:
         source: the reference's file, in `solutions/`.
         target: the file that the cell writes, in the chapter's folder.
         hide: functions whose bodies the student writes; none for a cell that only shows and writes a file.
+        cut: the lines before and after each part that the student writes, in a file without functions.
     """
 
     source: PurePosixPath
     target: PurePosixPath
     hide: tuple[str, ...]
+    cut: tuple[tuple[str, str], ...] = ()
 
     def text(self, solutions: Path) -> str:
         """Return what the cell must hold.
 
         Raises:
-            CourseError: the reference's file is missing, or a function to hide is not in it.
+            CourseError: the reference's file is missing, or what is to be hidden is not in it.
         """
         text = without_licence(read(solutions, self.source))
         try:
             text = with_holes(text, self.hide) if self.hide else text
+            text = with_cuts(text, self.cut) if self.cut else text
         except CourseError as error:
             raise CourseError(f"{self.source}: {error}") from error
         return f"%%writefile {self.target}\n{text.rstrip()}"
@@ -66,7 +74,17 @@ def origin(cell: NotebookNode) -> Origin | None:
     hide = course.get("hide", [])
     if not isinstance(hide, list) or not all(isinstance(name, str) for name in hide):
         raise CourseError(f'"hide" must be a list of function names, not {hide!r}')
-    return Origin(inside(course["source"]), inside(course.get("target")), tuple(hide))
+    cut = course.get("cut", [])
+    if not isinstance(cut, list) or not all(_is_pair(pair) for pair in cut):
+        raise CourseError(f'"cut" must be a list of pairs of lines, not {cut!r}')
+    if hide and cut:
+        raise CourseError('a cell hides functions by "hide" or lines by "cut", not both')
+    pairs = tuple((str(before), str(after)) for before, after in cut)
+    return Origin(inside(course["source"]), inside(course.get("target")), tuple(hide), pairs)
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(isinstance(line, str) for line in value)
 
 
 def given(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:

@@ -1,6 +1,7 @@
-"""Marks the bodies of named functions as nbgrader solution regions: a release keeps contracts and loses answers.
+"""Marks answers as nbgrader solution regions: a release keeps contracts and loses answers.
 
-Functions are found by `ast`, so renaming one without telling the notebook is an error rather than a leaked answer.
+In Python it is the bodies of named functions, found by `ast`; in any text it is the lines between two named ones. What
+is named and not there is an error rather than a leaked answer.
 """
 
 from __future__ import annotations
@@ -53,6 +54,33 @@ def with_holes(text: str, hide: Sequence[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def with_cuts(text: str, cuts: Sequence[tuple[str, str]]) -> str:
+    """Return text of any kind with the lines between pairs of lines between solution marks.
+
+    Args:
+        text: a file's text.
+        cuts: for each region the line before it and the line after it, without indentation; each stands exactly once.
+            An empty string is the file's start or end.
+
+    Raises:
+        CourseError: the text already has marks, a line is not there or is there twice, or a region is empty or lies in
+            another one.
+    """
+    if BEGIN in text or END in text:
+        raise CourseError("the source already holds solution marks; they belong in notebooks only")
+    lines = text.splitlines()
+    regions = sorted((_place(lines, before, -1) + 1, _place(lines, after, len(lines))) for before, after in cuts)
+    if any(first >= end for first, end in regions):
+        raise CourseError(f"there is nothing to hide between these lines: {cuts!r}")
+    if any(one[1] > other[0] for one, other in pairwise(regions)):
+        raise CourseError(f"regions inside each other cannot both be hidden: {cuts!r}")
+    for first, end in reversed(regions):
+        indent = lines[first][: len(lines[first]) - len(lines[first].lstrip())]
+        lines[end:end] = [indent + END]
+        lines[first:first] = [indent + BEGIN]
+    return "\n".join(lines) + "\n"
+
+
 def without_marks(text: str) -> str:
     """Return the text without the lines that mark solutions: what a student who solved it would have."""
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
@@ -65,6 +93,16 @@ def without_licence(text: str) -> str:
         return text
     body = next((i for i, line in enumerate(lines) if not line.startswith("#")), len(lines))
     return "".join(lines[body:]).lstrip("\n")
+
+
+def _place(lines: Sequence[str], wanted: str, default: int) -> int:
+    """Return the index of the one line that reads so, the default for an empty string."""
+    if not wanted:
+        return default
+    found = [index for index, line in enumerate(lines) if line.strip() == wanted]
+    if len(found) != 1:
+        raise CourseError(f"the line {wanted!r} occurs {len(found)} times in the source")
+    return found[0]
 
 
 def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:

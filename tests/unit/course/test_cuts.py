@@ -1,0 +1,90 @@
+"""What a student writes in a file without functions is hidden between two named lines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook
+
+from autograder.course import CourseError, Form, in_form
+from autograder.course.cells import origin
+from autograder.course.holes import with_cuts, without_marks
+
+MANIFEST = """<package>
+  <name>a</name>
+  <version>1</version>
+  <export>
+    <build_type>b</build_type>
+  </export>
+</package>
+"""
+
+
+def test_the_lines_between_two_lines_are_marked_with_their_indentation() -> None:
+    marked = with_cuts(MANIFEST, [("<package>", "<export>"), ("<export>", "</export>")])
+    assert marked.splitlines()[:5] == [
+        "<package>",
+        "  ### BEGIN SOLUTION",
+        "  <name>a</name>",
+        "  <version>1</version>",
+        "  ### END SOLUTION",
+    ]
+    assert marked.count("BEGIN SOLUTION") == 2
+    assert without_marks(marked) == MANIFEST
+
+
+def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
+    assert with_cuts("a\nb\n", [("", "")]) == "### BEGIN SOLUTION\na\nb\n### END SOLUTION\n"
+    assert with_cuts("a\nb\n", [("a", "")]) == "a\n### BEGIN SOLUTION\nb\n### END SOLUTION\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "cuts", "words"),
+    [
+        (MANIFEST, [("<parcel>", "")], "the line '<parcel>' occurs 0 times"),
+        ("a\na\nb\n", [("a", "")], "the line 'a' occurs 2 times"),
+        ("a\nb\n", [("a", "b")], "nothing to hide"),
+        ("a\nb\nc\n", [("c", "a")], "nothing to hide"),
+        ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "inside each other"),
+        ("### BEGIN SOLUTION\na\n", [("", "")], "already holds solution marks"),
+    ],
+)
+def test_a_cut_that_does_not_fit_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:
+    with pytest.raises(CourseError, match=words):
+        with_cuts(text, cuts)
+
+
+def _cell(**course: object) -> NotebookNode:
+    return new_code_cell("", metadata={"course": {"source": "a/b.xml", "target": "ws/b.xml", **course}})
+
+
+def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "b.xml").write_text(MANIFEST)
+    cell = _cell(cut=[["<package>", "</package>"]])
+    source = origin(cell)
+    assert source is not None
+    cell.source = source.text(tmp_path)
+    cell.metadata["nbgrader"] = {
+        **{"grade": False, "locked": False, "solution": True, "task": False},
+        **{"grade_id": "b", "schema_version": 3},
+    }
+    released = in_form(new_notebook(cells=[cell]), Form.RELEASED).cells[0].source
+    assert released.startswith("%%writefile ws/b.xml\n<package>\n  # YOUR CODE HERE\n")
+    assert "<name>" not in released
+
+
+@pytest.mark.parametrize(
+    ("course", "words"),
+    [
+        ({"cut": "a"}, "must be a list of pairs of lines, not 'a'"),
+        ({"cut": [["a"]]}, "must be a list of pairs of lines"),
+        ({"cut": [["a", 1]]}, "must be a list of pairs of lines"),
+        ({"cut": [["a", "b"]], "hide": ["main"]}, "not both"),
+    ],
+)
+def test_metadata_that_cuts_nonsense_is_an_error(course: dict[str, object], words: str) -> None:
+    with pytest.raises(CourseError, match=words):
+        origin(_cell(**course))
