@@ -54,7 +54,11 @@ def _step(module: Any, made: list[Any], step: dict[str, Any]) -> dict[str, Any]:
     if step["keep"]:
         return outcome
     try:
-        return {**outcome, "value": json.loads(json.dumps(value)), "arguments": json.loads(json.dumps(arguments))}
+        return {
+            **outcome,
+            "value": json.loads(json.dumps(value)),
+            "arguments": json.loads(json.dumps(arguments, default=repr)),
+        }
     except (TypeError, ValueError, RecursionError):
         return {**outcome, "type": type(value).__name__}
 

@@ -142,7 +142,7 @@ def value(outcome: Outcome, shown: str) -> Any:
     if outcome.raised:
         raise CheckFailed(f"{shown} raised {outcome.raised}: {outcome.message}")
     if outcome.type:
-        raise CheckFailed(f"{shown} returned a {outcome.type}, instead of plain Python numbers.")
+        raise CheckFailed(f"{shown} returned a value of type {outcome.type}, instead of plain Python values.")
     return outcome.value
 
 

@@ -1,0 +1,148 @@
+"""Students' functions are called in a process of their own, and only plain values come back."""
+
+from __future__ import annotations
+
+import sys
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.lab import Workspace
+from autograder.probes.calls import Outcome, call, calls, look, made, make, same, value
+from autograder.ros import environment
+
+MODULE = """
+import sys
+
+LIMIT = 3.5
+
+class Liar(float):
+    def __eq__(self, other):
+        return True
+
+class Counter:
+    def __init__(self, start=0):
+        self.count = start
+    def add(self, other):
+        self.count += other.count
+        return self.count
+
+def double(readings):
+    print('doubling')
+    return [2 * reading for reading in readings]
+
+def empty(readings):
+    readings.clear()
+
+def lie():
+    return Liar(1.0)
+
+def gone():
+    sys.exit(0)
+
+def fails():
+    raise ValueError('no such thing')
+
+def strange():
+    return object()
+
+def unwritten():
+    raise NotImplementedError
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    """An install space with one module, as colcon would leave it."""
+    site = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+    folder = tmp_path / "ws" / "install" / "demo" / site
+    folder.mkdir(parents=True)
+    (folder / "demo.py").write_text(MODULE)
+    (folder / "torn.py").write_text("def f(:\n")
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), scratch)
+
+
+def test_values_cross_as_json_with_nan_and_infinities(workspace: Workspace) -> None:
+    doubled, limit = calls(workspace, "demo", call("double", [1.0, nan, inf]), look("LIMIT"))
+    assert same(doubled.value, [2.0, nan, inf])
+    assert doubled.printed == "doubling\n"
+    assert limit.value == 3.5
+
+
+def test_what_a_step_made_serves_later_steps(workspace: Workspace) -> None:
+    steps = (make("Counter", start=2), make("Counter", 3), call("add", made(1), on=0), look("count", on=0))
+    outcomes = calls(workspace, "demo", *steps)
+    assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]
+
+
+def test_a_changed_argument_is_seen(workspace: Workspace) -> None:
+    (outcome,) = calls(workspace, "demo", call("empty", [1, 2]))
+    assert outcome.arguments == ([],)
+
+
+def test_a_subclass_that_equals_everything_comes_back_as_a_plain_number(workspace: Workspace) -> None:
+    (outcome,) = calls(workspace, "demo", call("lie"))
+    assert type(outcome.value) is float
+    assert outcome.value == 1.0
+    assert outcome.value != 2.0
+
+
+def test_exceptions_and_strange_values_are_named(workspace: Workspace) -> None:
+    failed, odd, unwritten = calls(workspace, "demo", call("fails"), call("strange"), call("unwritten"))
+    with pytest.raises(CheckFailed, match=r"fails\(\) raised ValueError: no such thing"):
+        value(failed, "fails()")
+    with pytest.raises(CheckFailed, match=r"strange\(\) returned a value of type object, instead of plain Python"):
+        value(odd, "strange()")
+    with pytest.raises(CheckFailed, match=r"unwritten\(\) is still to be written"):
+        value(unwritten, "unwritten()")
+
+
+def test_another_module_can_take_part(workspace: Workspace) -> None:
+    (outcome,) = calls(workspace, "demo", call("hypot", 3.0, 4.0, module="math"))
+    assert outcome == Outcome(value=5.0, arguments=(3.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("module", "kind", "words"),
+    [
+        ("torn", Kind.SYNTAX_ERROR, "Python cannot read your file"),
+        ("missing", Kind.CRASHED_AT_IMPORT, "installs no module missing"),
+    ],
+)
+def test_a_module_that_cannot_be_imported_is_diagnosed(
+    workspace: Workspace, module: str, kind: Kind, words: str
+) -> None:
+    with pytest.raises(StudentError) as caught:
+        calls(workspace, module, call("f"))
+    assert caught.value.diagnosis.kind is kind
+    assert words in caught.value.diagnosis.sentence
+
+
+def test_code_that_ends_the_process_gains_nothing(workspace: Workspace) -> None:
+    with pytest.raises(StudentError) as caught:
+        calls(workspace, "demo", call("gone"), call("double", [1]))
+    assert caught.value.diagnosis.kind is Kind.ENDED_EARLY
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        (nan, nan, True),
+        (1, 1.0, True),
+        (True, 1, False),
+        (None, 0, False),
+        (0.1 + 0.2, 0.3, True),
+        ([1, [nan]], [1, [nan]], True),
+        ([1], [1, 2], False),
+        ("1", 1, False),
+        ({"a": 1}, {"a": 1}, True),
+    ],
+)
+def test_json_values_are_compared_by_kind_and_value(one: object, other: object, alike: bool) -> None:
+    assert same(one, other) is alike
