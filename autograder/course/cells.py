@@ -9,7 +9,7 @@ In a cell's metadata, for a file that the cell writes into the student's workspa
 For a file that is not Python, or has no functions, `cut` names the lines around what the student writes:
 
     {"course": {"source": "square_dance/package.xml", "target": "ws/src/square_dance/package.xml",
-                "cut": [["<package format=\"3\">", "</package>"]]}}
+                "cut": [["<export>", "</export>"]]}}
 
 In the notebook's metadata, for files of the chapter's folder that equal the reference's:
 
