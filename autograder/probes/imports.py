@@ -1,0 +1,134 @@
+"""What a package's sources import, and whether package.xml declares it: by their text alone.
+
+rosdep installs what package.xml names before anything is built or run, so a module that is imported and not declared
+works on its author's machine and nowhere else. Sources are parsed and never run; files that are too large, too many
+or no Python are left out, as they would be by any reader.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import sys
+import warnings
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.probes.manifest import Manifest
+
+MAX_FILES = 300
+MAX_BYTES = 256 * 1024
+LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
+
+# Modules whose rosdep key is not python3-MODULE. A ROS package's key is its own name.
+KEYS = {
+    "PIL": "python3-pil",
+    "cv2": "python3-opencv",
+    "serial": "python3-serial",
+    "setuptools": "python3-setuptools",
+    "skimage": "python3-skimage",
+    "usb": "python3-usb",
+    "yaml": "python3-yaml",
+}
+SET_UP = "setup.py"  # what it imports, colcon's own set-up provides
+
+
+@dataclass(frozen=True)
+class Import:
+    """One module that a package imports from outside.
+
+    Attributes:
+        module: its top-level name, such as `numpy`.
+        files: where it is imported, relative to the package, in order.
+    """
+
+    module: str
+    files: tuple[str, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The names in package.xml that would declare it, the likeliest first."""
+        hyphened = f"python3-{self.module.lower().replace('_', '-')}"
+        return tuple(dict.fromkeys((KEYS.get(self.module, hyphened), hyphened, self.module)))
+
+
+def imported(package: Path, *, within: Collection[str] = (), without: Collection[str] = ()) -> tuple[Import, ...]:
+    """Return what the Python files of a package import, without the standard library and the package's own modules.
+
+    Args:
+        package: the package's folder.
+        within: only files below these folders of it; all if none is named.
+        without: no files below these.
+    """
+    own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
+    found: dict[str, list[str]] = {}
+    for path in _sources(package):
+        where = path.relative_to(package)
+        top = where.parts[0]
+        if str(where) == SET_UP or (within and top not in within) or top in without:
+            continue
+        # A test imports its neighbours, which pytest puts on the path.
+        beside = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
+        for module in modules(_text(path)) - own - beside - sys.stdlib_module_names:
+            found.setdefault(module, []).append(str(where))
+    return tuple(Import(module, tuple(files)) for module, files in sorted(found.items()))
+
+
+def modules(text: str) -> frozenset[str]:
+    """Return the top-level names that a module's text imports; none if it is no Python."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a student's "\d" is not our warning
+            tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return frozenset()
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found.update(alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            found.add(node.module.split(".")[0])
+    return frozenset(found)
+
+
+def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[Import, ...]:
+    """Return the imports that none of the declared names stands for."""
+    return tuple(each for each in imports if not set(each.keys) & set(declared))
+
+
+def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...]]:
+    """Return what a package imports and does not declare, by the kind of dependency that would declare it.
+
+    `exec` is for what runs: the modules, the launch files. `test` is for what only test/ imports; there, what the
+    package needs to run counts as declared, too.
+    """
+    runs = undeclared(imported(package, without=("test",)), manifest.needs("exec"))
+    tests = undeclared(imported(package, within=("test",)), manifest.needs("exec", "test"))
+    known = {each.module for each in runs}
+    return {"exec": runs, "test": tuple(each for each in tests if each.module not in known)}
+
+
+def say(imports: Collection[Import]) -> str:
+    """Name imports with where they stand and what would declare them."""
+    return "; ".join(f"{each.files[0]} imports {each.module} ({each.keys[0]})" for each in imports)
+
+
+def _sources(package: Path) -> Iterator[Path]:
+    count = 0
+    for folder, folders, files in os.walk(package):
+        folders[:] = sorted(name for name in folders if name not in LEFT_OUT)
+        for name in sorted(files):
+            path = Path(folder) / name
+            if not name.endswith(".py") or path.is_symlink() or not path.is_file():
+                continue
+            count += 1
+            if count > MAX_FILES:
+                return
+            yield path
+
+
+def _text(path: Path) -> str:
+    with path.open("rb") as stream:
+        data = stream.read(MAX_BYTES + 1)
+    return "" if len(data) > MAX_BYTES else data.decode(errors="replace")

@@ -1,0 +1,150 @@
+"""What colcon installed of a Python package: the judge of setup.py and setup.cfg, whose text proves nothing.
+
+Only files are looked at, never followed out of the install space and never imported.
+"""
+
+from __future__ import annotations
+
+import configparser
+import os
+import stat
+from collections.abc import Mapping
+from dataclasses import dataclass
+from email.parser import HeaderParser
+from pathlib import Path
+
+MAX_FILES = 2000
+MAX_BYTES = 256 * 1024
+INDEX = Path("share/ament_index/resource_index/packages")
+
+
+@dataclass(frozen=True)
+class Installed:
+    """A package's install prefix, `install/PACKAGE` in colcon's isolated layout.
+
+    Attributes:
+        package: its name.
+        prefix: the folder.
+        executables: names in lib/PACKAGE, where `ros2 run` and launch files look.
+        misplaced: names in bin/, where they do not.
+        modules: dotted names of the installed Python modules, packages included, of this package and any other.
+        marker: whether the ament index knows the package.
+        shared: paths below share/PACKAGE, without what colcon itself puts there.
+        listed: the files that setup.py itself names; what is missing here but installed was put there by colcon.
+        scripts: the console scripts, each name with its `module:function`.
+        extras: the requirements of each extra, such as `test`.
+        metadata: headers such as Version, License, Maintainer-email.
+    """
+
+    package: str
+    prefix: Path
+    executables: tuple[str, ...]
+    misplaced: tuple[str, ...]
+    modules: frozenset[str]
+    marker: bool
+    shared: tuple[str, ...]
+    listed: frozenset[str]
+    scripts: Mapping[str, str]
+    extras: Mapping[str, tuple[str, ...]]
+    metadata: Mapping[str, str]
+
+    def read(self, name: str) -> bytes | None:
+        """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""
+        return _read(self.prefix / "share" / self.package / name)
+
+
+def look(install: Path, package: str) -> Installed:
+    """Look at what was installed of a package; one that was not installed has nothing.
+
+    Args:
+        install: the workspace's install folder.
+        package: the package's name.
+    """
+    prefix = install / package
+    # Named for the Python that built it; there is one.
+    sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
+    modules = frozenset(name for site in sites for file in _files(site) if (name := _module(file)))
+    eggs = [egg for site in sites for egg in sorted(site.glob("*-info")) if egg.is_dir() and not egg.is_symlink()]
+    own = [egg for egg in eggs if egg.name.lower().replace("-", "_").startswith(package.lower())]
+    share = prefix / "share" / package
+    return Installed(
+        package=package,
+        prefix=prefix,
+        executables=_executables(prefix / "lib" / package),
+        misplaced=_executables(prefix / "bin"),
+        modules=modules,
+        marker=_read(prefix / INDEX / package) is not None,
+        shared=tuple(name for name in _files(share) if not _of_colcon(name)),
+        listed=frozenset(_joined(own, "SOURCES.txt").splitlines()),
+        scripts=_scripts(_joined(own, "entry_points.txt")),
+        extras=_extras(_joined(own, "requires.txt")),
+        metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
+    )
+
+
+def _files(folder: Path) -> tuple[str, ...]:
+    """Return the plain files below a folder, relative to it, in order."""
+    found: list[str] = []
+    if folder.is_symlink():
+        return ()
+    for where, folders, names in os.walk(folder):
+        folders.sort()
+        for name in sorted(names):
+            path = Path(where) / name
+            if stat.S_ISREG(path.lstat().st_mode):
+                found.append(str(path.relative_to(folder)))
+            if len(found) >= MAX_FILES:
+                return tuple(found)
+    return tuple(found)
+
+
+def _read(path: Path) -> bytes | None:
+    try:
+        if not stat.S_ISREG(path.lstat().st_mode):
+            return None
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except OSError:
+        return None
+    return data if len(data) <= MAX_BYTES else None
+
+
+def _joined(folders: list[Path], name: str) -> str:
+    return "\n".join((_read(folder / name) or b"").decode(errors="replace") for folder in folders)
+
+
+def _executables(folder: Path) -> tuple[str, ...]:
+    return tuple(name for name in _files(folder) if os.access(folder / name, os.X_OK))
+
+
+def _module(file: str) -> str | None:
+    """Return the dotted name of a module's file, None for another file."""
+    if not file.endswith(".py"):
+        return None
+    parts = file.removesuffix(".py").split("/")
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _of_colcon(name: str) -> bool:
+    return name.startswith("hook/") or (name.startswith("package.") and name != "package.xml")
+
+
+def _scripts(text: str) -> dict[str, str]:
+    parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
+    parser.optionxform = str  # type: ignore[assignment, method-assign]
+    try:
+        parser.read_string(text)
+        return dict(parser["console_scripts"]) if "console_scripts" in parser else {}
+    except configparser.Error:
+        return {}
+
+
+def _extras(text: str) -> dict[str, tuple[str, ...]]:
+    found: dict[str, list[str]] = {}
+    section = None
+    for line in filter(None, map(str.strip, text.splitlines())):
+        if line.startswith("[") and line.endswith("]"):
+            section = found.setdefault(line[1:-1].split(":")[0], [])
+        elif section is not None:
+            section.append(line)
+    return {name: tuple(lines) for name, lines in found.items()}

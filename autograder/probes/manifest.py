@@ -1,0 +1,101 @@
+"""A package's manifest, package.xml, as rosdep and colcon read it: parsed by catkin_pkg, never executed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ignore[import-untyped]
+
+from autograder.checks import CheckFailed
+
+MANIFEST = "package.xml"
+MAX_BYTES = 64 * 1024
+PLACEHOLDER = "TODO"
+
+# The tags that say of a dependency when it is needed; <depend> stands for the first four.
+KINDS = ("build", "build_export", "buildtool", "exec", "test", "doc")
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a package.xml says.
+
+    Attributes:
+        format: of the file, 1 to 3.
+        licences: each <license>, as written.
+        maintainers: each (name, e-mail).
+        build_type: what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one.
+        depends: the names by kind: build, build_export, buildtool, exec, test, doc. A <depend> is in the first two and
+            in exec.
+        groups: of which dependency groups it is a member.
+    """
+
+    name: str
+    version: str
+    description: str
+    format: int
+    licences: tuple[str, ...]
+    maintainers: tuple[tuple[str, str], ...]
+    build_type: str
+    depends: Mapping[str, frozenset[str]]
+    groups: frozenset[str]
+
+    def needs(self, *kinds: str) -> frozenset[str]:
+        """Return what the package declares to need, for any of the kinds; for anything when none is given."""
+        return frozenset().union(*(self.depends[kind] for kind in kinds or KINDS))
+
+
+def read(package: Path) -> Manifest:
+    """Read the manifest of the package in a folder.
+
+    Raises:
+        CheckFailed: there is none, or ROS would refuse it; says why.
+    """
+    path = package / MANIFEST
+    if path.is_symlink() or not path.is_file():
+        raise CheckFailed(f"{package.name} has no {MANIFEST}.")
+    data = path.read_bytes()[: MAX_BYTES + 1]
+    if len(data) > MAX_BYTES:
+        raise CheckFailed(f"{package.name}/{MANIFEST} is far larger than a manifest.")
+    try:
+        text = data.decode()
+    except UnicodeDecodeError:
+        raise CheckFailed(f"{package.name}/{MANIFEST} is not UTF-8 text.") from None
+    return parse(text, f"{package.name}/{MANIFEST}")
+
+
+def parse(text: str, where: str = MANIFEST) -> Manifest:
+    """Read a manifest's text; `where` names it in messages.
+
+    Raises:
+        CheckFailed: ROS would refuse it; says why.
+    """
+    # No manifest needs a document type, and one can make a small file huge.
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
+    try:
+        found = parse_package_string(text, where)
+    except InvalidPackage as error:
+        raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
+    except Exception as error:  # expat's and catkin_pkg's own, such as TypeError for a file of bytes
+        raise CheckFailed(f"{where} is no well-formed XML: {error}") from None
+    return Manifest(
+        name=found.name,
+        version=found.version,
+        description=found.description,
+        format=found.package_format,
+        licences=tuple(str(licence) for licence in found.licenses),
+        maintainers=tuple((person.name, person.email or "") for person in found.maintainers),
+        build_type=next((each.content or "" for each in found.exports if each.tagname == "build_type"), ""),
+        depends={kind: frozenset(each.name for each in getattr(found, f"{kind}_depends")) for kind in KINDS},
+        groups=frozenset(each.name for each in found.member_of_groups),
+    )
+
+
+def _reason(error: InvalidPackage) -> str:
+    """Return catkin_pkg's complaint without the headline that repeats the path."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    said = [line for line in lines if not line.startswith("Error(s) in ")] or lines
+    return "; ".join(said).replace(":; ", ": ")
