@@ -25,6 +25,7 @@ setup(
         'console_scripts': [
             'basic_node = my_robot_package.nodes.basic_node:main',
             'configured_node = my_robot_package.nodes.configured_node:main',
+            'distance_driver = my_robot_package.nodes.distance_driver:main',
             'robot_controller = my_robot_package.nodes.robot_controller:main',
             'robust_node = my_robot_package.nodes.robust_node:main',
             'sensor_processor = my_robot_package.nodes.sensor_processor:main',

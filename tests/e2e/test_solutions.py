@@ -23,6 +23,7 @@ PACKAGES = ("my_robot_interfaces", "my_robot_package")
 FIRST_WORDS = {
     "basic_node": "Basic node initialised",
     "configured_node": "DefaultRobot is ready",
+    "distance_driver": "Distance driver initialised",
     "robot_controller": "Robot controller initialised",
     "robust_node": "Robust node initialised",
     "sensor_processor": "Sensor processor initialised",

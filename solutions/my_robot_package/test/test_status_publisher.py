@@ -18,6 +18,7 @@ import math
 from pathlib import Path
 
 from my_robot_interfaces.msg import RobotStatus
+from my_robot_interfaces.srv import CheckTrip
 from my_robot_package.nodes.status_publisher import (
     battery_percent, STATUS_QOS, StatusPublisher)
 import pytest
@@ -62,6 +63,42 @@ def test_a_late_watcher_gets_what_the_sensors_said(world):
     assert heard[0].is_charging
     assert list(heard[0].joint_positions) == pytest.approx([0.1, 0.2])
     assert heard[0].header.stamp.sec > 0
+
+
+@pytest.mark.parametrize(('legs', 'reserve', 'left', 'possible'), [
+    ([], 20, 40, True),
+    ([50.0, 50.0], 20, 20, True),
+    ([50.0, 51.0], 20, 19, False),
+    ([0.5], 20, 39, True),
+    ([200.0], 0, 0, True),
+    ([1e300], 0, 0, True),
+    ([1e308, 1e308], 1, 0, False),
+    ([10.0, -1.0], 0, RobotStatus.BATTERY_UNKNOWN, False),
+    ([math.nan], 0, RobotStatus.BATTERY_UNKNOWN, False),
+    ([math.inf], 0, RobotStatus.BATTERY_UNKNOWN, False),
+])
+def test_a_trip_is_judged_by_the_battery(world, legs, reserve, left, possible):
+    """At 40 %, and 5 m for one percent; a reason is given when the trip is not possible."""
+    publisher = world.add(StatusPublisher(context=world.context))
+    publisher.battery_callback(BatteryState(percentage=0.4))
+    request = CheckTrip.Request(legs=legs, reserve=reserve)
+    answer = publisher.check_trip(request, CheckTrip.Response())
+    assert (answer.battery_at_end, answer.possible) == (left, possible)
+    assert bool(answer.reason) is not possible
+
+
+def test_no_trip_is_possible_on_a_battery_never_heard_of(world):
+    """Over the wire: the service answers, and keeps some charge in reserve by default."""
+    world.add(StatusPublisher(context=world.context))
+    client = world.add(Node('client', context=world.context)).create_client(
+        CheckTrip, 'check_trip')
+    world.until(client.service_is_ready)
+    future = client.call_async(CheckTrip.Request(legs=[1.0]))
+    world.until(future.done)
+    assert not future.result().possible
+    assert future.result().battery_at_end == RobotStatus.BATTERY_UNKNOWN
+    assert 'unknown' in future.result().reason
+    assert CheckTrip.Request().reserve == 20
 
 
 def test_the_configuration_names_only_declared_parameters(world):

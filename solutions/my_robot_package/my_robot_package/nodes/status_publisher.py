@@ -12,11 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sum up what the robot's own sensors say, once a second, for whoever watches the fleet."""
+"""Sum up what the robot's own sensors say, and say how far its battery would take it."""
 
 import math
 
 from my_robot_interfaces.msg import RobotStatus
+from my_robot_interfaces.srv import CheckTrip
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -29,7 +30,12 @@ STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def battery_percent(battery):
-    """Return a BatteryState's charge in whole percent, or BATTERY_UNKNOWN."""
+    """
+    Return a BatteryState's charge in whole percent, 0 to 100, or BATTERY_UNKNOWN.
+
+    A BatteryState counts from 0.0 to 1.0. It is unknown when battery is None, or when its
+    percentage is nan or outside of that range.
+    """
     if battery is None or not 0.0 <= battery.percentage <= 1.0:
         return RobotStatus.BATTERY_UNKNOWN  # BatteryState says nan when it does not know
     return math.floor(battery.percentage * 100.0 + 0.5)
@@ -37,19 +43,39 @@ def battery_percent(battery):
 
 class StatusPublisher(Node):
     """
-    Publish robot_status (my_robot_interfaces/RobotStatus) at a steady rate.
+    Publishes the robot's status at a steady rate, and judges trips by the battery.
 
-    Subscribes to battery_state (sensor_msgs/BatteryState) and joint_states
-    (sensor_msgs/JointState). Both parameters are read once, at the start.
+    Publishes robot_status (my_robot_interfaces/RobotStatus), subscribes to battery_state
+    (sensor_msgs/BatteryState) and joint_states (sensor_msgs/JointState), and serves
+    check_trip (my_robot_interfaces/CheckTrip).
     """
 
     def __init__(self, **kwargs):
+        """
+        Name the node status_publisher; create its endpoints and its timer.
+
+        The publisher uses STATUS_QOS, the subscriptions a queue of 10. The timer calls
+        publish_status every status_period. kwargs are handed on to Node, so that a test can
+        pass a context of its own.
+        """
         super().__init__('status_publisher', **kwargs)
-        self.robot_name = self.declare_parameter(
+        self.robot_name, period = self.read_parameters()
+        self.battery = None
+        self.joints = None
+        self.publisher = self.create_publisher(RobotStatus, 'robot_status', STATUS_QOS)
+        self.create_subscription(BatteryState, 'battery_state', self.battery_callback, 10)
+        self.create_subscription(JointState, 'joint_states', self.joint_callback, 10)
+        self.create_service(CheckTrip, 'check_trip', self.check_trip)
+        self.create_timer(period, self.publish_status)
+        self.get_logger().info(f'Status of {self.robot_name} every {period:g} s')
+
+    def read_parameters(self):
+        """Return robot_name and status_period (s); both are read once, at the start."""
+        name = self.declare_parameter(
             'robot_name',
             'MyRobot01',
             ParameterDescriptor(description='who is speaking', read_only=True),
-        ).value
+        )
         period = self.declare_parameter(
             'status_period',
             1.0,
@@ -58,14 +84,8 @@ class StatusPublisher(Node):
                 floating_point_range=[FloatingPointRange(from_value=0.05, to_value=60.0)],
                 read_only=True,
             ),
-        ).value
-        self.battery = None
-        self.joints = None
-        self.publisher = self.create_publisher(RobotStatus, 'robot_status', STATUS_QOS)
-        self.create_subscription(BatteryState, 'battery_state', self.battery_callback, 10)
-        self.create_subscription(JointState, 'joint_states', self.joint_callback, 10)
-        self.create_timer(period, self.publish_status)
-        self.get_logger().info(f'Status of {self.robot_name} every {period:g} s')
+        )
+        return name.value, period.value
 
     def battery_callback(self, msg):
         """Keep the newest battery state."""
@@ -76,7 +96,12 @@ class StatusPublisher(Node):
         self.joints = msg
 
     def publish_status(self):
-        """Publish what is known now; what was never heard of stays unknown or empty."""
+        """
+        Publish what is known now; what was never heard of stays unknown or empty.
+
+        The stamp is the time of this call, by self.get_clock(). The robot is charging when the
+        battery's power_supply_status says POWER_SUPPLY_STATUS_CHARGING.
+        """
         msg = RobotStatus()
         msg.header.stamp = self.get_clock().now().to_msg()
         msg.robot_name = self.robot_name
@@ -89,6 +114,31 @@ class StatusPublisher(Node):
             msg.joint_positions = list(self.joints.position)  # float64 to float32
         self.publisher.publish(msg)
         self.get_logger().debug(f'Published the status of {msg.robot_name}')
+
+    def check_trip(self, request, response):
+        """
+        Fill in whether the battery would last for a trip, and return the response.
+
+        battery_at_end is the battery's level now less the percent that the legs take, rounded
+        down, and never below 0. The trip is possible when that is at least the reserve.
+
+        When the battery's level is unknown, or a leg is negative or not finite, the trip is not
+        possible and battery_at_end is BATTERY_UNKNOWN. Whenever it is not possible, the reason
+        says why.
+        """
+        level = battery_percent(self.battery)
+        if level == RobotStatus.BATTERY_UNKNOWN:
+            response.reason = 'the level of the battery is unknown'
+        elif not all(0.0 <= leg < math.inf for leg in request.legs):
+            response.reason = 'each leg must be a distance of at least 0 m'
+        else:
+            used = sum(request.legs) / CheckTrip.Request.METRES_PER_PERCENT
+            left = math.floor(max(0.0, level - used))
+            response.battery_at_end = left
+            response.possible = left >= request.reserve
+            if not response.possible:
+                response.reason = f'{left} % would be left, less than the reserve'
+        return response
 
 
 def main(args=None):
