@@ -1,4 +1,4 @@
-"""`python -m autograder.course sync|check`: bring the notebooks up to date, or say what is wrong with them."""
+"""`python -m autograder.course sync|check|tables`: bring the notebooks up to date, or say what is wrong with them."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.course.hygiene import hygiene
 from autograder.course.points import set_points, wrong_points
+from autograder.course.survey import PAGE, Survey
 from autograder.course.sync import Chapter, chapters, stale
 from autograder.course.sync import sync as bring_in
+from autograder.exceptions import UsageError
 from autograder.layout import CHAPTERS, SOLUTIONS
 from autograder.suites import manifest
 
@@ -40,7 +42,7 @@ def sync(root: Path, solutions: Path) -> None:
             ):
                 chapter.write(notebook)
                 changed.append(Finding(chapter.path.name, None, "points"))
-        except CourseError as error:
+        except (CourseError, UsageError) as error:
             raise click.ClickException(str(error)) from error
         click.echo(
             f"{chapter.assignment}: {len(changed)} brought up to date"
@@ -65,8 +67,20 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
     notebook, name = chapter.read(), chapter.path.name
     found = [*stale(chapter, solutions), *hygiene(name, notebook)]
     if any(map(is_graded, notebook.cells)):
-        found += wrong_points(name, notebook, manifest(chapter.assignment))
+        try:
+            found += wrong_points(name, notebook, manifest(chapter.assignment))
+        except UsageError as error:
+            found.append(Finding(name, None, str(error)))
     return found
+
+
+@main.command()
+def tables() -> None:
+    """Write the instructors' page: what is taught where, and which checks judge it."""
+    survey = Survey.of_the_course()
+    for finding in survey.coverage.findings:
+        click.echo(str(finding))
+    PAGE.write_text(survey.page(), encoding="utf-8")
 
 
 if __name__ == "__main__":
