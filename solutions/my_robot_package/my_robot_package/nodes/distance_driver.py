@@ -24,11 +24,10 @@ import rclpy
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
-from rclpy.exceptions import ROSInterruptException
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 
-CONTROL_RATE = 10.0  # Hz: commands and feedback
+CONTROL_PERIOD = Duration(seconds=0.1)  # between two commands, and two feedbacks
 PROGRESS = 0.01  # m: less than this is standing still
 PATIENCE = Duration(seconds=1.0)  # how long it may stand still before the goal is given up
 
@@ -121,24 +120,20 @@ class DistanceDriver(Node):
         goal = goal_handle.request
         start = self.position
         driven, furthest, progress_time = 0.0, 0.0, self.get_clock().now()
-        rate = self.create_rate(CONTROL_RATE)
-        try:
-            while driven < goal.distance:
-                if goal_handle.is_cancel_requested:
-                    return driven, 'cancelled'
-                if self.get_clock().now() - progress_time > PATIENCE:
-                    return driven, 'no progress: the robot is stuck, or its odometry is silent'
-                goal_handle.publish_feedback(
-                    DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
-                command = Twist()
-                command.linear.x = goal.speed
-                self.cmd_vel_pub.publish(command)
-                rate.sleep()
-                driven = math.dist(start, self.position)
-                if driven >= furthest + PROGRESS:
-                    furthest, progress_time = driven, self.get_clock().now()
-        finally:
-            self.destroy_rate(rate)
+        command = Twist()
+        command.linear.x = goal.speed
+        while driven < goal.distance:
+            if goal_handle.is_cancel_requested:
+                return driven, 'cancelled'
+            if self.get_clock().now() - progress_time > PATIENCE:
+                return driven, 'no progress: the robot is stuck, or its odometry is silent'
+            goal_handle.publish_feedback(
+                DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
+            self.cmd_vel_pub.publish(command)
+            self.get_clock().sleep_for(CONTROL_PERIOD)
+            driven = math.dist(start, self.position)
+            if driven >= furthest + PROGRESS:
+                furthest, progress_time = driven, self.get_clock().now()
         return driven, ''
 
 
@@ -149,7 +144,7 @@ def main(args=None):
     try:
         node = DistanceDriver()
         rclpy.spin(node, executor=MultiThreadedExecutor())
-    except (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException):
+    except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except RuntimeError:
         if rclpy.ok():  # if not, a signal fell between two waits, and rclpy tripped over it
