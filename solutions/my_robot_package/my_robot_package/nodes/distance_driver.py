@@ -130,7 +130,7 @@ class DistanceDriver(Node):
             goal_handle.publish_feedback(
                 DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
             self.cmd_vel_pub.publish(command)
-            self.get_clock().sleep_for(CONTROL_PERIOD)
+            self.get_clock().sleep_for(CONTROL_PERIOD, self.context)
             driven = math.dist(start, self.position)
             if driven >= furthest + PROGRESS:
                 furthest, progress_time = driven, self.get_clock().now()
