@@ -20,6 +20,7 @@ from autograder.layout import CHAPTERS, SOLUTIONS
 from autograder.suites import manifest
 
 _folders = click.option("--chapters", "root", type=click.Path(path_type=Path), default=CHAPTERS, show_default=True)
+_names = click.argument("names", nargs=-1, metavar="[ID]...")
 _solutions = click.option("--solutions", type=click.Path(path_type=Path), default=SOLUTIONS, show_default=True)
 
 
@@ -29,11 +30,12 @@ def main() -> None:
 
 
 @main.command()
+@_names
 @_folders
 @_solutions
-def sync(root: Path, solutions: Path) -> None:
+def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
     """Write the reference's text into cells and given files, and the suites' points into grade cells."""
-    for chapter in chapters(root):
+    for chapter in _chosen(names, root):
         try:
             changed = bring_in(chapter, solutions)
             notebook = chapter.read()
@@ -52,14 +54,23 @@ def sync(root: Path, solutions: Path) -> None:
 
 
 @main.command()
+@_names
 @_folders
 @_solutions
-def check(root: Path, solutions: Path) -> None:
+def check(names: tuple[str, ...], root: Path, solutions: Path) -> None:
     """Say what is stale, or not as a notebook of the course must be; exit 1 then."""
-    found = [finding for chapter in chapters(root) for finding in findings(chapter, solutions)]
+    found = [finding for chapter in _chosen(names, root) for finding in findings(chapter, solutions)]
     for finding in found:
         click.echo(str(finding))
     sys.exit(1 if found else 0)
+
+
+def _chosen(names: tuple[str, ...], root: Path) -> list[Chapter]:
+    """Return the chapters of these names, all without any."""
+    there = {chapter.assignment: chapter for chapter in chapters(root)}
+    if unknown := set(names) - set(there):
+        raise click.UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(there)}")
+    return [there[name] for name in names or there]
 
 
 def findings(chapter: Chapter, solutions: Path) -> list[Finding]:

@@ -32,9 +32,9 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(course: Path, verb: str) -> Result:
+def run(course: Path, verb: str, *names: str) -> Result:
     folders = ["--chapters", str(course / "chapters"), "--solutions", str(course / "solutions")]
-    return CliRunner().invoke(command.main, [verb, *folders])
+    return CliRunner().invoke(command.main, [verb, *names, *folders])
 
 
 def test_check_names_everything_that_is_wrong_and_ends_with_1(course: Path) -> None:
@@ -56,3 +56,10 @@ def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
     result = run(course, "sync")
     assert result.exit_code == 1
     assert "01_small.ipynb, cell 'node': node.py: function 'main' occurs 0 times" in result.output
+
+
+def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path) -> None:
+    result = run(course, "check", "99_flying")
+    assert result.exit_code == 2
+    assert "there is no chapter 99_flying; there are: 01_small" in result.output
+    assert run(course, "check", "01_small").exit_code == 1
