@@ -1,0 +1,78 @@
+"""What a pytest run says of itself in JUnit XML: read with bounds, and taken for a claim."""
+
+from __future__ import annotations
+
+import os
+import stat
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+
+MAX_BYTES = 1024 * 1024
+MAX_MESSAGE = 300
+
+
+class Verdict(str, Enum):
+    """What a run claims of one test."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    ERROR = "error"
+    SKIPPED = "skipped"
+
+
+@dataclass(frozen=True)
+class Claims:
+    """What a run claims of its tests.
+
+    Attributes:
+        verdicts: by test, `module::name`, in the order in which they ran.
+        messages: the first line of what went wrong, by test.
+    """
+
+    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+    messages: Mapping[str, str] = field(default_factory=dict)
+
+
+def read(path: Path) -> Claims | None:
+    """Read a report that untrusted code may have written; None when it is no plain, small JUnit file."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        return None
+    with os.fdopen(descriptor, "rb") as stream:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            return None
+        return parse(stream.read(MAX_BYTES + 1))
+
+
+def parse(data: bytes) -> Claims | None:
+    """Parse JUnit XML; None when it is too large, declares entities, or is not JUnit XML."""
+    if len(data) > MAX_BYTES or b"<!" in data.replace(b"<![CDATA[", b""):
+        return None
+    try:
+        root = ET.fromstring(data)
+    except (ET.ParseError, ValueError, LookupError):
+        return None
+    verdicts: dict[str, Verdict] = {}
+    messages: dict[str, str] = {}
+    for case in root.iter("testcase"):
+        module = case.get("classname", "").rpartition(".")[2]
+        name = f"{module}::{case.get('name', '')}"
+        verdict, message = _verdict(case)
+        # A test whose clean-up fails is there twice; what is bad stays.
+        if verdicts.get(name, Verdict.PASSED) is Verdict.PASSED:
+            verdicts[name] = verdict
+            messages[name] = message
+    return Claims(verdicts, messages)
+
+
+def _verdict(case: ET.Element) -> tuple[Verdict, str]:
+    for tag, verdict in (("failure", Verdict.FAILED), ("error", Verdict.ERROR), ("skipped", Verdict.SKIPPED)):
+        found = case.find(tag)
+        if found is not None:
+            lines = (found.get("message") or "").splitlines()
+            return verdict, (lines[0] if lines else "")[:MAX_MESSAGE]
+    return Verdict.PASSED, ""

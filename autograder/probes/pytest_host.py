@@ -1,0 +1,41 @@
+"""Runs pytest in the sandbox, reports how it ended, and stays until the trusted side has looked at what is left.
+
+    python pytest_host.py ENDED_FD GO_FD REVERSED ARGUMENTS...
+
+When pytest has ended, its exit status goes to ENDED_FD; the process then waits for the end of GO_FD. All of it is in the
+power of the tests that run here: the trusted side takes what it hears for their claim.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+
+import pytest
+
+
+class Reversed:
+    """Lets the tests run in the opposite order, first files then tests."""
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Turn the order round."""
+        items.reverse()
+
+
+def main() -> int:
+    """Run pytest with the arguments of the command line."""
+    ended, go, backwards = (int(argument) for argument in sys.argv[1:4])
+    arguments, sys.argv = sys.argv[4:], ["pytest"]
+    status = int(pytest.main(arguments, plugins=[Reversed()] if backwards else []))
+    gc.collect()  # what nothing refers to any more is not left behind
+    sys.stdout.flush()
+    os.write(ended, f"{status}\n".encode())
+    os.read(go, 1)
+    return status
+
+
+if __name__ == "__main__":
+    sys.path.pop(0)  # this file's folder is none of the tests' business
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""Versions of a package under test, kept so alike from outside that only their behaviour tells them apart.
+
+A test that recognises a version without trying it could claim the right thing of each: by a file's text, its hash or
+byte code, by names, paths or times. So every version, the reference too, goes through `disguise`: no comments, no
+docstrings, local names and private attributes drawn anew for each run. Versions of different styles, right and faulty
+ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
+
+What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault; that earns
+what a test earns. A test that fails at random may be lucky; it has to pass on every right version, and more than once.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import random
+import shutil
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+WHEN = 1_750_000_000  # s since 1970: the time of every file of every version
+_SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+_SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
+_SCRIPT = """#!{python}
+import sys
+
+from {module} import main
+
+sys.exit(main())
+"""
+
+
+@dataclass(frozen=True)
+class Version:
+    """A version of a package.
+
+    Attributes:
+        files: its texts, by path below the package's folder; those of its Python module, `launch` and `config` are
+            installed.
+        scripts: `package.module` with a `main` by the name of its executable.
+    """
+
+    files: Mapping[str, str]
+    scripts: Mapping[str, str]
+
+
+def read(folder: Path, scripts: Mapping[str, str]) -> Version:
+    """Read a package's files, all but its tests."""
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    names = [path.relative_to(folder) for path in paths]
+    return Version({str(name): (folder / name).read_text() for name in names if name.parts[0] != "test"}, scripts)
+
+
+def disguise(version: Version, seed: int) -> Version:
+    """Return a version of the same behaviour whose Python files look different for each seed."""
+    draw = random.Random(seed)
+    return Version(
+        {name: _disguised(text, draw) if name.endswith(".py") else text for name, text in version.files.items()},
+        version.scripts,
+    )
+
+
+def lay_down(version: Version, package: str, tests: Path, root: Path) -> Path:
+    """Write a version as a colcon workspace below `root`, as if it had been built; return its source folder.
+
+    Args:
+        version: the package under test.
+        package: its name.
+        tests: the folder of tests that the source gets.
+        root: the workspace; it gets `src/PACKAGE` and `install/PACKAGE`.
+    """
+    source, prefix = root / "src" / package, root / "install" / package
+    for name, text in version.files.items():
+        for path in (source / name, _installed(prefix, package, name)):
+            if path is not None:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+    index = prefix / "share/ament_index/resource_index/packages" / package
+    index.parent.mkdir(parents=True, exist_ok=True)
+    index.write_text("")
+    for name, module in version.scripts.items():
+        script = prefix / "lib" / package / name
+        script.parent.mkdir(parents=True, exist_ok=True)
+        script.write_text(_SCRIPT.format(python=sys.executable, module=module))
+        script.chmod(0o755)
+    if tests.is_dir():
+        shutil.copytree(tests, source / "test", ignore=shutil.ignore_patterns("__pycache__"))
+    for path in sorted(root.rglob("*"), reverse=True):
+        os.utime(path, (WHEN, WHEN))
+    return source
+
+
+def _installed(prefix: Path, package: str, name: str) -> Path | None:
+    top = Path(name).parts[0]
+    if top == package:
+        return prefix / _SITE / name
+    return prefix / "share" / package / name if top in ("launch", "config", "package.xml") else None
+
+
+def _disguised(text: str, draw: random.Random) -> str:
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:] or [ast.Pass()]
+    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
+        names = {name: _word(draw) for name in sorted(_own_names(function))}
+        for node in ast.walk(function):
+            if isinstance(node, ast.Name) and node.id in names:
+                node.id = names[node.id]
+    for owner in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
+        attributes = {node.attr for node in _of_self(owner) if isinstance(node.ctx, ast.Store)}
+        fresh = {name: _word(draw) for name in sorted(attributes)}
+        for node in _of_self(owner):
+            node.attr = fresh.get(node.attr, node.attr)
+    return ast.unparse(tree) + "\n"
+
+
+def _own_names(function: ast.FunctionDef) -> set[str]:
+    """Return the names that only a function assigns to: no parameters, which callers may name, and nothing shared."""
+    nodes = list(ast.walk(function))
+    stored = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    kept = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    kept |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    return stored - kept
+
+
+def _of_self(owner: ast.ClassDef) -> Iterator[ast.Attribute]:
+    for node in ast.walk(owner):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+            yield node
+
+
+def _word(draw: random.Random) -> str:
+    return "_" + "".join(draw.choice(_SYLLABLES) for _ in range(4))

@@ -1,0 +1,4 @@
+"""The hidden suite of 06_testing: do a student's tests pass on what is right, and fail on what is not?"""
+
+PACKAGES = ("speed_guard",)
+MODULES = ("function", "node", "launching", "craft")

@@ -1,0 +1,151 @@
+"""All runs of one student's tests: first on a right version, then on many, right and faulty, in a drawn order.
+
+Right versions and faulty ones are mixed, so that the time of a run does not tell which it has. What does not pass on the
+first right version meets no other.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
+
+from autograder.checks import CheckFailed, expect
+from autograder.lab import Workspace
+from autograder.probes import testing
+from autograder.probes.colcon import colcon_test
+from autograder.probes.testing import Order, Report
+from autograder.sandbox import Ending
+from autograder.suites.ch06_testing.faults import GUARD, LAUNCH, LIMITS, PACKAGE, STYLES, Fault, broken, faults, right
+
+LEAST = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # tests that have to run
+FILES = {
+    **dict.fromkeys(("stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS),
+    **dict.fromkeys(("name", "first_distance", "newest", "turn", "one_answer"), GUARD),
+    **dict.fromkeys(("parameters", "sensor_qos", "stale", "watchdog"), GUARD),
+    **dict.fromkeys(("configuration", "runs"), LAUNCH),
+}
+INTRUDER = {
+    "cmd_vel": "geometry_msgs/msg/Twist",
+    "cmd_vel_raw": "geometry_msgs/msg/Twist",
+    "distance": "sensor_msgs/msg/Range",
+}
+SECOND, BACKWARDS, DISTURBED = "second", "backwards", "disturbed"
+
+
+class Examination:
+    """The runs of a submission's tests; each is made when it is first asked for, once."""
+
+    def __init__(self, workspace: Workspace, seed: int) -> None:
+        self._workspace = workspace
+        self._draw = random.Random(f"{seed}:versions")
+
+    @cached_property
+    def trial(self) -> dict[str, Report]:
+        """What the tests of each file say of a right version."""
+        tests = testing.source_of(self._workspace, PACKAGE) / "test"
+        there = [name for name in LEAST if (tests / name).is_file()]
+        return dict(zip(there, self._run([self._right((name,), STYLES[0]) for name in there]), strict=True))
+
+    def fit(self, name: str) -> bool:
+        """Whether the tests of a file pass on the first right version, and are enough to judge others by."""
+        report = self.trial.get(name)
+        return report is not None and report.passed and len(report.executed) >= LEAST[name]
+
+    @cached_property
+    def runs(self) -> dict[tuple[str, str], Report]:
+        """The other runs: by file, and what is special about the version or the run."""
+        orders: dict[tuple[str, str], Order] = {}
+        for name in filter(self.fit, LEAST):
+            orders[name, SECOND] = self._right((name,), STYLES[1])
+            if name != LAUNCH:
+                orders[name, BACKWARDS] = self._right((name,), STYLES[0], backwards=True)
+        if self.fit(GUARD):
+            orders[GUARD, DISTURBED] = self._right((GUARD,), self._draw.choice(STYLES), intruder=INTRUDER)
+        for fault in faults():
+            name = FILES[fault.check]
+            if self.fit(name):
+                version = broken(fault, self._draw.choice(STYLES), self._draw)
+                orders[name, fault.id] = Order((name,), version, first_failure=True)
+        keys = list(orders)
+        self._draw.shuffle(keys)
+        return dict(zip(keys, self._run([orders[key] for key in keys]), strict=True))
+
+    @cached_property
+    def colcon(self) -> Report:
+        """What `colcon test` does with the student's own package."""
+        return colcon_test(self._workspace, PACKAGE)
+
+    def expect_right(self, name: str, what: str) -> None:
+        """Fail the check unless a file's tests also pass in another run on a right version."""
+        report = self.runs[name, what]
+        if not report.passed:
+            raise CheckFailed(_trouble(name, report, what))
+
+    def expect_objection(self, check: str, promise: str) -> None:
+        """Fail the check unless the tests of its file object to every fault that belongs to it.
+
+        A run that has to be stopped objects, too; that it does not end by itself is another check's matter.
+        """
+        name = FILES[check]
+        mine = [fault for fault in faults() if fault.check == check]
+        found = [fault for fault in mine if self._objects(name, fault)]
+        expect(
+            len(found) == len(mine),
+            f"{len(mine) - len(found)} of {len(mine)} faulty versions that break this line of the contract "
+            f"pass all tests in {name}: {promise}",
+            fraction=len(found) / len(mine) if len(found) < len(mine) else 0.0,
+        )
+
+    def endless(self) -> list[str]:
+        """Return the files whose tests had to be stopped on a faulty version."""
+        ids = {fault.id for fault in faults()}
+        return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
+
+    def _objects(self, name: str, fault: Fault) -> bool:
+        report = self.runs[name, fault.id]
+        return report.ending is Ending.WALL_TIME or report.objects(self.trial[name])
+
+    def _right(self, files: tuple[str, ...], style: str, **more: object) -> Order:
+        return Order(files, right(style, self._draw), **more)  # type: ignore[arg-type]
+
+    def _run(self, orders: Sequence[Order]) -> list[Report]:
+        return testing.run(self._workspace, PACKAGE, orders)
+
+
+def expect_passed(examination: Examination, name: str) -> None:
+    """Fail the check unless a file's tests pass on the first right version, and are enough."""
+    report = examination.trial.get(name)
+    if report is None:
+        raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
+    if not report.passed:
+        raise CheckFailed(_trouble(name, report, "trial"))
+    count = len(report.executed)
+    expect(
+        count >= LEAST[name],
+        f"Only {count} of at least {LEAST[name]} tests in {name} ran: a case of parametrize counts as one.",
+        fraction=0.5,
+    )
+
+
+_WHERE = {
+    "trial": "on a right speed_guard",
+    SECOND: "on a right speed_guard that is written differently: test the contract, no attributes and no inner names",
+    BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
+    DISTURBED: "while another robot publishes the same topics in the default domain: give the context a domain_id",
+}
+
+
+def _trouble(name: str, report: Report, what: str) -> str:
+    where = _WHERE[what]
+    if report.ending is Ending.WALL_TIME:
+        return f"The tests in {name} do not end {where}."
+    if report.failed:
+        first = report.failed[0].partition("::")[2]
+        # Only the first version's text is public: what a test says of another one stays here.
+        said = f": {report.claims.messages[report.failed[0]]}" if what == "trial" else ""
+        return f"{len(report.failed)} of {len(report.claims.verdicts)} tests in {name} fail {where}: {first}{said}"
+    if report.status in (0, 5):
+        return f"No test in {name} ran {where}."
+    return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

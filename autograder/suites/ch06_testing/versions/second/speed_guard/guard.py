@@ -1,0 +1,82 @@
+"""The same node, with its times in nanoseconds and its callbacks in the constructor."""
+
+import sys
+
+from geometry_msgs.msg import Twist
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Range
+import speed_guard.limits
+
+SENSOR = QoSProfile(
+    reliability=ReliabilityPolicy.BEST_EFFORT, history=HistoryPolicy.KEEP_LAST, depth=3)
+
+
+class SpeedGuard(Node):
+    """The guard."""
+
+    def __init__(self, **kwargs):
+        """Start it."""
+        super().__init__('speed_guard', **kwargs)
+        self.declare_parameters('', [
+            ('timeout', 0.5), ('slow_distance', 1.5), ('stop_distance', 0.5)])
+        self.patience = int(self.get_parameter('timeout').value * 1e9)
+        self.readings = []
+        self.newest = None
+        self.out = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.create_subscription(Twist, 'cmd_vel_raw', self.answer, 10)
+        self.create_subscription(Range, 'distance', self.measure, SENSOR)
+        self.create_timer(0.04, self.look)
+
+    def nanoseconds(self):
+        """Return the ROS time."""
+        return self.get_clock().now().nanoseconds
+
+    def measure(self, reading):
+        """Keep the reading."""
+        self.readings = [(reading.range, self.nanoseconds())]
+
+    def known(self):
+        """Return the distance, or None."""
+        for value, when in self.readings:
+            if self.nanoseconds() - when <= self.patience:
+                return value
+        return None
+
+    def answer(self, command):
+        """Publish what is allowed."""
+        self.newest = self.nanoseconds()
+        near = self.get_parameter('stop_distance').value
+        far = self.get_parameter('slow_distance').value
+        result = Twist(linear=command.linear, angular=command.angular)
+        result.linear.x = speed_guard.limits.safe_speed(
+            command.linear.x, self.known(), stop_distance=near, slow_distance=far)
+        self.out.publish(result)
+
+    def look(self):
+        """Stop once after a silence."""
+        if self.newest is not None and self.nanoseconds() - self.newest > self.patience:
+            self.out.publish(Twist())
+            self.newest = None
+
+
+def main(args=None):
+    """Run it."""
+    rclpy.init(args=args)
+    executor = SingleThreadedExecutor()
+    executor.add_node(SpeedGuard())
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except RuntimeError:
+        if rclpy.ok():
+            raise
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    sys.exit(main())
