@@ -1,0 +1,28 @@
+"""The contract of the exercises: the names that the checks use, and the pages to read."""
+
+from __future__ import annotations
+
+import math
+
+DANCE = "square_dance"
+DANCER = "dancer"
+DANCE_LAUNCH = "launch/square_dance.launch.py"
+DANCE_CONFIG = "config/square_dance.yaml"
+SPEED = 0.25  # m/s
+TURN = math.pi / 8  # rad/s
+
+WATCH = "wall_alarm"
+ALARM = "alarm"
+ALARM_CONFIG = "config/wall_alarm.yaml"
+NEAR = 0.8  # m, in the alarm's configuration
+
+LICENCE = "Apache-2.0"
+BUILD_TYPE = "ament_python"
+
+DOCS = "https://docs.ros.org/en/jazzy/"
+CREATE = f"{DOCS}Tutorials/Beginner-Client-Libraries/Creating-Your-First-ROS2-Package.html"
+DEVELOP = f"{DOCS}How-To-Guides/Developing-a-ROS-2-Package.html"
+ROSDEP = f"{DOCS}Tutorials/Intermediate/Rosdep.html"
+COLCON = f"{DOCS}Tutorials/Beginner-Client-Libraries/Colcon-Tutorial.html"
+SUBPACKAGES = "https://setuptools.pypa.io/en/latest/userguide/package_discovery.html"
+REP_149 = "https://www.ros.org/reps/rep-0149.html"
