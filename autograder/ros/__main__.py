@@ -9,22 +9,19 @@ from __future__ import annotations
 import os
 import shlex
 import sys
-import sysconfig
 
-from autograder.ros.environment import activate, find
+from autograder.ros.environment import activate, find, search_path, path_with_scripts
 from autograder.ros.exceptions import RosError
 
 
 def main(arguments: list[str]) -> int:
     """Become the command in `arguments`, or print the variables; return the exit status when it cannot be."""
-    path = os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", os.defpath)])
     try:
         if not arguments:
-            for name, value in {**find().variables(), "PATH": path}.items():
+            for name, value in {**find().variables(), "PATH": path_with_scripts()}.items():
                 print(f"export {name}={shlex.quote(value)}")
             return 0
         activate()
-        os.environ["PATH"] = path
         os.execvp(arguments[0], arguments)
     except RosError as error:
         print(f"ROS 2: {error}.", file=sys.stderr)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
+import sysconfig
+import sysconfig
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -119,7 +121,8 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
     """Switch ROS 2 on for this process and the children it starts. Safe to call twice.
 
-    Call it before the first `import rclpy`. Workspaces that are sourced already stay sourced.
+    Call it before the first `import rclpy`. `ros2` and `colcon` are found then. Workspaces that are sourced already stay sourced. `ros2` and `colcon` are
+    found by their names, also where this Python's environment was not activated, as in a notebook's kernel.
 
     Raises:
         RosError: there is no usable ROS 2 Jazzy.
@@ -133,4 +136,11 @@ def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> R
         if chosen in os.environ:
             variables.pop(chosen)
     os.environ.update(variables)
+    os.environ["PATH"] = path_with_scripts()
     return environment
+
+
+def path_with_scripts() -> str:
+    """Return PATH with the folder of this Python's own programs, in front if it was not there."""
+    scripts, path = sysconfig.get_path("scripts"), os.environ.get("PATH", os.defpath)
+    return path if scripts in path.split(os.pathsep) else os.pathsep.join([scripts, path])

@@ -57,6 +57,20 @@ print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.en
     assert done.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], done.stderr
 
 
+def test_activating_finds_the_programs_of_this_python_by_their_names() -> None:
+    code = """
+import os, shutil
+from autograder.ros import activate
+before = shutil.which("colcon")
+activate(); activate()
+print(before, shutil.which("colcon"), shutil.which("ros2"))
+print(os.environ["PATH"].split(os.pathsep).count(os.path.dirname(shutil.which("colcon"))))
+"""
+    done = python(code, PATH="/usr/bin:/bin")
+    scripts = Path(sys.executable).parent
+    assert done.stdout.split() == ["None", str(scripts / "colcon"), str(scripts / "ros2"), "1"], done.stderr
+
+
 FIND = """
 from autograder.ros import RosError, find
 try:
