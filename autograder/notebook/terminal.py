@@ -1,0 +1,133 @@
+"""`shell` and `running`: commands in a notebook as in a terminal in which the workspace has been sourced.
+
+A cell must end, and so does what it starts: `running` presses Ctrl-C when its block is over.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+from autograder.notebook.desk import grading
+
+GRADED = "Commands are not run while the notebook is graded."
+STOP_SECONDS = 30.0  # real time for what Ctrl-C ends; `ros2 launch` itself gives its nodes 10
+_STEP = 0.05
+_SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
+
+
+def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws") -> None:
+    """Run a command to its end and print what it says.
+
+    Args:
+        command: as typed in a terminal, in the assignment's folder.
+        seconds: after so long, Ctrl-C is pressed.
+        workspace: sourced first, once it has been built.
+
+    Raises:
+        UsageError: there is no such workspace.
+    """
+    if grading():
+        print(GRADED)
+        return
+    with _Terminal(command, Path(workspace)) as terminal:
+        terminal.wait(lambda: False, seconds)
+        terminal.end()
+
+
+@contextmanager
+def running(command: str, *, until: str = "", seconds: float = 30.0, workspace: str | Path = "ws") -> Iterator[None]:
+    """Let a command run while the block does; print what it says, and press Ctrl-C in the end.
+
+    Args:
+        command: as typed in a terminal, in the assignment's folder.
+        until: a text; the block begins once the command has printed it, or has ended.
+        seconds: after so long without that text, the block begins all the same.
+        workspace: sourced first, once it has been built.
+
+    Raises:
+        UsageError: there is no such workspace.
+    """
+    if grading():
+        print(GRADED)
+        yield
+        return
+    with _Terminal(command, Path(workspace)) as terminal:
+        terminal.wait(lambda: until in terminal.said(), seconds)
+        terminal.show()
+        yield
+        terminal.end()
+
+
+class _Terminal:
+    """A command in a session of its own, which writes to a file: a full pipe could hold it up."""
+
+    def __init__(self, command: str, workspace: Path) -> None:
+        if not workspace.is_dir():
+            raise UsageError(f"there is no folder {workspace}: run this from the assignment's folder")
+        self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
+        self._shown = 0
+        path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
+        self._process = subprocess.Popen(
+            ["bash", "-c", _SOURCED, str(workspace.resolve() / "install" / "local_setup.bash"), command],
+            stdin=subprocess.DEVNULL,
+            stdout=self._file,
+            stderr=subprocess.STDOUT,
+            env={**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1"},
+            start_new_session=True,
+        )
+
+    def __enter__(self) -> _Terminal:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._signal(signal.SIGKILL)
+        self._process.wait()
+        self._file.close()
+
+    def said(self) -> str:
+        """Return all that the command has printed so far."""
+        return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
+
+    def show(self) -> None:
+        """Print what has not been printed yet."""
+        text = self.said()
+        print(text[self._shown :], end="", flush=True)
+        self._shown = len(text)
+
+    def wait(self, condition: Callable[[], bool], seconds: float) -> None:
+        """Wait for a condition or the command's end, at most so long."""
+        deadline = time.monotonic() + seconds
+        while not condition() and time.monotonic() < deadline:
+            try:
+                self._process.wait(_STEP)
+            except subprocess.TimeoutExpired:
+                continue
+            return
+
+    def end(self) -> None:
+        """Press Ctrl-C if the command still runs; print the rest, and how it ended if that was not well."""
+        if self._process.poll() is None:
+            self._signal(signal.SIGINT)
+            self.wait(lambda: False, STOP_SECONDS)
+        self.show()
+        status = self._process.poll()
+        if status is None:
+            print(f"[still running {STOP_SECONDS:.0f} s after Ctrl-C: killed]")
+        elif status != 0:
+            print(f"[exit status {status}]")
+
+    def _signal(self, number: signal.Signals) -> None:
+        """Signal the whole session, as a terminal does; what has ended is not there to be told."""
+        try:
+            os.killpg(self._process.pid, number)
+        except ProcessLookupError:
+            return
