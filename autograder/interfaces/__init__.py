@@ -1,0 +1,23 @@
+"""Message packages from their texts alone, for the trusted process: no line of CMake or Python of a student's runs.
+
+`build` turns the texts of a package (`msg/*.msg`, `srv/*.srv`, `action/*.action`) into a prefix that `load` makes
+importable in this process; `load_from` does both for a package in a student's workspace. Built prefixes are kept in a
+content-addressed cache.
+"""
+
+from autograder.interfaces.build import build
+from autograder.interfaces.cache import Cache
+from autograder.interfaces.exceptions import AlreadyLoadedError, DefinitionError, GenerationError, InterfaceError
+from autograder.interfaces.loading import load
+from autograder.interfaces.workspace import load_from
+
+__all__ = [
+    "AlreadyLoadedError",
+    "Cache",
+    "DefinitionError",
+    "GenerationError",
+    "InterfaceError",
+    "build",
+    "load",
+    "load_from",
+]

@@ -1,0 +1,131 @@
+"""From the texts of an interface package to a prefix that can be loaded: cached, or built in a process of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+
+from autograder.interfaces.cache import Cache
+from autograder.interfaces.definitions import Definition, packages_used, read, require_uses
+from autograder.interfaces.exceptions import GenerationError
+from autograder.ros import RosEnvironment, activate
+from autograder.ros.environment import without_wheel_bootstrap
+
+HERE = Path(__file__).parent
+SECONDS = 120.0
+RECIPE = "recipe.json"
+
+
+def build(
+    package: str, files: Mapping[str, str], *, cache: Cache | None = None, underlays: tuple[Path, ...] = ()
+) -> Path:
+    """Return a prefix with the package built from its definitions, from the cache if it was built before.
+
+    The prefix is not evicted from the cache while this process lives.
+
+    Args:
+        package: its name.
+        files: texts by their path in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
+        cache: where to keep it, this user's own cache by default.
+        underlays: prefixes that `build` returned for other packages which this one uses.
+
+    Raises:
+        DefinitionError: a definition is wrong; names file and line.
+        GenerationError: the generators or the compiler failed.
+        RosError: there is no ROS 2 Jazzy.
+    """
+    ros = activate()
+    definitions = read(package, files)
+    prefixes = (*underlays, *ros.prefixes)
+    require_uses(definitions, lambda name, message: _exists(prefixes, name, message))
+    own = tuple(prefix for prefix in underlays if _offers(prefix, {use[0] for d in definitions for use in d.uses}))
+
+    def make(prefix: Path) -> None:
+        _make(package, definitions, own, ros, prefix)
+
+    return (cache or default_cache()).get(_key(package, definitions, own, ros), make)
+
+
+@lru_cache(maxsize=1)
+def default_cache() -> Cache:
+    """Return the one cache of this process, so that an entry in use is held once."""
+    return Cache.default("interfaces")
+
+
+def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
+    folders = (prefix / "share" / package / "msg" for prefix in prefixes)
+    return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
+
+
+def _offers(prefix: Path, packages: set[str]) -> bool:
+    share = prefix / "share"
+    return any((share / package / "package.xml").is_file() for package in packages)
+
+
+def _key(package: str, definitions: tuple[Definition, ...], own: tuple[Path, ...], ros: RosEnvironment) -> str:
+    parts = {
+        "package": package,
+        "texts": {definition.path: definition.text for definition in definitions},
+        "underlays": [str(prefix) for prefix in own],
+        "prefixes": [str(prefix) for prefix in ros.prefixes],
+        "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],
+        "ros": _versions(ros),
+        "builder": _own_version(),
+    }
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:40]
+
+
+@lru_cache(maxsize=1)
+def _versions(ros: RosEnvironment) -> list[str]:
+    """Name the installed ROS: each wheel's version, or each sourced package's manifest by its size and time."""
+    if ros.kind == "wheels":
+        found = [d for d in metadata.distributions() if d.name.lower().startswith(("ros-", "ros_", "numpy"))]
+        return sorted(f"{d.name}=={d.version}" for d in found)
+    manifests = [path for prefix in ros.prefixes for path in sorted(prefix.glob("share/*/package.xml"))]
+    return [f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}" for path in manifests]
+
+
+@lru_cache(maxsize=1)
+def _own_version() -> str:
+    return hashlib.sha256((HERE / "generate.py").read_bytes() + (HERE / "compile.py").read_bytes()).hexdigest()
+
+
+def _make(
+    package: str, definitions: tuple[Definition, ...], own: tuple[Path, ...], ros: RosEnvironment, prefix: Path
+) -> None:
+    recipe = {
+        "package": package,
+        "texts": {definition.path: definition.text for definition in definitions},
+        "uses": sorted(set(packages_used(definitions)) - {package}),
+        "underlays": [str(path) for path in own],
+        "prefixes": [str(path) for path in (*own, *ros.prefixes)],
+    }
+    (prefix / RECIPE).write_text(json.dumps(recipe, indent=1))
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "autograder.interfaces.generate", str(prefix)],
+            capture_output=True,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            errors="replace",
+            timeout=SECONDS,
+            env={**without_wheel_bootstrap(os.environ), "PYTHONPATH": _import_path()},
+        )
+    except subprocess.TimeoutExpired:
+        raise GenerationError(f"{package}: building its interfaces took more than {SECONDS:.0f} s") from None
+    if done.returncode != 0:
+        end = "\n".join(done.stderr.strip().splitlines()[-12:])
+        raise GenerationError(f"{package}: its interfaces cannot be built. {end[:2000]}")
+
+
+def _import_path() -> str:
+    """Let the child import what this process does, wherever it stands."""
+    return os.pathsep.join([str(HERE.parents[1]), *filter(None, [os.environ.get("PYTHONPATH", "")])])

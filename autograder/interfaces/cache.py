@@ -1,0 +1,138 @@
+"""A content-addressed cache of built trees: built once, put in place whole, held while in use, bounded in size.
+
+Each entry is a folder named by its key, beside a lock file. Whoever uses an entry holds the lock shared until its
+process ends; whoever builds or evicts one holds it alone. The kernel lets go of locks when a process dies, so that
+nothing is left locked, and a half-built folder is never under an entry's name.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import re
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from autograder.sandbox.limits import MIB
+
+LIMIT = 512 * MIB
+STALE = 3600.0  # s; a temporary folder of this age was left by a killed build
+_KEY = re.compile(r"[0-9a-f]{16,64}")
+
+
+class Cache:
+    """A cache in a folder of its own.
+
+    Args:
+        root: the folder; it is made, readable for this user alone.
+        limit: bytes that the entries may use together; those unused for longest go first.
+    """
+
+    def __init__(self, root: Path, limit: int = LIMIT) -> None:
+        self.root, self._limit = root, limit
+        self._held: dict[str, int] = {}
+
+    @classmethod
+    def default(cls, name: str) -> Cache:
+        """Return this user's cache of a name below `XDG_CACHE_HOME`, or in the temporary folder where that is not writable."""
+        for base in (_xdg(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
+            root = base / "autograder" / name
+            with contextlib.suppress(OSError):
+                root.mkdir(parents=True, exist_ok=True, mode=0o700)
+                if root.stat().st_uid == os.getuid() and os.access(root, os.W_OK | os.X_OK):
+                    return cls(root)
+        return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
+
+    def get(self, key: str, make: Callable[[Path], None]) -> Path:
+        """Return the folder of an entry, made first if it is not there, and hold it until this process ends.
+
+        Args:
+            key: 16 to 64 hexadecimal digits.
+            make: fills the new folder that it is given. If it raises, there is no entry.
+        """
+        if not _KEY.fullmatch(key):
+            raise ValueError(f"a key is 16 to 64 hexadecimal digits, not {key!r}")
+        self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
+        entry, made = self.root / key, False
+        if key not in self._held:
+            lock = self._open(key)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_SH)
+                while not entry.is_dir():
+                    fcntl.flock(lock, fcntl.LOCK_EX)  # whoever else wants it waits here, and then finds it made
+                    if not entry.is_dir():
+                        self._make(entry, make)
+                        made = True
+                    # Turning an exclusive lock into a shared one is not atomic: an eviction may come between.
+                    fcntl.flock(lock, fcntl.LOCK_SH)
+            except BaseException:
+                os.close(lock)
+                raise
+            self._held[key] = lock
+        with contextlib.suppress(OSError):
+            os.utime(entry)
+        if made:
+            self._evict()
+        return entry
+
+    def _open(self, key: str) -> int:
+        return os.open(self.root / f"{key}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+
+    def _make(self, entry: Path, make: Callable[[Path], None]) -> None:
+        fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name[:16]}-", dir=self.root))
+        try:
+            make(fresh)
+            fresh.rename(entry)
+        finally:
+            shutil.rmtree(fresh, ignore_errors=True)
+
+    def _evict(self) -> None:
+        """Remove what was unused for longest until the rest fits, and what killed builds left."""
+        entries: list[tuple[float, int, Path]] = []
+        for folder in self.root.iterdir():
+            with contextlib.suppress(FileNotFoundError):
+                used = folder.stat().st_mtime
+                if folder.name.startswith("."):
+                    if time.time() - used > STALE:
+                        shutil.rmtree(folder, ignore_errors=True)
+                elif _KEY.fullmatch(folder.name):
+                    entries.append((used, _size(folder), folder))
+        total = sum(size for _, size, _ in entries)
+        for _, size, folder in sorted(entries):
+            if total <= self._limit:
+                return
+            with self._alone(folder.name) as alone:
+                if alone:
+                    # Renamed first: a removal that is cut short leaves no half an entry.
+                    doomed = folder.with_name(f".{folder.name[:16]}-{os.getpid()}-{time.monotonic_ns()}")
+                    with contextlib.suppress(FileNotFoundError):
+                        folder.rename(doomed)
+                        shutil.rmtree(doomed, ignore_errors=True)
+                        total -= size
+
+    @contextlib.contextmanager
+    def _alone(self, key: str) -> Iterator[bool]:
+        """Hold an entry alone; False if somebody uses it."""
+        lock = self._open(key)
+        try:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                yield False
+            else:
+                yield True
+        finally:
+            os.close(lock)
+
+
+def _xdg() -> Path:
+    chosen = os.environ.get("XDG_CACHE_HOME", "")
+    return Path(chosen) if chosen.startswith("/") else Path(os.environ.get("HOME", "/nonexistent")) / ".cache"
+
+
+def _size(folder: Path) -> int:
+    return sum(path.lstat().st_size for path in folder.rglob("*") if not path.is_symlink())

@@ -1,0 +1,104 @@
+"""Compiles generated interface code with the system's gcc: few translation units, without optimisation."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import sysconfig
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy
+
+FAST = "rosidl_typesupport_fastrtps_c"
+INTROSPECTION = "rosidl_typesupport_introspection_c"
+# The libraries that dependants link: an installed package has all of them, one that was built here the first two.
+_LIBRARIES = (FAST, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c", "rosidl_generator_py")
+
+
+def site(prefix: Path) -> Path:
+    """Return the site-packages folder of a prefix."""
+    return prefix / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
+
+
+def compile_package(
+    package: str, prefix: Path, work: Path, prefixes: tuple[Path, ...], dependencies: tuple[str, ...]
+) -> None:
+    """Compile what the generators wrote to `work` into libraries and the extension module under `prefix`.
+
+    The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name.
+
+    Raises:
+        RuntimeError: the compiler refused; its words are on stderr.
+    """
+    names = ("rosidl_generator_c", "rosidl_typesupport_c", FAST, INTROSPECTION)
+    include = [f"-I{work / name}" for name in names]
+    for root in prefixes:
+        include += [f"-I{folder}" for folder in sorted((root / "include").glob("*/"))] + [f"-I{root / 'include'}"]
+    include += [f"-I{sysconfig.get_paths()['include']}", f"-I{numpy.get_include()}"]
+    flags = ["-O0", "-fPIC", "-w", "-fvisibility=default", f'-DROS_PACKAGE_NAME="{package}"', *include]
+
+    def sources(name: str, pattern: str) -> list[Path]:
+        return sorted((work / name / package).rglob(pattern))
+
+    functions = [path for path in sources("rosidl_generator_c", "*.c") if not path.name.endswith("__description.c")]
+    conversions = [
+        path for path in sources("rosidl_generator_py", "*.c") if path.parent != work / "rosidl_generator_py" / package
+    ]
+    main = [
+        _unit(work, "fast.cpp", sources(FAST, "*.cpp")),
+        _unit(work, "types.cpp", sources("rosidl_typesupport_c", "*.cpp")),
+        _unit(work, "python.c", conversions),
+        _unit(work, "functions.c", functions),
+        # Each names the types below it with the same static words.
+        *sources("rosidl_generator_c", "*__description.c"),
+    ]
+    introspection = _unit(work, "introspection.c", sources(INTROSPECTION, "*.c"))
+    entry = next((work / "rosidl_generator_py" / package).glob("_*.ep.*.c"))
+    with ThreadPoolExecutor(min(3, (os.cpu_count() or 1) + 1)) as pool:
+        commands = {
+            path: _compilation(path, work / f"{i}.o", flags) for i, path in enumerate([*main, introspection, entry])
+        }
+        list(pool.map(_run, commands.values()))
+    objects = {path: command[-1] for path, command in commands.items()}
+    folder = prefix / "lib"
+    below = [f"-l{name}__{kind}" for name in dependencies for kind in _LIBRARIES if _library(prefixes, name, kind)]
+    paths = [part for root in prefixes for part in (f"-L{root / 'lib'}", f"-Wl,-rpath,{root / 'lib'}")]
+    common = [f"-L{folder}", *paths, "-Wl,-rpath,$ORIGIN:$ORIGIN/../../.."]
+    runtime = [*below, f"-l{FAST}", "-lrosidl_typesupport_fastrtps_cpp", "-lfastcdr", f"-l{INTROSPECTION}"]
+    runtime += ["-lrosidl_typesupport_c", "-lrosidl_runtime_c", "-lrcutils"]
+    fast, inner = f"{package}__{FAST}", f"{package}__{INTROSPECTION}"
+    _link(folder / f"lib{fast}.so", [objects[path] for path in main], [*common, "-Wl,--as-needed", *runtime])
+    _link(
+        folder / f"lib{inner}.so",
+        [objects[introspection]],
+        [*common, "-Wl,--no-as-needed", f"-l{fast}", "-Wl,--as-needed", *runtime],
+    )
+    extension = f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    own = ["-Wl,--no-as-needed", f"-l{fast}", f"-l{inner}", "-Wl,--as-needed", *runtime]
+    _link(site(prefix) / package / extension, [objects[entry]], [*common, *own])
+
+
+def _library(prefixes: tuple[Path, ...], package: str, kind: str) -> bool:
+    return any((root / "lib" / f"lib{package}__{kind}.so").is_file() for root in prefixes)
+
+
+def _unit(work: Path, name: str, sources: list[Path]) -> Path:
+    unit = work / name
+    unit.write_text("".join(f'#include "{path}"\n' for path in sources))
+    return unit
+
+
+def _compilation(source: Path, target: Path, flags: list[str]) -> list[str]:
+    compiler = ["g++", "-std=c++17"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
+    return [*compiler, "-c", *flags, str(source), "-o", str(target)]
+
+
+def _link(target: Path, objects: list[str], libraries: list[str]) -> None:
+    _run(["g++", "-shared", f"-Wl,-soname,{target.name}", "-o", str(target), *objects, *libraries])
+
+
+def _run(command: list[str]) -> None:
+    if subprocess.run(command, stdin=subprocess.DEVNULL).returncode != 0:
+        raise RuntimeError(f"{command[0]} refused {command[-1]}")

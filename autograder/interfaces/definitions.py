@@ -1,0 +1,251 @@
+"""Reading interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
+
+The real parser decides what a definition means. What it would let through and generated code could not bear (words of
+C and Python, values that end a string literal, gigantic arrays) is refused here. The texts that go on hold no comment:
+comments do not count for a type's hash, and nothing of them shall reach generated code.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import keyword
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from autograder.interfaces.exceptions import DefinitionError
+
+MAX_FILES = 64
+MAX_BYTES = 64 * 1024
+MAX_FIELDS = 512
+MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that it holds
+FOREIGN_ELEMENTS = 128  # what a message of another package counts for
+KINDS = ("msg", "srv", "action")
+SECTIONS = {"msg": 1, "srv": 2, "action": 3}
+
+_PATH = re.compile(r"(msg|srv|action)/([A-Z][A-Za-z0-9]{0,79})\.(msg|srv|action)")
+_PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]{0,78}[a-z0-9]")
+_PRINTABLE = re.compile(r"[ -~]*")
+# C and C++ both compile the generated structures.
+_C_WORDS = frozenset(
+    "alignas alignof and asm auto bitand bitor bool break case catch char class compl const constexpr continue decltype "
+    "default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int "
+    "long mutable namespace new noexcept not nullptr operator or private protected public register reinterpret_cast "
+    "restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local "
+    "throw true try typedef typeid typename typeof union unsigned using virtual void volatile wchar_t while xor "
+    "linux unix errno".split()
+)
+
+
+@dataclass(frozen=True)
+class Definition:
+    """One interface.
+
+    Attributes:
+        path: `msg/RobotStatus.msg`.
+        text: the definition without comments.
+        uses: the messages of other packages in it, as (package, type, the line's text).
+    """
+
+    path: str
+    text: str
+    uses: tuple[tuple[str, str, str], ...]
+
+
+def require_package_name(name: str) -> None:
+    """See that a package's name is one that ROS takes for interfaces.
+
+    Raises:
+        DefinitionError: it is not.
+    """
+    if not _PACKAGE.fullmatch(name) or keyword.iskeyword(name):
+        raise DefinitionError(
+            "package.xml", f"{name[:80]!r} is no package name: begin with a letter, use a-z, 0-9 and single underscores"
+        )
+
+
+def read(package: str, files: Mapping[str, str]) -> tuple[Definition, ...]:
+    """Read the definitions of a package.
+
+    Args:
+        package: its name.
+        files: texts by their path in the package, such as `msg/RobotStatus.msg`.
+
+    Raises:
+        DefinitionError: the first thing that is wrong, by file and line.
+    """
+    require_package_name(package)
+    if not files:
+        raise DefinitionError(package, "no .msg, .srv or .action file: put them into msg/, srv/ and action/")
+    if len(files) > MAX_FILES:
+        raise DefinitionError(package, f"{len(files)} definitions, at most {MAX_FILES} are read")
+    for path in files:
+        match = _PATH.fullmatch(path)
+        if not match or match[1] != match[3]:
+            raise DefinitionError(
+                path[:120], "definitions are called msg/Name.msg, srv/Name.srv or action/Name.action, Name in CamelCase"
+            )
+    lowered = [path.lower() for path in files]
+    for path in files:
+        if lowered.count(path.lower()) > 1:
+            raise DefinitionError(path, "another file differs only in capital letters: rename one of them")
+    own = {path[4:-4] for path in files if path.startswith("msg/")}
+    read = {path: _Reader(package, path, text, own) for path, text in sorted(files.items())}
+    messages = {path[4:-4]: reader for path, reader in read.items() if path.startswith("msg/")}
+    for reader in read.values():
+        reader.weigh(messages, ())
+    return tuple(Definition(path, reader.text, tuple(reader.uses)) for path, reader in read.items())
+
+
+class _Reader:
+    """One file on its way from raw text to a definition."""
+
+    def __init__(self, package: str, path: str, raw: str, own: set[str]) -> None:
+        self._package, self._path, self._own = package, path, own
+        if len(raw.encode("utf-8", "replace")) > MAX_BYTES:
+            raise DefinitionError(path, f"more than {MAX_BYTES // 1024} KiB: a definition is short")
+        self._kind, name = path.split("/")
+        self._name = name.rpartition(".")[0]
+        lines = raw.replace("\r\n", "\n").split("\n")
+        self._lines = [self._clean(line) for line in lines]
+        self.text = "\n".join(line for line in self._lines if line) + "\n"
+        self.uses: list[tuple[str, str, str]] = []
+        self._arrays: list[tuple[int, str | None, str]] = []
+        sections = self._sections()
+        for section in sections:
+            self._read_section(section)
+
+    def weigh(self, messages: Mapping[str, _Reader], above: tuple[str, ...]) -> int:
+        """Count the elements that a fresh message of this type makes room for."""
+        if self._path in above:
+            raise DefinitionError(self._path, "the message contains itself: take the field out that leads back to it")
+        total = 1
+        for count, inner, line in self._arrays:
+            each = FOREIGN_ELEMENTS if inner == "" else 1
+            if inner:
+                each = messages[inner].weigh(messages, (*above, self._path))
+            total += count * each
+            if total > MAX_ELEMENTS:
+                raise DefinitionError(
+                    self._path,
+                    f"arrays of more than {MAX_ELEMENTS} elements in all: use fewer, or an unbounded array",
+                    line,
+                )
+        return total
+
+    def _clean(self, line: str) -> str:
+        code = line.replace("\t", " ").partition("#")[0].rstrip()
+        if not _PRINTABLE.fullmatch(code):
+            raise DefinitionError(self._path, "outside comments only plain ASCII characters can stand", ascii(code))
+        if "\\" in code:
+            raise DefinitionError(self._path, "a backslash cannot stand in a definition: take it out", code)
+        if code == "---" and line != "---":
+            raise DefinitionError(self._path, "the separator --- stands alone, without comment or space", line)
+        return code
+
+    def _sections(self) -> list[list[str]]:
+        sections: list[list[str]] = [[]]
+        for line in self._lines:
+            if line == "---":
+                sections.append([])
+            elif line:
+                sections[-1].append(line)
+        wanted = SECTIONS[self._kind]
+        if len(sections) != wanted:
+            parts = {
+                "msg": "a message has none",
+                "srv": "request --- response",
+                "action": "goal --- result --- feedback",
+            }
+            raise DefinitionError(
+                self._path, f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {parts[self._kind]}"
+            )
+        return sections
+
+    def _read_section(self, lines: list[str]) -> None:
+        if len(lines) > MAX_FIELDS:
+            raise DefinitionError(self._path, f"more than {MAX_FIELDS} fields: use an array")
+        names: set[str] = set()
+        for line in lines:
+            if line.startswith(" "):
+                raise DefinitionError(self._path, "the line begins with a space: take it out", line)
+            spec = self._parse(line)
+            for element in (*spec.fields, *spec.constants):
+                if element.name in names:
+                    raise DefinitionError(self._path, f"{element.name} is there twice: rename one", line)
+                names.add(element.name)
+            for constant in spec.constants:
+                self._check_value(constant.value, line)
+            for field in spec.fields:
+                self._check_field(field, line)
+
+    def _parse(self, line: str) -> Any:
+        from rosidl_adapter.parser import parse_message_string
+
+        try:
+            with contextlib.redirect_stderr(io.StringIO()):
+                return parse_message_string(self._package, self._name, line)
+        except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
+            what = "a field is written `type name`, a constant `type NAME=value`"
+            reason = str(error)
+            raise DefinitionError(self._path, what if reason == line else f"{reason} ({what})", line) from None
+
+    def _check_field(self, field: Any, line: str) -> None:
+        if field.name in _C_WORDS or keyword.iskeyword(field.name):
+            raise DefinitionError(
+                self._path, f"{field.name} is a word of C or Python: give the field another name", line
+            )
+        kind = field.type
+        if kind.type in ("time", "duration") and kind.pkg_name is None:
+            new = kind.type.capitalize()
+            raise DefinitionError(self._path, f"ROS 2 has no {kind.type}: use builtin_interfaces/{new}", line)
+        count = kind.array_size if kind.is_array and kind.array_size and not kind.is_upper_bound else 1
+        inner = None
+        if kind.pkg_name == self._package:
+            if kind.type not in self._own:
+                raise DefinitionError(
+                    self._path, f"there is no msg/{kind.type}.msg in {self._package}: write it, or mend the name", line
+                )
+            inner = kind.type
+        elif kind.pkg_name is not None:
+            inner = ""
+            self.uses.append((kind.pkg_name, kind.type, line))
+        self._arrays.append((count, inner, line))
+        if field.default_value is not None:
+            self._check_value(field.default_value, line)
+
+    def _check_value(self, value: object, line: str) -> None:
+        for single in value if isinstance(value, list) else [value]:
+            if isinstance(single, float) and not math.isfinite(single):
+                raise DefinitionError(self._path, "a value must be a finite number", line)
+
+
+def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:
+    """See that each message of another package is there.
+
+    Args:
+        definitions: what `read` returned.
+        exists: says whether a package is there (`None`), or has a message of a name.
+
+    Raises:
+        DefinitionError: one is not.
+    """
+    for definition in definitions:
+        for package, name, line in definition.uses:
+            if not exists(package, None):
+                raise DefinitionError(definition.path, f"there is no package {package} with messages here", line)
+            if not exists(package, name):
+                raise DefinitionError(definition.path, f"{package} has no message {name}: mend the name", line)
+
+
+def packages_used(definitions: tuple[Definition, ...]) -> Iterator[str]:
+    """Yield the other packages that these definitions need, those that services and actions bring along included."""
+    yield from (package for definition in definitions for package, _, _ in definition.uses)
+    kinds = {definition.path.split("/")[0] for definition in definitions}
+    if kinds & {"srv", "action"}:
+        yield from ("service_msgs", "builtin_interfaces")
+    if "action" in kinds:
+        yield from ("action_msgs", "unique_identifier_msgs")

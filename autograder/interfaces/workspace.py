@@ -1,0 +1,67 @@
+"""The interface packages of a student's workspace: read as texts, built and loaded by the grader itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.grading.build import find_packages
+from autograder.interfaces.build import build
+from autograder.interfaces.cache import Cache
+from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
+from autograder.interfaces.exceptions import DefinitionError, GenerationError
+from autograder.interfaces.loading import load
+from autograder.lab.workspace import Workspace
+
+
+def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:
+    """Build and load an interface package of a workspace, and those of the workspace that it uses.
+
+    Raises:
+        StudentError: the package or its definitions are missing, or wrong; the sentence says where.
+        AlreadyLoadedError: this process has another version of it.
+    """
+    source = workspace.root / "src"
+    packages = find_packages(source) if source.is_dir() else {}
+    return load(_build(packages, package, cache, ()))
+
+
+def _build(packages: dict[str, Path], package: str, cache: Cache | None, above: tuple[str, ...]) -> Path:
+    folder = packages.get(package)
+    if folder is None:
+        sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
+        raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
+    if package in above:
+        sentence = f"The packages {' and '.join(sorted(above))} use each other's messages: let only one use the other."
+        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
+    try:
+        texts = _texts(folder)
+        used = {name for definition in read(package, texts) for name, _, _ in definition.uses}
+        below = [_build(packages, name, cache, (*above, package)) for name in sorted(used & set(packages))]
+        return build(package, texts, cache=cache, underlays=tuple(below))
+    except DefinitionError as error:
+        sentence = f"src/{folder.name}: {error}."
+        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
+    except GenerationError as error:
+        sentence = f"The interfaces of {package} cannot be built from their definitions."
+        raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence, str(error))) from None
+
+
+def _texts(folder: Path) -> dict[str, str]:
+    texts: dict[str, str] = {}
+    for kind in KINDS:
+        for path in sorted((folder / kind).glob(f"*.{kind}")):
+            name = f"{kind}/{path.name}"
+            if path.is_symlink() or not path.is_file():
+                raise DefinitionError(name, "it is no plain file")
+            if len(texts) >= MAX_FILES:
+                raise DefinitionError(name, f"more than {MAX_FILES} definitions")
+            with path.open("rb") as file:
+                content = file.read(MAX_BYTES + 1)
+            try:
+                texts[name] = content.decode("utf-8")
+            except UnicodeDecodeError:
+                raise DefinitionError(name, "it is not UTF-8 text: save it as UTF-8") from None
+    return texts
