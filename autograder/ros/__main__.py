@@ -10,7 +10,7 @@ import os
 import shlex
 import sys
 
-from autograder.ros.environment import activate, find, search_path, path_with_scripts
+from autograder.ros.environment import activate, find, path_with_scripts
 from autograder.ros.exceptions import RosError
 
 
