@@ -1,7 +1,9 @@
 """What a chapter's notebook imports: `from autograder.notebook import check, drive, grade, ros`.
 
 `ros()` switches ROS 2 on for the kernel. `drive(...)` lets a program of the workspace steer the simulated robot,
-faster than real time. `check(...)` runs the visible checks. `grade(...)` stands in the locked cells.
+faster than real time; `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` stands in
+the locked cells. `source(...)` does for the kernel what `source install/setup.bash`
+does in a terminal; `simulator(...)` lets the robot live in the kernel for a while.
 
 Students' programs run in processes of their own, never in the kernel.
 """
@@ -10,12 +12,27 @@ from __future__ import annotations
 
 import os
 
+from autograder.notebook.arena import Arena, simulator
 from autograder.notebook.checking import CheckReport, check
+from autograder.notebook.comparing import side_by_side
 from autograder.notebook.driving import DriveReport, drive
 from autograder.notebook.errors import Notice
+from autograder.notebook.sourcing import source
 from autograder.ros import activate
 
-__all__ = ["CheckReport", "DriveReport", "Notice", "check", "drive", "grade", "ros"]
+__all__ = [
+    "Arena",
+    "CheckReport",
+    "DriveReport",
+    "Notice",
+    "check",
+    "drive",
+    "grade",
+    "ros",
+    "side_by_side",
+    "simulator",
+    "source",
+]
 
 
 def ros() -> None:

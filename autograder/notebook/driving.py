@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import yaml
 
 from autograder import layout
 from autograder.diagnosis import Kind
@@ -33,6 +36,9 @@ FAULTS = {
     "dead": Faults(dead=(Window(10.0),)),
 }
 RADIUS = 0.18  # m
+
+Parameters = Mapping[str, object] | str | Path
+"""Values by name, or the path of a parameter file, as a launch file's Node takes them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +90,8 @@ def drive(
     faults: str | Faults | None = None,
     start: Pose | None = None,
     seed: int = 0,
+    name: str | None = None,
+    parameters: Parameters | Sequence[Parameters] = (),
     workspace: str | Path = "ws",
 ) -> DriveReport | Notice:
     """Build the workspace, let a program steer the robot, and show the track.
@@ -100,13 +108,16 @@ def drive(
             a `sim.Faults`.
         start: where the robot starts; the world's own start pose by default.
         seed: of the simulator's noise.
+        name: what the node is called, instead of the name in its code.
+        parameters: values by name, or the path of a parameter file, or several of these; later ones win, as they do in
+            a launch file.
         workspace: the colcon workspace.
 
     Returns:
         The drive, or a notice that says in a sentence why the robot could not move.
 
     Raises:
-        UsageError: there is no such world, fault or workspace.
+        UsageError: there is no such world, fault, parameter file or workspace.
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
@@ -119,6 +130,8 @@ def drive(
         executable=executable,
         simulation=to_json(simulation),
         seconds=float(seconds),
+        name=name,
+        parameters=_parameter_files(parameters, name),
     ) as (answer, folder):
         diagnosis = answer["diagnosis"]
         if diagnosis["kind"] != Kind.OK.value:
@@ -145,3 +158,24 @@ def _faults(faults: str | Faults | None) -> Faults:
     if faults not in FAULTS:
         raise UsageError(f"there is no fault {faults!r}; there are: {', '.join(FAULTS)}, or a sim.Faults of your own")
     return FAULTS[faults]
+
+
+def _parameter_files(parameters: Parameters | Sequence[Parameters], name: str | None) -> list[str]:
+    """Return the texts of parameter files that say the same.
+
+    A value given by hand is the node's own where its name is known: it wins over `/**` in a file.
+    """
+    several = [parameters] if isinstance(parameters, (Mapping, str, Path)) else parameters
+    return [_parameter_file(entry, name or "/**") for entry in several]
+
+
+def _parameter_file(entry: Parameters, key: str) -> str:
+    if isinstance(entry, Mapping):
+        try:
+            return yaml.safe_dump({key: {"ros__parameters": dict(entry)}})
+        except yaml.representer.RepresenterError as error:
+            kind = type(error.args[-1]).__name__
+            raise UsageError(f"a parameter is a bool, int, float, str or a list of these, not a {kind}") from None
+    if not Path(entry).is_file():
+        raise UsageError(f"there is no parameter file {entry}: give its path from the notebook's folder")
+    return Path(entry).read_text()

@@ -65,13 +65,25 @@ def _for_drive(arguments: dict[str, Any]) -> Errand:
         from sim.codec import from_json
 
         program = arguments["package"], arguments["executable"]
-        with LockstepLab(workspace, *program, offers=OFFERS, listens=LISTENS) as lab:
+        options = _options(workspace.scratch, arguments["name"], arguments["parameters"])
+        with LockstepLab(workspace, *program, offers=OFFERS, listens=LISTENS, arguments=options) as lab:
             done = drive(lab, from_json(arguments["simulation"]), arguments["seconds"])
         done.recording.save(out / RECORDING)
         commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in done.commands]
         return {"output": done.output, "commands": commands}
 
     return (arguments["package"],), False, run
+
+
+def _options(scratch: Path, name: str | None, parameters: list[str]) -> tuple[str, ...]:
+    """Return ROS arguments for a name and the texts of parameter files, which are laid where the sandbox sees them."""
+    options = ["--ros-args"] if name or parameters else []
+    options += ["-r", f"__node:={name}"] if name else []
+    for number, text in enumerate(parameters):
+        path = scratch / f"parameters_{number}.yaml"
+        path.write_text(text)
+        options += ["--params-file", str(path)]
+    return tuple(options)
 
 
 def _for_check(arguments: dict[str, Any]) -> Errand:

@@ -1,0 +1,69 @@
+"""`drive` with parameters, and `side_by_side`, as a student calls them in the notebook."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.notebook import DriveReport, Notice, drive, side_by_side
+from autograder.suites.mutants import lay_down_reference
+
+PROGRAM = ("my_robot_package", "configured_node")
+WALL = 3.0  # m: the east wall of the empty room, straight ahead of the start
+
+
+@pytest.fixture(scope="session")
+def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("right")
+    lay_down_reference((PROGRAM[0],), folder)
+    return folder
+
+
+def stop(report: DriveReport | Notice) -> float:
+    """Return how far from the wall the robot stands in the end."""
+    assert isinstance(report, DriveReport)
+    return WALL - float(report.recording.poses[-1, 0, 0])
+
+
+def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
+    drives = {
+        f"{distance} m": drive(
+            *PROGRAM,
+            seconds=20,
+            parameters={"safety_distance": distance, "slow_distance": distance + 0.5},
+            workspace=right,
+        )
+        for distance in (0.5, 1.5)
+    }
+    assert [stop(report) for report in drives.values()] == pytest.approx([0.5, 1.5], abs=0.02)
+    picture = side_by_side(drives)
+    assert not isinstance(picture, Notice)
+    assert "0.5 m: " in picture.alt
+    assert "1.5 m: " in picture.alt
+
+
+def test_a_file_serves_a_robot_by_its_name_and_a_later_value_wins(right: Path) -> None:
+    fleet = right / "src/my_robot_package/config/fleet_params.yaml"
+    porter = drive(*PROGRAM, seconds=20, name="porter", parameters=[fleet, {"safety_distance": 1.3}], workspace=right)
+    assert isinstance(porter, DriveReport)
+    assert "Porter is ready" in porter.output
+    assert stop(porter) == pytest.approx(1.3, abs=0.02)
+
+
+def test_a_start_that_the_node_refuses_is_a_calm_sentence_even_side_by_side(right: Path) -> None:
+    refused = drive(*PROGRAM, seconds=1, parameters={"safety_distance": 2.0}, workspace=right)
+    assert isinstance(refused, Notice)
+    assert "safety_distance (2 m) must be below slow_distance (1 m)" in refused.sentence
+    assert side_by_side({"refused": refused}) is refused
+
+
+def test_a_parameter_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"there is no parameter file .*nowhere.yaml: give its path"):
+        drive(*PROGRAM, parameters=tmp_path / "nowhere.yaml")
+
+
+def test_a_value_that_no_parameter_can_have_is_named() -> None:
+    with pytest.raises(UsageError, match="a parameter is a bool, int, float, str or a list of these, not a complex"):
+        drive(*PROGRAM, parameters={"speed": 1j})
