@@ -9,7 +9,7 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -29,22 +29,13 @@ from autograder.lab import hold
 from autograder.lab.meeting import DEPTH, DOMAINS, NAME
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import diagnose_ending
+from autograder.ros.discovery import announcing_often
 from autograder.sandbox import Limits, Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.process import measure
 
 LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
-# Fast DDS announces a participant five times at its start and then every 3 s, and two of them may take until the next
-# announcement to find each other. Nodes that are launched come when they come: the grader goes on announcing itself.
-DISCOVERY = """<?xml version="1.0" encoding="UTF-8"?>
-<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
-  <participant profile_name="announces often" is_default_profile="true"><rtps><builtin><discovery_config>
-    <leaseAnnouncement><sec>0</sec><nanosec>100000000</nanosec></leaseAnnouncement>
-  </discovery_config></builtin></rtps></participant>
-</profiles></dds>
-"""
-PROFILES_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 _STEP = 0.05  # s between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
 _LABS = itertools.count(1)
@@ -117,7 +108,6 @@ class LaunchLab:
         # Other labs count their domains upwards: the two kinds can be open at once.
         workspace = replace(workspace, domain=(workspace.domain - next(_LABS)) % DOMAINS)
         self._domain = workspace.domain
-        self._profiles = workspace.root.with_name("discovery.xml")  # where students' code does not reach
         self._sandbox = sandbox(workspace)
         words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
@@ -128,7 +118,7 @@ class LaunchLab:
 
     def __enter__(self) -> LaunchLab:
         self._context = Context()
-        with _announcing_often(self._profiles):
+        with announcing_often():  # launched nodes come when they come
             rclpy.init(args=[], context=self._context, domain_id=self._domain)
             self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
         self._executor = SingleThreadedExecutor(context=self._context)
@@ -267,19 +257,6 @@ class LaunchLab:
         finally:
             self.node.destroy_client(client)
         return dict(zip(names, values, strict=False))
-
-
-@contextlib.contextmanager
-def _announcing_often(profiles: Path) -> Iterator[None]:
-    """Let the first DDS participant that this process makes read the profile; later ones follow it anyway."""
-    profiles.write_text(DISCOVERY)
-    before = os.environ.get(PROFILES_VARIABLE)
-    os.environ[PROFILES_VARIABLE] = before or str(profiles)
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[PROFILES_VARIABLE]
 
 
 def _full(name: str, space: str) -> str:

@@ -24,14 +24,17 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.validate_node_name import validate_node_name
 
+from autograder.ros.discovery import announcing_often
 from autograder.ros.ros2.exceptions import Ros2Error
 
 NODE_NAME_PREFIX = "_ros2cli"
 # Beyond it, DDS runs out of ports.
 LAST_DOMAIN = 232
 
-# Seconds without a change after which the graph counts as discovered, and the most to wait for that.
+# Seconds without a change after which the graph counts as discovered, the least to wait for the first ones to be found,
+# and the most to wait for all.
 QUIET = 0.5
+FIRST = 1.0
 LONGEST_SETTLING = 5.0
 # Seconds to wait for something that was named, such as a node; once that is there, the rest of what belongs to it
 # follows soon, however long `--spin-time` is.
@@ -68,9 +71,12 @@ class Session:
     def settle(self, *, longest: float = math.inf) -> None:
         """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `longest` if that is less."""
         quiet = min(longest, QUIET if self.spin_time is None else self.spin_time)
+        least = min(longest, FIRST) if self.spin_time is None else 0.0
         last = self._graph()
         changed = start = time.monotonic()
-        while (now := time.monotonic()) - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet):
+        while (now := time.monotonic()) - start < least or (
+            now - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet)
+        ):
             self.executor.spin_once(timeout_sec=_STEP)
             graph = self._graph()
             if graph != last:
@@ -104,7 +110,8 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
         raise Ros2Error(f"ROS_DOMAIN_ID is '{domain}', but must be a number from 0 to {LAST_DOMAIN}")
     parameters = [Parameter("use_sim_time", value=True)] if getattr(args, "use_sim_time", False) else []
     # Python's own handlers stay: Ctrl-C then leaves the context alive, so that a goal can still be cancelled.
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    with announcing_often():
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
         name = node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}"
         validate_node_name(name)
@@ -132,7 +139,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
         "--spin-time",
         type=float,
         help="Seconds to wait for discovery: of a named thing at most (default: 3), "
-        "of the whole graph until nothing new shows up for so long (default: 0.5)",
+        "of the whole graph until nothing new shows up for so long (default: 0.5, after a first second)",
     )
     parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
     parser.add_argument("--no-daemon", action="store_true", help="Accepted; this stand-in has no daemon anyway")
