@@ -4,6 +4,7 @@
 it, `check` finds what has gone stale, `run_notebook` executes a notebook as the author, the grader or a student has it.
 """
 
+from autograder.course.cells import is_solution, origin
 from autograder.course.exceptions import CourseError
 from autograder.course.execute import Execution, run_notebook
 from autograder.course.findings import Finding
@@ -23,6 +24,8 @@ __all__ = [
     "chapters",
     "hygiene",
     "in_form",
+    "is_solution",
+    "origin",
     "run_notebook",
     "set_points",
     "stale",

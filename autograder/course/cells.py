@@ -116,6 +116,11 @@ def is_graded(cell: NotebookNode) -> bool:
     return bool(cell.metadata.get("nbgrader", {}).get("grade"))
 
 
+def is_solution(cell: NotebookNode) -> bool:
+    """Say whether students write in this cell."""
+    return bool(cell.metadata.get("nbgrader", {}).get("solution"))
+
+
 def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` part of a cell's or a notebook's metadata.
 

@@ -8,13 +8,12 @@ import nbformat
 import pytest
 
 from autograder import feedback, layout, suites
-from autograder.checks import Outcome
 from autograder.grading import Graded, grade_submission
 from autograder.grading.hygiene import grade_id
-from autograder.result import Status
-from tests.attacks.corpus import ASSIGNMENT, CANARY, Attack, corpus
+from autograder.proof.attacks import ASSIGNMENT, Attack, attacks
+from autograder.proof.malice import CANARY
 
-ATTACKS = corpus()
+ATTACKS = attacks(ASSIGNMENT)
 
 
 def _hidden_text() -> set[str]:
@@ -49,12 +48,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     graded = _grade(attack, tmp_path)
     result = graded.result
-    assert result.status is Status.GRADED, (tmp_path / "out" / "grader.log").read_text()
-    lost = {check.id: check.message for check in result.checks if check.outcome is not Outcome.PASSED}
-    assert attack.base <= set(lost), f"gained {attack.base - set(lost)}"
-    assert not attack.exactly or set(lost) == attack.base, lost
-    assert result.max_score == suites.load(ASSIGNMENT).max_score
-    assert not attack.diagnosis or result.diagnosis.kind in attack.diagnosis
+    assert not attack.judge(result), (tmp_path / "out" / "grader.log").read_text()
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")

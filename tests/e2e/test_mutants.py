@@ -1,4 +1,4 @@
-"""Each mutant of the reference loses the checks that it names, and no other."""
+"""The proof's part for each change: the reference, right variants, and one mutant a check, chapter by chapter."""
 
 from __future__ import annotations
 
@@ -7,29 +7,23 @@ from pathlib import Path
 import pytest
 
 from autograder import suites
-from autograder.checks import Outcome
-from autograder.grading import grade_submission
-from autograder.result import Status
-from autograder.suites.mutants import Mutant, lay_down, mutants
+from autograder.proof import Case, Kind, cases, prove
 
-ASSIGNMENTS = suites.graded()
-QUICK = [(name, mutant) for name in ASSIGNMENTS for mutant in mutants(name) if not mutant.slow]
-SLOW = [(name, mutant) for name in ASSIGNMENTS for mutant in mutants(name) if mutant.slow]
+PROOF = [(name, case) for name in suites.graded() for case in cases(name, quick=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("assignment", "mutant"),
-    [
-        *(pytest.param(name, mutant, id=f"{name}-{mutant.id}") for name, mutant in QUICK),
-        *(pytest.param(name, mutant, id=f"{name}-{mutant.id}", marks=pytest.mark.slow) for name, mutant in SLOW),
-    ],
+    ("assignment", "case"), PROOF, ids=[f"{name}-{case.kind.value}-{case.name}" for name, case in PROOF]
 )
-def test_a_mutant_loses_what_it_names_and_nothing_else(assignment: str, mutant: Mutant, tmp_path: Path) -> None:
-    lay_down(mutant, suites.load(assignment).packages, tmp_path / "submission")
-    result = grade_submission(
-        tmp_path / "submission", assignment, student=mutant.id, seed=2026, out=tmp_path / "out"
-    ).result
-    assert result.status is Status.GRADED, (tmp_path / "out" / "grader.log").read_text()
-    lost = {check.id: check.message for check in result.checks if check.outcome is not Outcome.PASSED}
-    assert set(lost) == mutant.loses, lost
-    assert result.diagnosis.kind is mutant.diagnosis
+def test_grading_makes_of_a_submission_what_is_claimed(assignment: str, case: Case, tmp_path: Path) -> None:
+    (claim,) = prove(assignment, [case], seed=2026, out=tmp_path / "out", jobs=1)
+    log = tmp_path / "out" / case.name / "grader.log"
+    assert claim.holds, f"{claim.wrong}\n{log.read_text() if log.is_file() else ''}"
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_every_check_has_a_mutant_in_the_quick_proof(assignment: str) -> None:
+    chosen = [case for case in cases(assignment, quick=True) if case.kind is Kind.MUTANT]
+    whole = [case for case in cases(assignment) if case.kind is Kind.MUTANT]
+    assert 0 < len(chosen) <= len(whole)

