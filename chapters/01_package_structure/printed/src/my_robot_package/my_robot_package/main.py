@@ -1,0 +1,1 @@
+"""The chapter prints no text for this file."""
