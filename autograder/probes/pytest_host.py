@@ -2,8 +2,8 @@
 
     python pytest_host.py ENDED_FD GO_FD REVERSED ARGUMENTS...
 
-When pytest has ended, its exit status goes to ENDED_FD; the process then waits for the end of GO_FD. All of it is in the
-power of the tests that run here: the trusted side takes what it hears for their claim.
+When pytest has ended, its exit status goes to ENDED_FD; the process then waits for the end of GO_FD. All of it is in
+the power of the tests that run here: the trusted side takes what it hears for their claim.
 """
 
 from __future__ import annotations

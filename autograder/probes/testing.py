@@ -2,11 +2,11 @@
 
     reports = run(workspace, "speed_guard", [Order(("test_limits.py",), right), Order(("test_limits.py",), faulty)])
 
-Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or "fails",
-and the points come from claiming the right thing of each version. So a run must not be able to tell which version it has
-before it: every run gets a sandbox of its own with a fresh home, no network but its own loopback, the same paths, times
-and environment, and sees its version and nothing of the others, the suites or earlier runs. See `versions` for how
-versions are kept alike. What remains is written there, too.
+Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
+"fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
+version it has before it: every run gets a sandbox of its own with a fresh home, no network but its own loopback, the
+same paths, times and environment, and sees its version and nothing of the others, the suites or earlier runs. See
+`versions` for how versions are kept alike. What remains is written there, too.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ HOST = Path(__file__).with_name("pytest_host.py")
 INTRUDER = Path(__file__).with_name("intruder.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
 LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=768)
-LANES = 3  # runs at a time: most of a run is waiting, for processes to start and for time to pass
+LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 DISTURBED_DOMAIN = 97  # where a test meets the intruder, unless it has a domain of its own
 READY_SECONDS = 30.0
 REPORT = "report.xml"
@@ -207,7 +207,7 @@ def open_sockets(pid: int) -> int:
     inodes = set()
     try:
         for link in (Path("/proc") / str(pid) / "fd").iterdir():
-            target = os.readlink(link)
+            target = str(link.readlink())
             if target.startswith("socket:["):
                 inodes.add(target[len("socket:[") : -1])
         rows = (Path("/proc") / str(pid) / "net" / "udp").read_text().splitlines()[1:]

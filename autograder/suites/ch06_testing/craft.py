@@ -46,7 +46,9 @@ def test_no_sleep(workspace: Workspace) -> None:
 def test_ends(examination: Examination) -> None:
     """The tests end by themselves on a node that never answers."""
     endless = examination.endless()
-    expect(not endless, f"On a faulty version, the tests in {' and '.join(endless)} did not end, and had to be stopped.")
+    expect(
+        not endless, f"On a faulty version, the tests in {' and '.join(endless)} did not end, and had to be stopped."
+    )
 
 
 @check(

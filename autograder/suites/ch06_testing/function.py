@@ -37,8 +37,7 @@ def test_limits_pass(examination: Examination) -> None:
 )
 def test_limits_right(examination: Examination) -> None:
     """They pass on every right safe_speed, in any order."""
-    examination.expect_right(LIMITS, SECOND)
-    examination.expect_right(LIMITS, BACKWARDS)
+    examination.expect_right(LIMITS, SECOND, BACKWARDS)
 
 
 @check(

@@ -37,8 +37,7 @@ def test_guard_pass(examination: Examination) -> None:
 )
 def test_guard_right(examination: Examination) -> None:
     """They pass on every right speed_guard, in any order."""
-    examination.expect_right(GUARD, SECOND)
-    examination.expect_right(GUARD, BACKWARDS)
+    examination.expect_right(GUARD, SECOND, BACKWARDS)
 
 
 @check(
@@ -195,5 +194,5 @@ def test_stale(examination: Examination) -> None:
 )
 def test_watchdog(examination: Examination) -> None:
     """A test fails when the motors are not stopped, just once, after the planner has fallen silent."""
-    promise = "when no command has come for timeout seconds, one command of zeros is published, and none before the first."
+    promise = "after timeout seconds without a command, one command of zeros is published, and none before the first."
     examination.expect_objection("watchdog", promise)

@@ -26,7 +26,8 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Range
 
-DEADLINE = 10.0  # s: only a broken node makes a test wait so long
+DEADLINE = 5.0  # s: only a broken node makes a test wait so long
+START = 10.0  # s: for a program that has to be started first
 
 
 class Robot(Node):
@@ -54,13 +55,13 @@ class Robot(Node):
         """Wait until a guard is at the other end of all three topics."""
         self.until(lambda: self.sensor.get_subscription_count() > 1
                    and self.planner.get_subscription_count() > 0
-                   and self.count_publishers('cmd_vel') > 0)
+                   and self.count_publishers('cmd_vel') > 0, START)
 
-    def until(self, condition):
-        """Spin until condition() is true; fail the test when that takes longer than DEADLINE."""
-        deadline = time.monotonic() + DEADLINE
+    def until(self, condition, seconds=DEADLINE):
+        """Spin until condition() is true; fail the test when that takes longer than that."""
+        deadline = time.monotonic() + seconds
         while not condition():
-            assert time.monotonic() < deadline, f'still not so after {DEADLINE:g} s'
+            assert time.monotonic() < deadline, f'still not so after {seconds:g} s'
             self.test_executor.spin_once(timeout_sec=0.05)
 
     def spin(self, seconds):

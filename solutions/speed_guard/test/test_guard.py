@@ -20,7 +20,7 @@ from rclpy.parameter import Parameter
 from speed_guard.guard import SpeedGuard
 
 PATIENT = 60.0  # s: nothing becomes old while a test runs
-HASTY = 0.2  # s
+HASTY = 0.1  # s
 
 
 @pytest.fixture

@@ -2,16 +2,15 @@
 
 import sys
 
-from geometry_msgs.msg import Twist
 import rclpy
+import speed_guard.limits
+from geometry_msgs.msg import Twist
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Range
-import speed_guard.limits
 
-SENSOR = QoSProfile(
-    reliability=ReliabilityPolicy.BEST_EFFORT, history=HistoryPolicy.KEEP_LAST, depth=3)
+SENSOR = QoSProfile(reliability=ReliabilityPolicy.BEST_EFFORT, history=HistoryPolicy.KEEP_LAST, depth=3)
 
 
 class SpeedGuard(Node):
@@ -19,15 +18,14 @@ class SpeedGuard(Node):
 
     def __init__(self, **kwargs):
         """Start it."""
-        super().__init__('speed_guard', **kwargs)
-        self.declare_parameters('', [
-            ('timeout', 0.5), ('slow_distance', 1.5), ('stop_distance', 0.5)])
-        self.patience = int(self.get_parameter('timeout').value * 1e9)
+        super().__init__("speed_guard", **kwargs)
+        self.declare_parameters("", [("timeout", 0.5), ("slow_distance", 1.5), ("stop_distance", 0.5)])
+        self.patience = int(self.get_parameter("timeout").value * 1e9)
         self.readings = []
         self.newest = None
-        self.out = self.create_publisher(Twist, 'cmd_vel', 10)
-        self.create_subscription(Twist, 'cmd_vel_raw', self.answer, 10)
-        self.create_subscription(Range, 'distance', self.measure, SENSOR)
+        self.out = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Twist, "cmd_vel_raw", self.answer, 10)
+        self.create_subscription(Range, "distance", self.measure, SENSOR)
         self.create_timer(0.04, self.look)
 
     def nanoseconds(self):
@@ -48,11 +46,12 @@ class SpeedGuard(Node):
     def answer(self, command):
         """Publish what is allowed."""
         self.newest = self.nanoseconds()
-        near = self.get_parameter('stop_distance').value
-        far = self.get_parameter('slow_distance').value
+        near = self.get_parameter("stop_distance").value
+        far = self.get_parameter("slow_distance").value
         result = Twist(linear=command.linear, angular=command.angular)
         result.linear.x = speed_guard.limits.safe_speed(
-            command.linear.x, self.known(), stop_distance=near, slow_distance=far)
+            command.linear.x, self.known(), stop_distance=near, slow_distance=far
+        )
         self.out.publish(result)
 
     def look(self):
@@ -78,5 +77,5 @@ def main(args=None):
         rclpy.try_shutdown()
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     sys.exit(main())
