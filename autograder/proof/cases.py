@@ -59,17 +59,21 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
 
 
 def one_a_check(assignment: str) -> tuple[Mutant, ...]:
-    """Return few mutants that fail every check at least once, by itself and not for want of another one."""
+    """Return few mutants that fail every check that any mutant fails, by itself where one does so.
+
+    A mutant fails a check by itself when the check is not merely skipped for want of one that it depends on.
+    """
     depends = {check.id: frozenset(check.depends) for check in suites.manifest(assignment)}
-    direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in mutants(assignment)}
-    open_checks, chosen = set(depends), []
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
-    while open_checks:
-        best = max(candidates, key=lambda m: (len(direct[m.id] & open_checks), not m.slow))
-        if not direct[best.id] & open_checks:
-            break
-        chosen.append(best)
-        open_checks -= direct[best.id]
+    direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
+    chosen: list[Mutant] = []
+    uncovered = set(depends)
+    for covers in (direct, {m.id: set(m.loses) for m in candidates}):
+        while best := max(candidates, key=lambda m: (len(covers[m.id] & uncovered), not m.slow), default=None):
+            if not covers[best.id] & uncovered:
+                break
+            chosen.append(best)
+            uncovered -= covers[best.id]
     return tuple(chosen)
 
 

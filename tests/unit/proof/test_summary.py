@@ -1,0 +1,132 @@
+"""What a proof comes to, and when it stands."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from autograder import suites
+from autograder.checks import Outcome
+from autograder.diagnosis import OK
+from autograder.proof import Claim, Kind, cases, holds, summary
+from autograder.proof.claims import as_named, full, killed, nothing
+from autograder.proof.generated import generated
+from autograder.result import CheckResult, Result
+from autograder.suites.mutants import mutants
+
+ASSIGNMENT = "02_nodes"
+SUITE = suites.load(ASSIGNMENT)
+
+
+def result(*lost: str) -> Result:
+    """Return a result in which these checks failed and all others passed."""
+    checks = tuple(
+        CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED, "so" if check.id in lost else "")
+        for check in SUITE.checks
+    )
+    return Result(
+        assignment=ASSIGNMENT,
+        student="x",
+        submission_sha256="0" * 64,
+        suite_version=SUITE.version,
+        seed=1,
+        isolation="bubblewrap",
+        checks=checks,
+        max_score=SUITE.max_score,
+        started="2026-01-01T00:00:00+00:00",
+        seconds=1.0,
+        diagnosis=OK,
+        build=None,
+        artifacts=(),
+        phases={},
+    )
+
+
+def claim(kind: Kind, wrong: str = "", reason: str = "", *lost: str) -> Claim:
+    return Claim(ASSIGNMENT, kind, "x", result(*lost), wrong, reason)
+
+
+def test_a_right_answer_has_every_point() -> None:
+    assert full(result()) == ""
+    assert full(result("nan")) == "loses nan"
+
+
+def test_a_release_gains_nothing() -> None:
+    assert nothing(result(*(check.id for check in SUITE.checks))) == ""
+    assert nothing(result("nan")).startswith("it scores")
+
+
+def test_a_mutant_loses_what_it_names_and_no_other() -> None:
+    mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
+    assert as_named(mutant, result(*mutant.loses)) == ""
+    assert as_named(mutant, result("nan")) == "also loses nan; keeps minus_inf"
+
+
+def test_a_generated_mutant_that_loses_nothing_survives() -> None:
+    assert killed(result("nan")) == ""
+    assert "survives" in killed(result())
+
+
+def test_the_summary_counts_each_kind() -> None:
+    claims = [
+        claim(Kind.REFERENCE),
+        claim(Kind.RELEASE, "", "", *(check.id for check in SUITE.checks)),
+        claim(Kind.VARIANT),
+        claim(Kind.MUTANT, "", "", "nan"),
+        claim(Kind.MUTANT, "also loses blind", "", "nan", "blind"),
+        claim(Kind.MUTANT, "keeps nan"),
+        claim(Kind.GENERATED, "", "", "nan"),
+        claim(Kind.GENERATED, "survives"),
+        claim(Kind.GENERATED, "survives", "the same behaviour"),
+        claim(Kind.ATTACK, "gains nan"),
+    ]
+    assert summary(claims, 12.34) == {
+        "reference": 100.0,
+        "release": 0.0,
+        "variants": [100.0],
+        "mutants": 3,
+        "mutants_missed": 1,
+        "mutants_wrong_check": 1,
+        "generated": 2,
+        "generated_killed": 1,
+        "attacks": 1,
+        "attacks_gained": 1,
+        "seconds": 12.3,
+    }
+
+
+@pytest.mark.parametrize(("killed_of_ten", "stands"), [(10, True), (9, True), (8, False)])
+def test_nine_in_ten_generated_mutants_are_enough(killed_of_ten: int, stands: bool) -> None:
+    claims = [claim(Kind.GENERATED, "" if i < killed_of_ten else "survives") for i in range(10)]
+    assert holds(claims) is stands
+
+
+@pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.GENERATED])
+def test_every_other_claim_has_to_hold(kind: Kind) -> None:
+    assert not holds([claim(Kind.REFERENCE), claim(kind, "wrong")])
+
+
+def test_the_whole_proof_holds_every_kind_and_names_each_submission_once() -> None:
+    found = cases(ASSIGNMENT)
+    assert {case.kind for case in found} >= set(Kind) - {Kind.VARIANT}
+    assert len({case.name for case in found}) == len(found)
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_the_quick_proof_fails_every_check(assignment: str) -> None:
+    names = {case.name for case in cases(assignment, quick=True)}
+    covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.loses}
+    assert covered == {check.id for check in suites.manifest(assignment)}
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_each_check_has_three_mutants(assignment: str) -> None:
+    lost = Counter(name for mutant in mutants(assignment) for name in mutant.loses)
+    assert [check.id for check in suites.manifest(assignment) if lost[check.id] < 3] == []
+
+
+def test_a_generated_mutant_is_a_different_file_and_always_the_same() -> None:
+    first = generated(ASSIGNMENT)
+    assert first == generated(ASSIGNMENT)
+    assert len({made.text for made in first}) == len(first) > 10
