@@ -38,7 +38,7 @@ class Cache:
 
     @classmethod
     def default(cls, name: str) -> Cache:
-        """Return this user's cache of a name below `XDG_CACHE_HOME`, or in the temporary folder where that is not writable."""
+        """Return this user's cache of a name: below `XDG_CACHE_HOME`, or among temporary files where it cannot be."""
         for base in (_xdg(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
             root = base / "autograder" / name
             with contextlib.suppress(OSError):
@@ -78,6 +78,11 @@ class Cache:
         if made:
             self._evict()
         return entry
+
+    def release(self) -> None:
+        """Let go of every entry; none of them may be used any more."""
+        while self._held:
+            os.close(self._held.popitem()[1])
 
     def _open(self, key: str) -> int:
         return os.open(self.root / f"{key}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)

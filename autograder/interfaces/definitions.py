@@ -31,12 +31,17 @@ _PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]{0,78}[a-z0-9]")
 _PRINTABLE = re.compile(r"[ -~]*")
 # C and C++ both compile the generated structures.
 _C_WORDS = frozenset(
-    "alignas alignof and asm auto bitand bitor bool break case catch char class compl const constexpr continue decltype "
-    "default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int "
-    "long mutable namespace new noexcept not nullptr operator or private protected public register reinterpret_cast "
-    "restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local "
-    "throw true try typedef typeid typename typeof union unsigned using virtual void volatile wchar_t while xor "
-    "linux unix errno".split()
+    re.findall(
+        r"\w+",
+        """
+    alignas alignof and asm auto bitand bitor bool break case catch char class compl const constexpr continue
+    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if
+    inline int long mutable namespace new noexcept not nullptr operator or private protected public register
+    reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch template
+    this thread_local throw true try typedef typeid typename typeof union unsigned using virtual void volatile
+    wchar_t while xor linux unix errno
+    """,
+    )
 )
 
 

@@ -13,6 +13,7 @@ import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape
@@ -85,11 +86,8 @@ def adapt(prefix: Path, work: Path, package: str, texts: dict[str, str]) -> tupl
 
 def share_parsing() -> None:
     """Let the generators parse each .idl once between them."""
-    import rosidl_generator_py.generate_py_impl as for_python
-    import rosidl_generator_type_description as for_descriptions
-    import rosidl_pycommon as common
-    from rosidl_parser import parser
-
+    names = ("rosidl_generator_py.generate_py_impl", "rosidl_generator_type_description", "rosidl_pycommon")
+    parser = import_module("rosidl_parser.parser")
     original, parsed = parser.parse_idl_file, dict[str, Any]()
 
     def parse(locator: Any, png_file: Any = None) -> Any:
@@ -98,8 +96,8 @@ def share_parsing() -> None:
             parsed[name] = original(locator, png_file)
         return parsed[name]
 
-    for module in (parser, common, for_python, for_descriptions):
-        module.parse_idl_file = parse
+    for module in (parser, *map(import_module, names)):
+        module.parse_idl_file = parse  # type: ignore[attr-defined]
 
 
 def arguments(job: Job, generator: str, **more: Any) -> str:
@@ -125,25 +123,23 @@ def arguments(job: Job, generator: str, **more: Any) -> str:
 
 def generate(job: Job) -> None:
     """Run all generators, in two processes: what needs the type hashes here, the rest in a fork."""
-    import rosidl_generator_c
-    import rosidl_generator_py.generate_py_impl as for_python
-    import rosidl_generator_type_description as for_descriptions
-    import rosidl_typesupport_c
-    import rosidl_typesupport_fastrtps_c
-    import rosidl_typesupport_introspection_c
+    python = import_module("rosidl_generator_py.generate_py_impl")
+    descriptions = import_module("rosidl_generator_type_description")
+    code, supports = import_module("rosidl_generator_c"), import_module("rosidl_typesupport_c")
+    fast, introspection = map(import_module, C_SUPPORTS)
 
     def types() -> None:
         include = [f"{name}:{job.share(name)}" for name in job.dependencies]
-        for_descriptions.generate_type_hash(arguments(job, "rosidl_generator_type_description", include_paths=include))
+        descriptions.generate_type_hash(arguments(job, "rosidl_generator_type_description", include_paths=include))
         described = job.out("rosidl_generator_type_description")
         tuples = [f"{file}:{described / file[:-4]}.json" for file in job.files]
-        rosidl_generator_c.generate_c(arguments(job, "rosidl_generator_c", type_description_tuples=tuples))
-        rosidl_typesupport_introspection_c.generate_c(arguments(job, "rosidl_typesupport_introspection_c"))
+        code.generate_c(arguments(job, "rosidl_generator_c", type_description_tuples=tuples))
+        introspection.generate_c(arguments(job, "rosidl_typesupport_introspection_c"))
 
     def rest() -> None:
-        for_python.generate_py(arguments(job, "rosidl_generator_py"), ["rosidl_typesupport_c"])
-        rosidl_typesupport_c.generate_c(arguments(job, "rosidl_typesupport_c"), C_SUPPORTS)
-        rosidl_typesupport_fastrtps_c.generate_typesupport_fastrtps_c(arguments(job, "rosidl_typesupport_fastrtps_c"))
+        python.generate_py(arguments(job, "rosidl_generator_py"), ["rosidl_typesupport_c"])
+        supports.generate_c(arguments(job, "rosidl_typesupport_c"), C_SUPPORTS)
+        fast.generate_typesupport_fastrtps_c(arguments(job, "rosidl_typesupport_fastrtps_c"))
 
     both(types, rest)
     for name in ("rosidl_generator_c", "rosidl_typesupport_c", *C_SUPPORTS):
@@ -205,7 +201,7 @@ def main() -> None:
     """Build what PREFIX's recipe says."""
     prefix = Path(sys.argv[1]).resolve()
     recipe = json.loads((prefix / "recipe.json").read_text())
-    sys.stdout = open(os.devnull, "w")  # the generators tell of each file  # noqa: SIM115
+    sys.stdout = Path(os.devnull).open("w")  # the generators tell of each file  # noqa: SIM115
     work = prefix / "work"
     work.mkdir()
     prefixes = tuple(Path(path) for path in recipe["prefixes"])

@@ -17,7 +17,7 @@ _loaded: dict[str, Path] = {}
 
 
 def load(prefix: Path) -> ModuleType:
-    """Import the package of a prefix that `build` returned, and those of its underlays; return it with msg, srv, action.
+    """Import the package of a prefix that `build` returned, and those that it uses.
 
     Raises:
         AlreadyLoadedError: this process has another package of that name.
@@ -27,7 +27,7 @@ def load(prefix: Path) -> ModuleType:
     if _loaded.get(package) == prefix:
         return sys.modules[package]
     if package in _loaded or package in sys.modules:
-        there = _loaded.get(package) or getattr(sys.modules[package], "__file__", "somewhere")
+        there = _loaded.get(package) or sys.modules[package].__file__
         raise AlreadyLoadedError(
             f"{package} is loaded from {there} already: a process can hold one version of it, start another process"
         )

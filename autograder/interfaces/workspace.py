@@ -24,7 +24,9 @@ def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None)
         AlreadyLoadedError: this process has another version of it.
     """
     source = workspace.root / "src"
-    packages = find_packages(source) if source.is_dir() else {}
+    packages, broken = find_packages(source)
+    if package not in packages and broken:
+        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
     return load(_build(packages, package, cache, ()))
 
 

@@ -1,0 +1,138 @@
+"""The cache of built trees: whole entries only, built once, held while in use, bounded."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.interfaces.cache import STALE, Cache
+
+A, B, C = "a" * 40, "b" * 40, "c" * 40
+
+WORKER = """
+import sys
+from pathlib import Path
+from autograder.interfaces.cache import Cache
+
+root, log, after = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+
+def make(folder):
+    (folder / "half").write_text("x")
+    with open(log, "a") as file:
+        file.write("made\\n")
+    print("making", flush=True)
+    if after == "wait":
+        sys.stdin.readline()
+    (folder / "whole").write_text("x")
+
+entry = Cache(root).get("a" * 40, make)
+assert (entry / "whole").is_file()
+print("got", flush=True)
+sys.stdin.readline()
+"""
+
+
+def start(cache: Path, log: Path, after: str = "") -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", WORKER, str(cache), str(log), after],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def hear(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    return process.stdout.readline().strip()
+
+
+def say(process: subprocess.Popen[str]) -> None:
+    assert process.stdin is not None
+    process.stdin.write("\n")
+    process.stdin.flush()
+
+
+def fill(folder: Path) -> None:
+    (folder / "file").write_bytes(b"x" * 1000)
+
+
+def test_two_processes_that_want_the_same_build_it_once(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    with start(tmp_path / "cache", log, "wait") as first:
+        assert hear(first) == "making"
+        with start(tmp_path / "cache", log) as second:
+            say(first)
+            assert [hear(first), hear(second)] == ["got", "got"]
+            assert log.read_text() == "made\n"
+            say(first)
+            say(second)
+    assert (first.returncode, second.returncode) == (0, 0)
+
+
+def test_a_killed_build_leaves_no_entry_and_the_next_one_makes_it(tmp_path: Path) -> None:
+    with start(tmp_path / "cache", tmp_path / "log", "wait") as process:
+        assert hear(process) == "making"
+        process.send_signal(signal.SIGKILL)
+    assert not (tmp_path / "cache" / A).exists()
+    entry = Cache(tmp_path / "cache").get(A, lambda folder: (folder / "whole").touch())
+    assert [path.name for path in entry.iterdir()] == ["whole"]
+
+
+def test_what_a_killed_build_left_is_removed_later(tmp_path: Path) -> None:
+    left = tmp_path / ".aaaa-left"
+    left.mkdir()
+    os.utime(left, (0, STALE))
+    Cache(tmp_path).get(A, lambda folder: None)
+    assert not left.exists()
+
+
+def test_a_build_that_fails_leaves_nothing(tmp_path: Path) -> None:
+    def fail(folder: Path) -> None:
+        (folder / "half").touch()
+        raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        Cache(tmp_path).get(A, fail)
+    assert [path.name for path in tmp_path.iterdir()] == [f"{A}.lock"]
+
+
+def test_the_entry_unused_for_longest_goes_first(tmp_path: Path) -> None:
+    cache = Cache(tmp_path)
+    for used, key in ((2, A), (1, B)):
+        os.utime(cache.get(key, fill), (used, used))
+    cache.release()
+    Cache(tmp_path, limit=2500).get(C, fill)
+    assert [(tmp_path / key).is_dir() for key in (A, B, C)] == [True, False, True]
+
+
+def test_an_entry_in_use_is_never_evicted(tmp_path: Path) -> None:
+    with start(tmp_path, tmp_path / "log") as user:
+        assert [hear(user), hear(user)] == ["making", "got"]
+        os.utime(tmp_path / A, (1, 1))
+        Cache(tmp_path, limit=1).get(B, fill)
+        assert (tmp_path / A / "whole").is_file()
+        say(user)
+    Cache(tmp_path, limit=1).get(C, fill)
+    assert not (tmp_path / A).exists()
+
+
+def test_a_key_is_hexadecimal_so_that_no_entry_escapes_the_cache(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="hexadecimal"):
+        Cache(tmp_path).get("../../etc/passwd0000", lambda folder: None)
+
+
+def test_the_default_cache_lies_below_the_users_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert Cache.default("things").root == tmp_path / "autograder" / "things"
+
+
+def test_a_cache_folder_that_cannot_be_made_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    assert Cache.default("things").root.is_relative_to(tmp_path / "temporary")

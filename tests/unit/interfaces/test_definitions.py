@@ -1,0 +1,87 @@
+"""Interface texts: what is read, and what each mistake is told."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.interfaces import DefinitionError
+from autograder.interfaces.definitions import MAX_BYTES, MAX_FILES, packages_used, read, require_uses
+
+
+def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
+    (definition,) = read(
+        "my_msgs", {"msg/A.msg": "# */ evil\n\nstd_msgs/Header header  # \\\nint32 X=3\r\nint32[] y\n"}
+    )
+    assert definition.text == "std_msgs/Header header\nint32 X=3\nint32[] y\n"
+    assert definition.uses == (("std_msgs", "Header", "std_msgs/Header header"),)
+
+
+def test_services_and_actions_bring_the_packages_that_they_stand_on() -> None:
+    definitions = read("my_msgs", {"action/Go.action": "A x\n---\n---\n", "msg/A.msg": "bool b\n"})
+    assert set(packages_used(definitions)) == {
+        *("service_msgs", "builtin_interfaces", "action_msgs", "unique_identifier_msgs")
+    }
+
+
+WRONG = {
+    "no name": ("msg/A.msg", "int32\n", "int32", "a field is written"),
+    "a name in capitals": ("msg/A.msg", "bool ok\nint32 Speed\n", "int32 Speed", "invalid field name"),
+    "a constant out of range": ("msg/A.msg", "uint8 MAX=256\n", "uint8 MAX=256", "<= 255"),
+    "a name that is there twice": ("msg/A.msg", "int32 a\nbool a\n", "bool a", "a is there twice"),
+    "a word of Python": ("msg/A.msg", "int32 lambda\n", "int32 lambda", "word of C or Python"),
+    "a word of C": ("msg/A.msg", "int32 default\n", "int32 default", "word of C or Python"),
+    "ROS 1's time": ("msg/A.msg", "time stamp\n", "time stamp", "builtin_interfaces/Time"),
+    "a message that is not there": ("msg/A.msg", "B b\n", "B b", "no msg/B.msg in my_msgs"),
+    "a message in itself": ("msg/A.msg", "A a\n", "", "contains itself"),
+    "a gigantic array": ("msg/A.msg", "int8[2000000000] a\n", "int8[2000000000] a", "unbounded array"),
+    "a value that is no number": ("msg/A.msg", "float64 X=nan\n", "float64 X=nan", "finite"),
+    "a backslash": ("msg/A.msg", 'string X="\\n"\n', 'string X="\\n"', "backslash"),
+    "letters beyond ASCII": ("msg/A.msg", "string X=“a”\n", "'string X=", "ASCII"),
+    "a hidden line": ("msg/A.msg", "int32 a\x0bint32 b\n", "'int32 a", "ASCII"),
+    "an indented line": ("msg/A.msg", "  int32 a\n", "  int32 a", "space"),
+    "a service without a response": ("srv/A.srv", "int32 a\n", "", "0 separator lines ---, 1 are needed"),
+    "an action with one separator": ("action/A.action", "int32 a\n---\n", "", "goal --- result --- feedback"),
+    "a comment at a separator": ("srv/A.srv", "int32 a\n--- # then\n", "--- # then", "stands alone"),
+    "a path that leads out": ("msg/../../A.msg", "int32 a\n", "", "msg/Name.msg"),
+    "a name in small letters": ("msg/status.msg", "int32 a\n", "", "CamelCase"),
+    "a file in the wrong folder": ("msg/A.srv", "---\n", "", "msg/Name.msg"),
+    "a huge file": ("msg/A.msg", "#" * (MAX_BYTES + 1), "", "64 KiB"),
+}
+
+
+@pytest.mark.parametrize(("path", "text", "line", "problem"), WRONG.values(), ids=WRONG.keys())
+def test_a_mistake_is_named_with_its_file_and_line(path: str, text: str, line: str, problem: str) -> None:
+    with pytest.raises(DefinitionError) as caught:
+        read("my_msgs", {path: text})
+    assert caught.value.file == path
+    assert caught.value.line.startswith(line)
+    assert bool(caught.value.line) == bool(line)
+    assert problem in str(caught.value)
+
+
+def test_arrays_are_counted_through_nested_messages() -> None:
+    with pytest.raises(DefinitionError, match="100000 elements"):
+        read("my_msgs", {"msg/A.msg": "int8[1000] a\n", "msg/B.msg": "A[1000] a\n"})
+
+
+@pytest.mark.parametrize("name", ["", "../x", "My_msgs", "a__b", "a_", "class", "a/b", "a" * 200])
+def test_a_package_name_that_ros_would_not_take_is_refused(name: str) -> None:
+    with pytest.raises(DefinitionError, match="no package name"):
+        read(name, {"msg/A.msg": "int32 a\n"})
+
+
+def test_too_many_definitions_none_and_two_that_differ_in_capitals_are_refused() -> None:
+    with pytest.raises(DefinitionError, match="at most"):
+        read("my_msgs", {f"msg/A{i}.msg": "int32 a\n" for i in range(MAX_FILES + 1)})
+    with pytest.raises(DefinitionError, match=r"no \.msg"):
+        read("my_msgs", {})
+    with pytest.raises(DefinitionError, match="capital letters"):
+        read("my_msgs", {"msg/Ab.msg": "int32 a\n", "msg/AB.msg": "int32 a\n"})
+
+
+def test_a_message_of_another_package_must_be_there() -> None:
+    definitions = read("my_msgs", {"msg/A.msg": "std_msgs/Headr header\n"})
+    with pytest.raises(DefinitionError, match="std_msgs has no message Headr"):
+        require_uses(definitions, lambda package, message: message is None)
+    with pytest.raises(DefinitionError, match="no package std_msgs"):
+        require_uses(definitions, lambda package, message: False)
