@@ -87,11 +87,14 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
 
 @main.command()
 def tables() -> None:
-    """Write the instructors' page: what is taught where, and which checks judge it."""
+    """Write the instructors' pages: what is taught where, which checks judge it, and what proves them."""
+    from autograder.proof import guide  # here, because the proof is made of chapters
+
     survey = Survey.of_the_course()
     for finding in survey.coverage.findings:
         click.echo(str(finding))
     PAGE.write_text(survey.page(), encoding="utf-8")
+    guide.PAGE.write_text(guide.guide(), encoding="utf-8")
 
 
 if __name__ == "__main__":

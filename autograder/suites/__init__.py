@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 from autograder import suite
 from autograder.checks import Check
 from autograder.suite import Suite
 
-__all__ = ["Suite", "graded", "load", "manifest"]
+__all__ = ["FOLDER", "Suite", "graded", "load", "manifest"]
+
+FOLDER = Path(__file__).parent
 
 
 @cache

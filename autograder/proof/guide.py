@@ -1,0 +1,33 @@
+"""The instructors' guide to the hidden checks: each one's sentence, and the errors that prove that it can fail."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from autograder import suites
+from autograder.checks import Check
+from autograder.suites.mutants import Mutant, mutants
+
+PAGE = suites.FOLDER / "README.md"
+HEAD = """# The hidden checks, and what proves them
+
+For instructors; nothing of this folder reaches students. Each check is named with the sentence that the student reads,
+and with the flawed versions of the reference that fail it by themselves: small, realistic errors, `mutants.yaml` beside
+the suite. `autograder verify` grades them all. This page is written by `python -m autograder.course tables`.
+"""
+
+
+def guide() -> str:
+    """Return the guide as Markdown."""
+    return HEAD + "".join(
+        "\n".join(["", f"## {name}", "", *_table(suites.manifest(name), mutants(name)), ""]) for name in suites.graded()
+    )
+
+
+def _table(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[str]:
+    yield "| check | points | the student reads | fails in a version that |"
+    yield "| --- | --- | --- | --- |"
+    for check in checks:
+        alone = [m.title for m in flawed if check.id in m.loses and not m.loses & set(check.depends)]
+        cells = (f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(alone))
+        yield "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
