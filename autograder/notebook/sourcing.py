@@ -1,0 +1,130 @@
+"""`source`: what a terminal's `source install/setup.bash` does, for a notebook's kernel that already runs.
+
+The loader of a running process searches the folders that it knew at its start. So the libraries of a sourced package
+are loaded by their paths, at the moment in which Python first asks for the package's compiled part.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+
+from autograder.exceptions import UsageError
+from autograder.notebook.desk import grading
+from autograder.notebook.errors import TROUBLE, Notice
+
+SITE = Path(f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")
+KINDS = ("msg", "srv", "action")
+LATER = "The workspace is built and used after the notebook has been executed, outside of it."
+
+
+def source(workspace: str | Path = "ws") -> Notice:
+    """Let this kernel, and the programs that it starts, use a built workspace.
+
+    After it, the workspace's packages can be imported and found. Call it again after another build. A kernel that has
+    loaded an interface cannot load its new form; the notice says so then.
+
+    Args:
+        workspace: a colcon workspace after `colcon build`.
+
+    Raises:
+        UsageError: there is no workspace, or it was not built.
+    """
+    if grading():
+        return Notice(LATER)
+    prefixes = _prefixes(workspace)
+    modules = [prefix / SITE for prefix in prefixes if (prefix / SITE).is_dir()]
+    _FINDER.prefixes |= {prefix.name: prefix for prefix in prefixes}
+    if _FINDER not in sys.meta_path:
+        sys.meta_path.insert(0, _FINDER)
+    _put_first("AMENT_PREFIX_PATH", prefixes)
+    _put_first("CMAKE_PREFIX_PATH", prefixes)
+    _put_first("LD_LIBRARY_PATH", [prefix / "lib" for prefix in prefixes if (prefix / "lib").is_dir()])
+    _put_first("PYTHONPATH", modules)
+    sys.path[:] = [*map(str, modules), *(path for path in sys.path if Path(path) not in modules)]
+    importlib.invalidate_caches()
+    stale = [prefix.name for prefix in prefixes if _FINDER.is_stale(prefix)]
+    if stale:
+        sentence = f"This kernel still holds the old {', '.join(stale)}: choose Kernel, Restart, and run from the top."
+        return Notice(sentence, colour=TROUBLE)
+    return Notice(f"This kernel can use {', '.join(prefix.name for prefix in prefixes)}.")
+
+
+class _Libraries(MetaPathFinder):
+    """Finds no module; loads the libraries of a sourced package before its compiled part is imported.
+
+    Attributes:
+        prefixes: where each sourced package is installed.
+    """
+
+    def __init__(self) -> None:
+        self.prefixes: dict[str, Path] = {}
+        self._loaded: dict[str, str] = {}  # the interfaces that a package had when its libraries were loaded
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        package, _, module = fullname.partition(".")
+        if package in self.prefixes and package not in self._loaded and module.startswith(f"{package}_s__"):
+            self._loaded[package] = _fingerprint(self.prefixes[package])
+            for library in sorted((self.prefixes[package] / "lib").glob("lib*.so")):
+                self._load(library)
+        return None
+
+    def is_stale(self, prefix: Path) -> bool:
+        """Say whether this process has loaded other interfaces of a package than are installed now."""
+        return self._loaded.get(prefix.name, fingerprint := _fingerprint(prefix)) != fingerprint
+
+    def _load(self, library: Path, wanted_by: tuple[str, ...] = ()) -> None:
+        """Load a library, after those of sourced packages that it needs.
+
+        One that cannot be loaded is left to the import that follows, which says what is wrong.
+        """
+        try:
+            ctypes.CDLL(str(library))
+        except OSError as error:
+            missing = str(error).partition(":")[0]  # "libNAME.so: cannot open shared object file: ..."
+            found = next((path for path in self._places(missing) if path.is_file()), None)
+            if found is not None and missing not in wanted_by:
+                self._load(found, (*wanted_by, missing))
+                self._load(library, (*wanted_by, missing))
+
+    def _places(self, name: str) -> list[Path]:
+        return [] if "/" in name else [prefix / "lib" / name for prefix in self.prefixes.values()]
+
+
+_FINDER = _Libraries()
+
+
+def _prefixes(workspace: str | Path) -> list[Path]:
+    """Return where each package of a workspace is installed."""
+    root = Path(workspace).resolve()
+    if not root.is_dir():
+        raise UsageError(f"there is no folder {workspace}: run this from the assignment's folder, where ws is")
+    install = root / "install"
+    found = sorted(path for path in install.iterdir() if (path / "share").is_dir()) if install.is_dir() else []
+    if not found:
+        raise UsageError(f"{workspace} has nothing built in it: run colcon build in {workspace}, and read what it says")
+    return found
+
+
+def _fingerprint(prefix: Path) -> str:
+    """Return a digest of a package's installed interfaces, by name and text."""
+    digest = hashlib.sha256()
+    for kind in KINDS:
+        for path in sorted((prefix / "share" / prefix.name / kind).glob(f"*.{kind}")):
+            digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def _put_first(variable: str, paths: Sequence[Path]) -> None:
+    kept = [part for part in os.environ.get(variable, "").split(os.pathsep) if part and Path(part) not in paths]
+    os.environ[variable] = os.pathsep.join([*map(str, paths), *kept])
