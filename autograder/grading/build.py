@@ -10,6 +10,7 @@ from pathlib import Path
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.grading.slim import slim_interfaces
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import tail
 from autograder.result import Build
@@ -77,8 +78,10 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
     command += ["--packages-up-to", *wanted]
-    environment = {
-        **workspace.environment(),
+    environment = workspace.environment()
+    slim = slim_interfaces(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
+    environment |= {
+        "CMAKE_PREFIX_PATH": os.pathsep.join([str(slim), environment["CMAKE_PREFIX_PATH"]]),
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
@@ -141,6 +144,8 @@ def _build_failure(output: str, ending: Ending | None) -> str:
         return (
             f"colcon build was stopped ({ending.value.replace('_', ' ')}): a build should end within a minute or two."
         )
+    # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
+    output = output[max(output.find("Starting >>> "), 0) :]
     errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]
     first = f" The first error: {errors[0][:300]}" if errors else ""
     return f"colcon build failed.{first}"

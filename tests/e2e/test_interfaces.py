@@ -1,0 +1,125 @@
+"""A package that the grader built from texts talks with a node whose package colcon built from the same texts."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.interfaces import AlreadyLoadedError, Cache, build, load, load_from
+from tests.e2e.cell_support import in_cell
+
+PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"
+SECONDS = 20.0
+
+NODE = """
+import rclpy
+from my_robot_interfaces.msg import RobotStatus
+rclpy.init()
+node = rclpy.create_node('echo')
+out = node.create_publisher(RobotStatus, 'out', 10)
+def answer(message):
+    message.battery_level += 1
+    out.publish(message)
+node.create_subscription(RobotStatus, 'in', answer, 10)
+rclpy.spin(node)
+"""
+
+
+def _workspace(scratch: Path) -> Any:
+    from autograder.lab import Workspace
+    from autograder.ros import activate
+    from autograder.suites.mutants import lay_down_reference
+
+    (scratch / "home").mkdir()
+    domain = int(os.environ["ROS_DOMAIN_ID"])
+    workspace = Workspace(scratch / "ws", activate(), scratch / "home", domain=domain)
+    lay_down_reference((PACKAGE,), workspace.root)
+    return workspace
+
+
+def talk(scratch: Path) -> dict[str, Any]:
+    """Build the package both ways, and let a sandboxed node answer a message."""
+    import sys
+
+    import rclpy
+
+    from autograder.grading.build import build as colcon
+    from autograder.sandbox.launcher import launch
+
+    workspace = _workspace(scratch)
+    colcon(workspace, (PACKAGE,))
+    program = workspace.scratch / "node.py"
+    program.write_text(NODE)
+    outer = workspace.root / "src" / OUTER
+    (outer / "msg").mkdir(parents=True)
+    (outer / "package.xml").write_text(f"<package format='3'><name>{OUTER}</name></package>")
+    (outer / "msg" / "Fleet.msg").write_text(f"{PACKAGE}/RobotStatus[] robots\n")
+    fleet = load_from(workspace, OUTER, cache=Cache(scratch / "cache")).msg.Fleet
+    module = load_from(workspace, PACKAGE, cache=Cache(scratch / "cache"))
+    kind, heard = module.msg.RobotStatus, []
+    rclpy.init()
+    node = rclpy.create_node("grader")
+    out = node.create_publisher(kind, "in", 10)
+    node.create_subscription(kind, "out", heard.append, 10)
+    with launch([sys.executable, str(program)], workspace.sandbox()) as process:
+        deadline = time.monotonic() + SECONDS
+        while not heard and time.monotonic() < deadline:
+            if out.get_subscription_count() and node.count_publishers("out"):
+                out.publish(kind(robot_name="R2", battery_level=41))
+            rclpy.spin_once(node, timeout_sec=0.1)
+        hashes = {str(end.topic_type_hash) for end in node.get_publishers_info_by_topic("out")}
+        hashes |= {str(end.topic_type_hash) for end in node.get_publishers_info_by_topic("in")}
+        output = process.output
+    levels = [message.battery_level for message in fleet(robots=heard[:1]).robots]
+    node.destroy_node()
+    rclpy.shutdown()
+    return {"levels": levels, "hashes": sorted(hashes), "output": output}
+
+
+def test_both_builds_have_one_type_hash_and_talk() -> None:
+    answer = in_cell(talk)
+    assert answer["levels"] == [42], answer
+    assert len(answer["hashes"]) == 1, answer
+
+
+def two_versions(scratch: Path) -> str:
+    """Load two versions of a package in one process."""
+    cache = Cache(scratch / "cache")
+    load(build("twice_msgs", {"msg/A.msg": "int32 a\n"}, cache=cache))
+    try:
+        load(build("twice_msgs", {"msg/A.msg": "int32 b\n"}, cache=cache))
+    except AlreadyLoadedError as error:
+        return str(error)
+    return "loaded"
+
+
+def test_a_second_version_of_a_package_is_refused() -> None:
+    assert "twice_msgs is loaded from" in in_cell(two_versions)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("int32 Speed", ["src/my_robot_interfaces", "msg/RobotStatus.msg", "int32 Speed"]),
+        ("std_mgs/Header header", ["there is no package std_mgs"]),
+        ("std_msgs/Headr header", ["std_msgs has no message Headr"]),
+    ],
+)
+def test_a_wrong_definition_is_the_students_to_mend(tmp_path: Path, line: str, words: list[str]) -> None:
+    workspace = _workspace(tmp_path)
+    (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
+    with pytest.raises(StudentError) as caught:
+        load_from(workspace, PACKAGE, cache=Cache(tmp_path / "cache"))
+    assert caught.value.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+    assert all(word in caught.value.diagnosis.sentence for word in words), caught.value.diagnosis.sentence
+
+
+def test_a_missing_package_is_named(tmp_path: Path) -> None:
+    with pytest.raises(StudentError, match=r"ghost_msgs is missing: src holds my_robot_interfaces\."):
+        load_from(_workspace(tmp_path), "ghost_msgs", cache=Cache(tmp_path / "cache"))
