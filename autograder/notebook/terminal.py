@@ -76,12 +76,14 @@ class _Terminal:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
         self._shown = 0
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
+        # setuptools warns in red where no byte code is written; that would be ours to explain.
+        variables = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         self._process = subprocess.Popen(
             ["bash", "-c", _SOURCED, str(workspace.resolve() / "install" / "local_setup.bash"), command],
             stdin=subprocess.DEVNULL,
             stdout=self._file,
             stderr=subprocess.STDOUT,
-            env={**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1"},
+            env={**variables, "PATH": path, "PYTHONUNBUFFERED": "1"},
             start_new_session=True,
         )
 
@@ -114,15 +116,16 @@ class _Terminal:
             return
 
     def end(self) -> None:
-        """Press Ctrl-C if the command still runs; print the rest, and how it ended if that was not well."""
-        if self._process.poll() is None:
+        """Press Ctrl-C if the command still runs; print the rest, and how it ended if it failed by itself."""
+        pressed = self._process.poll() is None
+        if pressed:
             self._signal(signal.SIGINT)
             self.wait(lambda: False, STOP_SECONDS)
         self.show()
         status = self._process.poll()
         if status is None:
             print(f"[still running {STOP_SECONDS:.0f} s after Ctrl-C: killed]")
-        elif status != 0:
+        elif status != 0 and not pressed:
             print(f"[exit status {status}]")
 
     def _signal(self, number: signal.Signals) -> None:

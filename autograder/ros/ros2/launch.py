@@ -139,8 +139,6 @@ def argument_lines(description: Any) -> Iterator[str]:
     for argument in arguments:
         yield f"\n    '{argument.name}':"
         yield f"        {argument.description}"
-        if argument.choices:
-            yield f"        Valid choices are: {argument.choices}"
         if argument.default_value is not None:
             shown = " + ".join(substitution.describe() for substitution in argument.default_value)
             yield f"        (default: {shown})"

@@ -31,10 +31,11 @@ NODE_NAME_PREFIX = "_ros2cli"
 # Beyond it, DDS runs out of ports.
 LAST_DOMAIN = 232
 
-# Seconds without a change after which the graph counts as discovered, the least to wait for the first ones to be found,
-# and the most to wait for all.
+# Seconds without a change after which the graph counts as discovered, the least that is waited, the least before it
+# counts as empty, and the most to wait for all.
 QUIET = 0.5
-FIRST = 1.0
+LEAST = 1.0
+EMPTY = 3.0
 LONGEST_SETTLING = 5.0
 # Seconds to wait for something that was named, such as a node; once that is there, the rest of what belongs to it
 # follows soon, however long `--spin-time` is.
@@ -71,10 +72,9 @@ class Session:
     def settle(self, *, longest: float = math.inf) -> None:
         """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `longest` if that is less."""
         quiet = min(longest, QUIET if self.spin_time is None else self.spin_time)
-        least = min(longest, FIRST) if self.spin_time is None else 0.0
         last = self._graph()
         changed = start = time.monotonic()
-        while (now := time.monotonic()) - start < least or (
+        while (now := time.monotonic()) - start < self._least(longest) or (
             now - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet)
         ):
             self.executor.spin_once(timeout_sec=_STEP)
@@ -89,6 +89,12 @@ class Session:
     def spin(self) -> None:
         """Spin until interrupted."""
         self.wait_for(lambda: False, math.inf)
+
+    def _least(self, longest: float) -> float:
+        if self.spin_time is not None:
+            return 0.0
+        alone = len(self.node.get_node_names()) < 2
+        return min(longest, EMPTY if alone else LEAST)
 
     def _graph(self) -> tuple[object, ...]:
         node = self.node
@@ -139,7 +145,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
         "--spin-time",
         type=float,
         help="Seconds to wait for discovery: of a named thing at most (default: 3), "
-        "of the whole graph until nothing new shows up for so long (default: 0.5, after a first second)",
+        "of the whole graph until nothing new shows up for so long (default: 0.5, 1 at least, 3 if it seems empty)",
     )
     parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
     parser.add_argument("--no-daemon", action="store_true", help="Accepted; this stand-in has no daemon anyway")

@@ -20,7 +20,6 @@ class Inputs:
         number_name: a robot's name that looks like a number.
         names: of two robots.
         enough: a battery that is good enough, in percent, with a fraction.
-        whole_battery: one that is good enough, written without a point.
         empty: one that is not.
     """
 
@@ -30,7 +29,6 @@ class Inputs:
     number_name: str
     names: tuple[str, str]
     enough: float
-    whole_battery: int
     empty: float
 
 
@@ -48,7 +46,6 @@ def draw_inputs(draw: random.Random) -> Inputs:
         number_name=str(draw.randint(10, 99)),
         names=(first, second),
         enough=draw.randint(21, 98) + 0.5,
-        whole_battery=draw.randint(21, 99),
         empty=draw.randint(1, 18) + 0.5,
     )
 

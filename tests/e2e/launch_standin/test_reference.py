@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from autograder.ros import environment
 
 Start = Callable[..., Any]
 SOLUTIONS = Path(__file__).parents[3] / "solutions"
+NODES = ("robot_controller", "sensor_processor", "status_publisher")
 
 
 @pytest.fixture(scope="module")
@@ -40,23 +42,31 @@ def install(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_the_reference_runs_unmodified_with_its_parameters(start: Start, install: Path) -> None:
-    launch = start("observed", "package:=my_robot_package", "file:=robot_system.launch.py", install=install)
+@pytest.mark.parametrize(("package", "file"), [("my_robot_package", "robot_system"), ("fleet", "chapter")])
+def test_it_runs_unmodified_with_all_nodes_and_their_parameters_until_ctrl_c(
+    start: Start, install: Path, package: str, file: str
+) -> None:
+    launch = start("observed", f"package:={package}", f"file:={file}.launch.py", install=install)
     found = json.loads(launch.wait_for("found: (.*)")[1])
-    assert set(found) == {"/robot_controller", "/status_publisher"}
+    assert set(found) == {f"/{node}" for node in NODES}
     assert found["/status_publisher"]["robot_name"] == "MyRobot01"
     assert found["/status_publisher"]["status_period"] == 1.0
     assert launch.interrupt() == 0
-    for name in ("robot_controller", "status_publisher"):
-        assert re.search(rf"\[INFO\] \[{name}-\d+\]: process has finished cleanly", launch.text)
+    for node in NODES:
+        assert re.search(rf"\[INFO\] \[{node}-\d+\]: process has finished cleanly", launch.text)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_the_chapters_launch_file_names_an_executable_that_no_package_has(start: Start, install: Path) -> None:
-    launch = start("chapter", install=install)
+def test_the_chapters_launch_file_ends_with_an_error_where_an_executable_is_missing(
+    start: Start, install: Path, tmp_path: Path
+) -> None:
+    lacking = tmp_path / "install"
+    shutil.copytree(install, lacking, symlinks=True)
+    libexec = lacking / "my_robot_package/lib/my_robot_package"
+    (libexec / "sensor_processor").unlink()
+    launch = start("chapter", install=lacking)
     assert launch.finish() == 1
-    libexec = install / "my_robot_package/lib/my_robot_package"
     assert (
         "[ERROR] [launch]: Caught exception in launch (see debug for traceback): "
         f"executable 'sensor_processor' not found on the libexec directory '{libexec}' "

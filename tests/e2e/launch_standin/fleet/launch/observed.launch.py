@@ -19,7 +19,7 @@ def generate_launch_description():
             Node(
                 package="fleet",
                 executable="observer",
-                arguments=["/robot_controller", "/status_publisher"],
+                arguments=["/robot_controller", "/sensor_processor", "/status_publisher"],
                 output="screen",
             ),
         ]
