@@ -5,11 +5,10 @@ from __future__ import annotations
 from autograder.checks import check, expect
 from autograder.lab import Workspace
 from autograder.probes.junit import Verdict
-from autograder.probes.sleeping import sleeps
-from autograder.probes.testing import source_of
-from autograder.suites.ch06_testing import texts
-from autograder.suites.ch06_testing.examination import LEAST, Examination
-from autograder.suites.ch06_testing.faults import PACKAGE
+from autograder.suites.ch06_testing.examination import Examination
+from autograder.visible.ch06_testing import contract
+from autograder.visible.ch06_testing.contract import LEAST
+from autograder.visible.ch06_testing.verdicts import expect_awake
 
 GROUP = "craft"
 LINTERS = ("test_flake8", "test_pep257")
@@ -20,17 +19,12 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
     points=1,
     group=GROUP,
     depends=("guard_pass",),
-    hints=(
-        "A sleep is too long on a fast machine and too short on a busy one.",
-        "Wait for a condition, with a deadline: spin_once in a loop until it holds.",
-    ),
-    doc=texts.PYTEST,
+    hints=contract.NO_SLEEP,
+    doc=contract.PYTEST,
 )
 def test_no_sleep(workspace: Workspace) -> None:
     """No test waits with time.sleep."""
-    tests = source_of(workspace, PACKAGE) / "test"
-    found = [f"{path.name}, line {line}" for path in sorted(tests.rglob("*.py")) for line in sleeps(path)]
-    expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
+    expect_awake(workspace)
 
 
 @check(
@@ -41,7 +35,7 @@ def test_no_sleep(workspace: Workspace) -> None:
         "Each loop that waits needs a deadline, after which the test fails.",
         "spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_ends(examination: Examination) -> None:
     """The tests end by themselves on a node that never answers."""
@@ -56,7 +50,7 @@ def test_ends(examination: Examination) -> None:
     group=GROUP,
     depends=("limits_pass",),
     hints=("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS),
-    doc=texts.CLI,
+    doc=contract.CLI,
 )
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
@@ -76,7 +70,7 @@ def test_colcon(examination: Examination) -> None:
         "A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.",
         "Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.",
     ),
-    doc=texts.CLI,
+    doc=contract.CLI,
 )
 def test_linters(examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""

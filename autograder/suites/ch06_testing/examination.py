@@ -18,9 +18,10 @@ from autograder.probes import testing
 from autograder.probes.colcon import colcon_test
 from autograder.probes.testing import Order, Report
 from autograder.sandbox import Ending
-from autograder.suites.ch06_testing.faults import GUARD, LAUNCH, LIMITS, PACKAGE, STYLES, Fault, broken, faults, right
+from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults, right
+from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE
+from autograder.visible.ch06_testing.verdicts import fit, trouble
 
-LEAST = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # tests that have to run
 FILES = {
     **dict.fromkeys(("stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS),
     **dict.fromkeys(("name", "first_distance", "newest", "turn", "one_answer"), GUARD),
@@ -56,18 +57,13 @@ class Examination:
         there = [name for name in LEAST if (tests / name).is_file()]
         return dict(zip(there, self._run([self._right(name, STYLES[0]) for name in there]), strict=True))
 
-    def fit(self, name: str) -> bool:
-        """Whether the tests of a file pass on the first right version, and are enough to judge others by."""
-        report = self.trial.get(name)
-        return report is not None and report.passed and len(report.executed) >= LEAST[name]
-
     @cached_property
     def runs(self) -> dict[tuple[str, str], Report]:
         """The other runs: by file, and what is special about the version or the run."""
         keys: list[tuple[str, str]] = []
         orders: dict[tuple[str, str], Order] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in filter(self.fit, reversed(LEAST)):
+        for name in (name for name in reversed(LEAST) if fit(name, self.trial.get(name))):
             orders[name, RIGHT] = self._right(name, STYLES[1], **HARDER[name])
             for fault in faults():
                 if FILES[fault.check] == name:
@@ -92,7 +88,7 @@ class Examination:
         for what in whats:
             report = self._alone[name, what]
             if not report.passed:
-                raise CheckFailed(_trouble(name, report, what))
+                raise CheckFailed(trouble(name, report, _WHERE[what]))
 
     def expect_objection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests of its file object to every fault that belongs to it.
@@ -135,38 +131,9 @@ class Examination:
         return testing.run(self._workspace, PACKAGE, orders)
 
 
-def expect_passed(examination: Examination, name: str) -> None:
-    """Fail the check unless a file's tests pass on the first right version, and are enough."""
-    report = examination.trial.get(name)
-    if report is None:
-        raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
-    if not report.passed:
-        raise CheckFailed(_trouble(name, report, "trial"))
-    count = len(report.executed)
-    expect(
-        count >= LEAST[name],
-        f"Only {count} of at least {LEAST[name]} tests in {name} ran: a case of parametrize counts as one.",
-        fraction=0.5,
-    )
-
-
+# What a test says of these versions stays here: only the first version's text is public.
 _WHERE = {
-    "trial": "on a right speed_guard",
     SECOND: "on a right speed_guard that is written differently: test the contract, no attributes and no inner names",
     BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
     DISTURBED: "while another robot publishes the same topics in the default domain: give the context a domain_id",
 }
-
-
-def _trouble(name: str, report: Report, what: str) -> str:
-    where = _WHERE[what]
-    if report.ending is Ending.WALL_TIME:
-        return f"The tests in {name} do not end {where}."
-    if report.failed:
-        first = report.failed[0].partition("::")[2]
-        # Only the first version's text is public: what a test says of another one stays here.
-        said = f": {report.claims.messages[report.failed[0]]}" if what == "trial" else ""
-        return f"{len(report.failed)} of {len(report.claims.verdicts)} tests in {name} fail {where}: {first}{said}"
-    if report.status in (0, 5):
-        return f"No test in {name} ran {where}."
-    return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

@@ -13,12 +13,10 @@ import yaml
 from autograder import layout
 from autograder.exceptions import GraderError
 from autograder.probes.versions import Version, disguise, read
+from autograder.visible.ch06_testing.contract import PACKAGE, SCRIPTS
 
-PACKAGE = "speed_guard"
-SCRIPTS = {"speed_guard": "speed_guard.guard"}
 STYLES = ("first", "second")
 FOLDER = Path(__file__).parent / "versions"
-LIMITS, GUARD, LAUNCH = "test_limits.py", "test_guard.py", "test_launch.py"
 
 
 @dataclass(frozen=True)

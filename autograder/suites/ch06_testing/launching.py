@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from autograder.checks import check
-from autograder.suites.ch06_testing import texts
-from autograder.suites.ch06_testing.examination import SECOND, Examination, expect_passed
-from autograder.suites.ch06_testing.faults import LAUNCH
+from autograder.suites.ch06_testing.examination import SECOND, Examination
+from autograder.visible.ch06_testing import contract
+from autograder.visible.ch06_testing.contract import LAUNCH
+from autograder.visible.ch06_testing.verdicts import expect_passed
 
 GROUP = "launch"
 RIGHT = ("launch_right",)
@@ -15,14 +16,14 @@ RIGHT = ("launch_right",)
     points=2,
     group=GROUP,
     hints=(
-        "The launched program and the test have to be in the same domain: SetEnvironmentVariable comes first.",
-        "A program takes a second to start: wait for its endpoints with a deadline before you ask it anything.",
+        contract.SAME_DOMAIN,
+        contract.WAIT,
     ),
-    doc=texts.INTEGRATION,
+    doc=contract.INTEGRATION,
 )
 def test_launch_pass(examination: Examination) -> None:
     """A test in test_launch.py runs, and passes on the package as it is."""
-    expect_passed(examination, LAUNCH)
+    expect_passed(LAUNCH, examination.trial.get(LAUNCH))
 
 
 @check(
@@ -33,7 +34,7 @@ def test_launch_pass(examination: Examination) -> None:
         "Find the launch file in the package's share folder, by FindPackageShare or get_package_share_directory.",
         "Ask over topics; what the program prints may be worded otherwise tomorrow.",
     ),
-    doc=texts.INTEGRATION,
+    doc=contract.INTEGRATION,
 )
 def test_launch_right(examination: Examination) -> None:
     """It passes on every right guard.launch.py."""
@@ -48,7 +49,7 @@ def test_launch_right(examination: Examination) -> None:
         "At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?",
         "At 0.4 m: the defaults say stop, the configuration does not.",
     ),
-    doc=texts.INTEGRATION,
+    doc=contract.INTEGRATION,
 )
 def test_configuration(examination: Examination) -> None:
     """A test fails when the launched node does not get its configuration."""
@@ -63,7 +64,7 @@ def test_configuration(examination: Examination) -> None:
         "A launch file that can be read has not yet started anything that lives.",
         "Ask the launched node something over its topics, and count on the answer within a deadline.",
     ),
-    doc=texts.INTEGRATION,
+    doc=contract.INTEGRATION,
 )
 def test_runs(examination: Examination) -> None:
     """A test fails when the launched node dies, or is not where the robot looks for it."""

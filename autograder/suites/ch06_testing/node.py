@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from autograder.checks import check, expect
-from autograder.suites.ch06_testing import texts
-from autograder.suites.ch06_testing.examination import BACKWARDS, DISTURBED, SECOND, Examination, expect_passed
-from autograder.suites.ch06_testing.faults import GUARD
+from autograder.suites.ch06_testing.examination import BACKWARDS, DISTURBED, SECOND, Examination
+from autograder.visible.ch06_testing import contract
+from autograder.visible.ch06_testing.contract import GUARD
+from autograder.visible.ch06_testing.verdicts import expect_passed
 
 GROUP = "node"
 RIGHT = ("guard_right",)
@@ -16,13 +17,13 @@ RIGHT = ("guard_right",)
     group=GROUP,
     hints=(
         "Run them: colcon test, or python -m pytest test/test_guard.py in the package's folder.",
-        "Nothing arrives while nobody spins: until(...) has to call spin_once until the condition holds.",
+        contract.SPIN,
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_guard_pass(examination: Examination) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
-    expect_passed(examination, GUARD)
+    expect_passed(GUARD, examination.trial.get(GUARD))
 
 
 @check(
@@ -33,7 +34,7 @@ def test_guard_pass(examination: Examination) -> None:
         "Ask over topics, as another robot would; attributes of the node may have other names tomorrow.",
         "Each test starts its own guard and leaves nothing behind.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_guard_right(examination: Examination) -> None:
     """They pass on every right speed_guard, in any order."""
@@ -48,7 +49,7 @@ def test_guard_right(examination: Examination) -> None:
         "Without a domain of its own, a context listens to whoever is in the default one.",
         "rclpy.init(context=context, domain_id=...): a number that another test process does not use.",
     ),
-    doc=texts.DOMAIN,
+    doc=contract.DOMAIN,
 )
 def test_alone(examination: Examination) -> None:
     """They pass while another robot uses the same topics."""
@@ -63,7 +64,7 @@ def test_alone(examination: Examination) -> None:
         "What stands after yield in a fixture is done in any case, also when the test fails.",
         "Destroy each node, then rclpy.try_shutdown(context=context).",
     ),
-    doc="https://docs.pytest.org/en/stable/how-to/fixtures.html#teardown-cleanup-aka-fixture-finalization",
+    doc=contract.FIXTURES,
 )
 def test_nothing_left(examination: Examination) -> None:
     """They leave no node and no context behind."""
@@ -75,8 +76,8 @@ def test_nothing_left(examination: Examination) -> None:
     points=1,
     group=GROUP,
     depends=RIGHT,
-    hints=("get_node_names_and_namespaces() of your own node lists all nodes that it sees.", texts.MUTATE),
-    doc=texts.PARAMETERS,
+    hints=("get_node_names_and_namespaces() of your own node lists all nodes that it sees.", contract.MUTATE),
+    doc=contract.PARAMETERS,
 )
 def test_name(examination: Examination) -> None:
     """A test fails when the node has another name."""
@@ -87,8 +88,8 @@ def test_name(examination: Examination) -> None:
     points=1,
     group=GROUP,
     depends=RIGHT,
-    hints=("Ask before you show it any distance.", texts.MUTATE),
-    doc=texts.PYTEST,
+    hints=("Ask before you show it any distance.", contract.MUTATE),
+    doc=contract.PYTEST,
 )
 def test_first_distance(examination: Examination) -> None:
     """A test fails when the robot drives before the first distance has come."""
@@ -103,7 +104,7 @@ def test_first_distance(examination: Examination) -> None:
         "One distance is not enough to see that the newest one counts.",
         "Show it several in one test, farther and nearer in turn, and ask after each.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_newest(examination: Examination) -> None:
     """A test fails when an earlier distance decides."""
@@ -115,7 +116,7 @@ def test_newest(examination: Examination) -> None:
     group=GROUP,
     depends=RIGHT,
     hints=("A Twist has other fields than linear.x.", "Ask with a turn, and look at angular.z of the answer."),
-    doc="https://docs.ros.org/en/jazzy/p/geometry_msgs/msg/Twist.html",
+    doc=contract.TWIST,
 )
 def test_turn(examination: Examination) -> None:
     """A test fails when a turn is lost on the way."""
@@ -130,7 +131,7 @@ def test_turn(examination: Examination) -> None:
         "An answer that is right may still come twice.",
         "Ask some times, spin a little longer, and count what has come.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_one_answer(examination: Examination) -> None:
     """A test fails when a command is answered more than once."""
@@ -145,7 +146,7 @@ def test_one_answer(examination: Examination) -> None:
         "parameter_overrides=[Parameter('stop_distance', value=1.0)] starts a node with other parameters.",
         "Choose both anew, and ask at a distance at which the defaults would answer otherwise.",
     ),
-    doc=texts.PARAMETERS,
+    doc=contract.PARAMETERS,
 )
 def test_parameters(examination: Examination) -> None:
     """A test fails when the parameters stop_distance and slow_distance have no effect."""
@@ -160,7 +161,7 @@ def test_parameters(examination: Examination) -> None:
         "A real sensor publishes best-effort. Does yours?",
         "Publish distances with qos_profile_sensor_data, and count on an answer within a deadline.",
     ),
-    doc=texts.QOS,
+    doc=contract.QOS,
 )
 def test_sensor_qos(examination: Examination) -> None:
     """A test fails when the node cannot hear a sensor that publishes best-effort."""
@@ -175,7 +176,7 @@ def test_sensor_qos(examination: Examination) -> None:
         "Show it a distance, let time pass with the executor spinning, and ask.",
         "Start it with a short timeout: Parameter('timeout', value=0.2), and the test need not wait long.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_stale(examination: Examination) -> None:
     """A test fails when an old distance is still believed."""
@@ -190,7 +191,7 @@ def test_stale(examination: Examination) -> None:
         "There are three things to see: nothing before the first command, zeros after the last, and only once.",
         "That nothing comes can only be seen by spinning for some time, and counting afterwards.",
     ),
-    doc=texts.PYTEST,
+    doc=contract.PYTEST,
 )
 def test_watchdog(examination: Examination) -> None:
     """A test fails when the motors are not stopped, just once, after the planner has fallen silent."""
