@@ -144,6 +144,11 @@ def _build_failure(output: str, ending: Ending | None) -> str:
         return (
             f"colcon build was stopped ({ending.value.replace('_', ' ')}): a build should end within a minute or two."
         )
+    if "specified with --packages-up-to was not found" in output:
+        return (
+            'colcon does not see the package, because its package.xml breaks a rule of ROS: look for "Failed to parse ROS '
+            'package manifest" in what colcon says.'
+        )
     # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]
     errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]

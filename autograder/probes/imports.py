@@ -21,14 +21,23 @@ MAX_FILES = 300
 MAX_BYTES = 256 * 1024
 LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
-# Modules whose rosdep key is not python3-MODULE. A ROS package's key is its own name.
+# The rosdep keys of modules that are no ROS packages, where people are likely to meet them. A ROS package's key is its
+# own name.
 KEYS = {
     "PIL": "python3-pil",
     "cv2": "python3-opencv",
+    "matplotlib": "python3-matplotlib",
+    "networkx": "python3-networkx",
+    "numpy": "python3-numpy",
+    "pandas": "python3-pandas",
+    "psutil": "python3-psutil",
+    "pytest": "python3-pytest",
+    "requests": "python3-requests",
+    "scipy": "python3-scipy",
     "serial": "python3-serial",
     "setuptools": "python3-setuptools",
-    "skimage": "python3-skimage",
-    "usb": "python3-usb",
+    "shapely": "python3-shapely",
+    "sympy": "python3-sympy",
     "yaml": "python3-yaml",
 }
 SET_UP = "setup.py"  # what it imports, colcon's own set-up provides
@@ -50,7 +59,7 @@ class Import:
     def keys(self) -> tuple[str, ...]:
         """The names in package.xml that would declare it, the likeliest first."""
         hyphened = f"python3-{self.module.lower().replace('_', '-')}"
-        return tuple(dict.fromkeys((KEYS.get(self.module, hyphened), hyphened, self.module)))
+        return tuple(dict.fromkeys((KEYS.get(self.module, self.module), self.module, hyphened)))
 
 
 def imported(package: Path, *, within: Collection[str] = (), without: Collection[str] = ()) -> tuple[Import, ...]:

@@ -62,3 +62,21 @@ def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) 
 def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match="only half written"):
         bring(workspace, ("good",))
+
+
+def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Workspace) -> None:
+    folder = workspace.root / "src" / "good"
+    (folder / "package.xml").write_text("<package><name>good</name></package>")
+    (folder / "setup.py").write_text("raise SystemExit('not yet')\n")
+    seen = bring(workspace, ("good",), may_fail=True)
+    assert (seen.build.ok, seen.diagnosis.kind) == (False, Kind.BUILD_FAILED)
+    assert "colcon does not see the package" in seen.diagnosis.sentence
+    assert "Failed to parse ROS package manifest" in seen.build.log
+
+
+def test_the_error_that_is_quoted_is_of_the_package_that_failed(workspace: Workspace) -> None:
+    folder = workspace.root / "src" / "good"
+    (folder / "package.xml").write_text("<package><name></name></package>")
+    (folder / "setup.py").write_text("raise NotImplementedError('not yet')\n")
+    sentence = bring(workspace, ("bad",), may_fail=True).diagnosis.sentence
+    assert "The first error: error: can't copy 'resource/bad'" in sentence
