@@ -146,8 +146,8 @@ def _build_failure(output: str, ending: Ending | None) -> str:
         )
     if "specified with --packages-up-to was not found" in output:
         return (
-            "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and look for "
-            "its words after “Failed to parse ROS package manifest”."
+            "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read what "
+            "follows “Failed to parse ROS package manifest”."
         )
     # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]
