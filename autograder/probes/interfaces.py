@@ -1,0 +1,256 @@
+"""Interface definitions against a contract: texts of .msg, .srv and .action files, compared with near misses named.
+
+Pure: texts go in, sentences come out. `rosidl_adapter`, the parser of the build itself, decides what a text means.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import io
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from autograder.exceptions import UsageError
+
+MAX_BYTES = 64 * 1024
+PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+_NEAR = 0.7  # of difflib's ratio: how alike two names must be to be one name, misspelt
+
+
+class Unreadable(Exception):
+    """A definition that the build would refuse; the message says why."""
+
+
+class Aspect(str, Enum):
+    """What two definitions can differ in."""
+
+    FIELDS = "fields"  # a field's name, place or order
+    TYPES = "types"
+    BOUNDS = "bounds"  # an array's or a string's size
+    DEFAULTS = "defaults"
+    CONSTANTS = "constants"
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field: `type` as one writes it (`float64[<=8]`, `std_msgs/Header`), `default` None when it has none."""
+
+    type: str
+    name: str
+    default: Any = None
+
+    @property
+    def element(self) -> str:
+        """The type without array and without bounds."""
+        return self.type.partition("[")[0].partition("<")[0]
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A constant."""
+
+    type: str
+    name: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Part:
+    """A message, or one part of a service or an action."""
+
+    fields: tuple[Field, ...] = ()
+    constants: tuple[Constant, ...] = ()
+
+
+@dataclass(frozen=True)
+class Interface:
+    """A definition: its path in the package, such as `srv/CheckTrip.srv`, and its parts as in `PARTS`."""
+
+    path: str
+    parts: tuple[Part, ...]
+
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """The parts' names; the one part of a message has none."""
+        return PARTS[self.path.partition("/")[0]]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One difference from the contract: in what, and a sentence for the one who wrote the definition."""
+
+    aspect: Aspect
+    sentence: str
+
+
+def parse(package: str, path: str, text: str) -> Interface:
+    """Read a definition.
+
+    Args:
+        package: the name of the package that it belongs to.
+        path: `msg/Name.msg`, `srv/Name.srv` or `action/Name.action`.
+        text: the file's.
+
+    Raises:
+        Unreadable: the build would refuse it.
+        UsageError: the path is none of a definition.
+    """
+    from rosidl_adapter import parser
+
+    kind, _, file = path.partition("/")
+    name = file.removesuffix(f".{kind}")
+    if kind not in PARTS or name == file:
+        raise UsageError(f"{path!r} is no definition's path: msg/Name.msg, srv/Name.srv or action/Name.action")
+    if len(text) > MAX_BYTES:
+        raise Unreadable(f"{path} is far larger than a definition.")
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):
+            specs = _specifications(parser, kind)(package, name, text)
+    except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
+        raise Unreadable(f"{path} cannot be read: {_reason(error)}.") from None
+    return Interface(path, tuple(_part(package, spec) for spec in specs))
+
+
+def compare(wanted: Interface, found: Interface) -> tuple[Difference, ...]:
+    """Return how a definition differs from its contract; the empty tuple if it does not.
+
+    Further constants, and a default that says what a field without one holds anyway, are no differences.
+    """
+    differences: list[Difference] = []
+    for index in range(len(wanted.parts)):
+        differences += _Comparison(wanted, found, index).differences()
+    return tuple(differences)
+
+
+def share(wanted: Interface, differences: Sequence[Difference]) -> float:
+    """Return which share of a contract's elements is right, in [0, 1]."""
+    elements = sum(len(part.fields) + len(part.constants) for part in wanted.parts)
+    return max(0.0, 1.0 - len(differences) / elements) if elements else float(not differences)
+
+
+def closest(path: str, present: Sequence[str]) -> str:
+    """Return the definition in `present` that is most likely meant by `path`, the empty string if none is."""
+    by_case = {other.casefold(): other for other in present}
+    near = difflib.get_close_matches(path.casefold(), by_case, 1, cutoff=0.8)
+    return by_case[near[0]] if near else ""
+
+
+class _Comparison:
+    """One part of a definition against the same part of its contract."""
+
+    def __init__(self, wanted: Interface, found: Interface, index: int) -> None:
+        self._part = wanted.parts[index]
+        self._found = found.parts[index]
+        others = [other for other in range(len(wanted.parts)) if other != index]
+        names = wanted.part_names
+        self._elsewhere = {
+            name: names[other] for other in others for name in _names(found.parts[other]) - _names(wanted.parts[other])
+        }
+        self._strayed = {name for other in others for name in _names(wanted.parts[other]) - _names(found.parts[other])}
+        self._name = names[index]
+        self._where = f"{wanted.path}, {names[index]}" if names[index] else wanted.path
+
+    def differences(self) -> Iterator[Difference]:
+        wanted = {field.name: field for field in self._part.fields}
+        found = {field.name: field for field in self._found.fields}
+        yield from self._names(wanted, found)
+        for name in wanted.keys() & found.keys():
+            yield from self._field(wanted[name], found[name])
+        yield from self._constants()
+
+    def _names(self, wanted: Mapping[str, Field], found: Mapping[str, Field]) -> Iterator[Difference]:
+        constants = {constant.name.lower() for constant in self._part.constants}  # `_constants` speaks of those
+        extra = [name for name in found if name not in wanted and name not in constants]
+        for name in (name for name in wanted if name not in found):
+            if name in self._elsewhere:
+                yield self._say(Aspect.FIELDS, f"{name} stands in the {self._elsewhere[name]}, it belongs here")
+            elif near := _near(name, [other for other in extra if other not in self._strayed]):
+                extra.remove(near)
+                yield self._say(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
+            else:
+                yield self._say(Aspect.FIELDS, f"the field {name} is missing")
+        for name in extra:
+            if name not in self._strayed:
+                yield self._say(Aspect.FIELDS, f"the contract has no field {name}")
+        if wanted.keys() == found.keys() and list(wanted) != list(found):
+            order = ", ".join(wanted)
+            yield self._say(Aspect.FIELDS, f"the order of the fields is {', '.join(found)}, it should be {order}")
+
+    def _field(self, wanted: Field, found: Field) -> Iterator[Difference]:
+        if wanted.element != found.element:
+            yield self._say(Aspect.TYPES, f"{found.name} is {found.type}, it should be {wanted.type}")
+        elif wanted.type != found.type:
+            yield self._say(Aspect.BOUNDS, f"{found.name} is {found.type}, it should be {wanted.type}")
+        if wanted.default != found.default and not (wanted.default is None and not found.default):
+            says = "no default" if found.default is None else f"the default {found.default!r}"
+            should = "none" if wanted.default is None else repr(wanted.default)
+            yield self._say(Aspect.DEFAULTS, f"{found.name} has {says}, it should be {should}")
+
+    def _constants(self) -> Iterator[Difference]:
+        found = {constant.name: constant for constant in self._found.constants}
+        fields = [field.name for field in self._found.fields]
+        extra = [name for name in found if name not in _names(self._part)]
+        for constant in self._part.constants:
+            name, there = constant.name, found.get(constant.name)
+            if there is not None:
+                if (there.type, there.value) != (constant.type, constant.value):
+                    says, should = f"{there.type} {there.value!r}", f"{constant.type} {constant.value!r}"
+                    yield self._say(Aspect.CONSTANTS, f"the constant {name} is {says}, it should be {should}")
+            elif name in self._elsewhere:
+                where = self._elsewhere[name]
+                yield self._say(Aspect.CONSTANTS, f"the constant {name} stands in the {where}, it belongs here")
+            elif name.lower() in fields:
+                sentence = f"{name.lower()} is a field; a constant is written {constant.type} {name} = VALUE"
+                yield self._say(Aspect.CONSTANTS, sentence)
+            elif near := _near(name, extra):
+                yield self._say(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
+            else:
+                yield self._say(Aspect.CONSTANTS, f"the constant {name} is missing")
+
+    def _say(self, aspect: Aspect, sentence: str) -> Difference:
+        return Difference(aspect, f"{self._where}: {sentence}.")
+
+
+def _specifications(parser: Any, kind: str) -> Callable[[str, str, str], tuple[Any, ...]]:
+    """Return what reads the parts of a definition of one kind."""
+    if kind == "msg":
+        return lambda *text: (parser.parse_message_string(*text),)
+    read = parser.parse_service_string if kind == "srv" else parser.parse_action_string
+    return lambda *text: tuple(getattr(read(*text), name) for name in PARTS[kind])
+
+
+def _names(part: Part) -> set[str]:
+    return {field.name for field in part.fields} | {constant.name for constant in part.constants}
+
+
+def _near(name: str, others: Sequence[str]) -> str:
+    near = difflib.get_close_matches(name, others, 1, cutoff=_NEAR)
+    return near[0] if near else ""
+
+
+def _part(package: str, spec: Any) -> Part:
+    own = f"{package}/"
+    return Part(
+        tuple(
+            Field(str(field.type).removeprefix(own), field.name, _plain(field.default_value)) for field in spec.fields
+        ),
+        tuple(Constant(str(each.type), each.name, _plain(each.value)) for each in spec.constants),
+    )
+
+
+def _plain(value: Any) -> Any:
+    """Return a default or a constant's value as Python has it; the parser keeps the quotes of some strings."""
+    return value.strip("\"'") if isinstance(value, str) else value
+
+
+def _reason(error: Exception) -> str:
+    """Put the parser's exception into words; some hold only the line, or nothing."""
+    about = {
+        "InvalidServiceSpecification": "one line --- parts the request from the response",
+        "InvalidActionSpecification": "two lines --- part goal, result and feedback",
+    }.get(type(error).__name__, "a field is written `type name`, a constant `type NAME = value`")
+    said = str(error).strip()
+    return f"{said} ({about})" if said else about
