@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
-from autograder.grading.build import build, require_contained, require_packages
+from autograder.grading.build import build, require_packages
+from autograder.grading.colcon import require_contained
 from autograder.lab.workspace import Workspace
 from autograder.result import Build
 

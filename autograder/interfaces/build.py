@@ -75,12 +75,19 @@ def _key(package: str, definitions: tuple[Definition, ...], own: tuple[Path, ...
         "package": package,
         "texts": {definition.path: definition.text for definition in definitions},
         "underlays": [str(prefix) for prefix in own],
-        "prefixes": [str(prefix) for prefix in ros.prefixes],
-        "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],
-        "ros": _versions(ros),
+        "environment": identity(ros),
         "builder": _own_version(),
     }
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:40]
+
+
+def identity(ros: RosEnvironment) -> dict[str, object]:
+    """Return what a built package depends on beside its own content: the Python, and the ROS by its versions."""
+    return {
+        "prefixes": [str(prefix) for prefix in ros.prefixes],
+        "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],
+        "ros": _versions(ros),
+    }
 
 
 @lru_cache(maxsize=1)

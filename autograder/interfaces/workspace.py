@@ -7,13 +7,13 @@ from types import ModuleType
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.grading.build import find_packages
 from autograder.interfaces.build import build
 from autograder.interfaces.cache import Cache
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
 from autograder.interfaces.exceptions import DefinitionError, GenerationError
 from autograder.interfaces.loading import load
 from autograder.lab.workspace import Workspace
+from autograder.packages import find_packages
 
 
 def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:

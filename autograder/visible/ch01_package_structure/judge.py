@@ -10,8 +10,8 @@ from pathlib import Path
 from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
-from autograder.grading.build import find_packages
 from autograder.lab import Workspace
+from autograder.packages import find_packages
 from autograder.probes import imports, manifest
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from autograder import packages
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.grading import build
+from autograder.grading import build, colcon
 
 NAME = "my_robot_package"
 FILES = {
@@ -96,7 +97,7 @@ def test_a_malformed_manifest_is_named_with_its_line(tmp_path: Path, text: str) 
 
 
 def test_a_huge_manifest_is_not_read(tmp_path: Path) -> None:
-    kind, sentence = _fault(_package(tmp_path, **{"package.xml": " " * (build.MAX_MANIFEST + 1)}))
+    kind, sentence = _fault(_package(tmp_path, **{"package.xml": " " * (packages.MAX_MANIFEST + 1)}))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
     assert "far larger than a manifest" in sentence
 
@@ -106,7 +107,7 @@ def test_links_inside_the_install_space_are_fine(tmp_path: Path) -> None:
     (install / "pkg" / "lib").mkdir(parents=True)
     (install / "pkg/lib/libx.so.1").write_text("")
     (install / "pkg/lib/libx.so").symlink_to("libx.so.1")
-    build.require_contained(install)
+    colcon.require_contained(install)
     assert (install / "pkg/lib/libx.so").exists()
 
 
@@ -116,5 +117,5 @@ def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, t
     (tmp_path / link).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / link).symlink_to((tmp_path / link).name if target == "loop" else target)
     with pytest.raises(StudentError, match="which leads out of the install space") as caught:
-        build.require_contained(tmp_path / "install")
+        colcon.require_contained(tmp_path / "install")
     assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
