@@ -26,7 +26,7 @@ _NAME = re.compile(r"^    '(?P<name>.+)':$")
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>\[.*\])")
 _QUOTED = re.compile(r"'([^']*)'")
-_CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+)")
+_CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
 _STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
 _ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
 _DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
@@ -186,7 +186,7 @@ def ended(output: str) -> list[str]:
 def trouble(output: str) -> str:
     """Return in a line what went wrong by the words of a launch; empty if it names nothing."""
     if caught := _CAUGHT.search(output):
-        return caught["what"].strip()
+        return " ".join(caught["what"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]
     raised = [match["what"].strip() for match in _RAISED.finditer(output)]
     if not died:

@@ -99,7 +99,7 @@ class Launch:
         self.finish()
 
 
-def install_fleet(prefix: Path) -> None:
+def _install_fleet(prefix: Path) -> None:
     """Install the package `fleet`, as colcon would, into `prefix`."""
     index = prefix / "share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
@@ -117,8 +117,14 @@ def install_fleet(prefix: Path) -> None:
 def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The prefix in which the package `fleet` is installed."""
     prefix = tmp_path_factory.mktemp("fleet") / "install"
-    install_fleet(prefix)
+    _install_fleet(prefix)
     return prefix
+
+
+@pytest.fixture(scope="session")
+def install_fleet() -> Callable[[Path], None]:
+    """Installs the package `fleet` into a prefix."""
+    return _install_fleet
 
 
 Start = Callable[..., Launch]

@@ -1,0 +1,113 @@
+"""The lab for launch files: what they start is seen from outside, and what they leave behind too."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from std_msgs.msg import String
+
+from autograder.checks import CheckFailed
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.lab import Workspace
+from autograder.lab.launching import LaunchLab
+from autograder.probes import launching
+from autograder.ros import environment
+
+PATIENCE = 60.0  # seconds: a deadline, not an expectation
+LEAVES_ONE = """
+import subprocess
+from launch import LaunchDescription
+from launch.actions import TimerAction
+
+
+def generate_launch_description():
+    subprocess.Popen(["sleep", "600"])
+    return LaunchDescription([TimerAction(period=600.0, actions=[])])
+"""
+FLOODS = """
+while True:
+    print("x" * 1000)
+"""
+
+
+@pytest.fixture
+def workspace(install_fleet: Callable[[Path], None], tmp_path: Path, ros_domain: int) -> Workspace:
+    """A workspace in which the package `fleet` is installed."""
+    install_fleet(tmp_path / "ws" / "install" / "fleet")
+    (tmp_path / "scratch").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "scratch", domain=ros_domain)
+
+
+def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(workspace: Workspace) -> None:
+    arguments = {"name": "lamp", "rate": "8.5"}
+    with LaunchLab(workspace, "fleet", "single.launch.py", arguments, listens={"/beat": String}) as lab:
+        launching.expect_nodes(lab, ["/lamp"])
+        assert lab.parameters("/lamp", ["rate", "label"]) == {"rate": 8.5, "label": "42"}
+        assert lab.parameters("/lamp", ["rate", "absent"]) == {"rate": 8.5, "absent": None}
+        assert lab.parameters("/nobody", ["rate"], seconds=0.5) is None
+        assert lab.wait_for(lambda: len(lab.messages("/beat")) > 1, PATIENCE)
+        assert lab.publishers("/beat") == ["/lamp"]
+        assert lab.subscribers("/beat") == []
+        assert [(program.package, program.name) for program in lab.programs()] == [("fleet", "beacon")]
+        assert lab.status is None
+        launching.expect_clean_stop(lab)
+        assert lab.programs() == []
+
+
+def test_a_wrong_node_is_told_with_what_there_is(workspace: Workspace) -> None:
+    with LaunchLab(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as lab:
+        with pytest.raises(CheckFailed) as caught:
+            launching.expect_nodes(lab, ["/robot1/lamp"])
+        assert caught.value.message == "The graph holds /lamp: /lamp runs instead of /robot1/lamp."
+        with pytest.raises(CheckFailed, match=r"/lamp has rate = 4\.0, instead of 5\.0"):
+            launching.expect_parameters(lab, "/lamp", {"rate": 5.0})
+        with pytest.raises(CheckFailed, match="/lamp has label = '42', instead of 42"):
+            launching.expect_parameters(lab, "/lamp", {"label": 42})
+
+
+def test_a_killed_program_is_gone_and_an_idle_launch_ends(workspace: Workspace) -> None:
+    with LaunchLab(workspace, "fleet", "single.launch.py") as lab:
+        launching.expect_nodes(lab, ["/beacon"])
+        assert lab.kill("beacon", signal.SIGKILL) == 1
+        assert lab.wait_for(lambda: lab.status is not None, PATIENCE)
+        assert launching.trouble(lab.output) == "beacon died with exit code -9"
+        assert lab.kill("beacon") == 0
+
+
+def test_what_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
+    there = launching.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
+    with LaunchLab(there, "fleet", "leaves_one.launch.py") as lab:
+        assert lab.wait_for(lambda: "verbosity" in lab.output, PATIENCE)
+        with pytest.raises(CheckFailed, match="It ended, but left a process running: sleep 600"):
+            launching.expect_clean_stop(lab)
+    assert not (workspace.install / "fleet/share/fleet/launch/leaves_one.launch.py").exists()
+
+
+def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(workspace: Workspace) -> None:
+    with pytest.raises(
+        CheckFailed, match=r"`ros2 launch -s fleet absent.launch.py` fails: file 'absent.launch.py' was"
+    ):
+        launching.shown_arguments(workspace, "fleet", "absent.launch.py")
+    with LaunchLab(workspace, "fleet", "broken.launch.py") as lab:
+        with pytest.raises(
+            CheckFailed, match=r"No node is up: /light missing. What the launch said: .*'config' is not"
+        ):
+            launching.expect_nodes(lab, ["/light"])
+        assert lab.status == 1
+
+
+def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
+    found = launching.shown_arguments(workspace, "fleet", "arguments.launch.py")
+    assert list(found) == ["robot", "mode", "topic"]
+    assert found["mode"].choices == ("drive", "park")
+
+
+def test_a_launch_without_end_of_words_is_the_students_to_hear_of(workspace: Workspace) -> None:
+    there = launching.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
+    with LaunchLab(there, "fleet", "floods.launch.py") as lab, pytest.raises(StudentError) as caught:
+        lab.run(PATIENCE)
+    assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT

@@ -1,0 +1,103 @@
+"""Commands in a notebook: they print what they say, they end, and what they start ends with them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.notebook import terminal
+from autograder.notebook.desk import GRADING_VARIABLE
+from autograder.notebook.terminal import running, shell
+
+STUBBORN = f"""{sys.executable} -c "
+import signal
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+print('up', flush=True)
+signal.pause()
+" """
+
+
+@pytest.fixture
+def ws(tmp_path: Path) -> Path:
+    return tmp_path
+
+
+def alive(pid: int) -> bool:
+    stat = Path(f"/proc/{pid}/stat")
+    return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z"
+
+
+def test_a_command_runs_to_its_end_and_prints_both_its_streams(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shell("echo out; echo error >&2", workspace=ws)
+    assert capsys.readouterr().out == "out\nerror\n"
+
+
+def test_a_command_that_fails_says_how(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shell("exit 3", workspace=ws)
+    assert capsys.readouterr().out == "[exit status 3]\n"
+
+
+def test_a_command_that_goes_on_is_interrupted_when_the_time_is_up(
+    ws: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shell("trap 'echo interrupted; exit 0' INT; echo up; while true; do sleep 0.1; done", seconds=1.0, workspace=ws)
+    assert capsys.readouterr().out == "up\ninterrupted\n"
+
+
+def test_a_built_workspace_is_sourced(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (ws / "install").mkdir()
+    (ws / "install" / "local_setup.bash").write_text("export WORD=sourced\n")
+    shell("echo $WORD", workspace=ws)
+    assert capsys.readouterr().out == "sourced\n"
+
+
+def test_the_courses_own_commands_are_found(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shell("ros2 --help | head -1", workspace=ws)
+    assert "usage: ros2" in capsys.readouterr().out
+
+
+def test_the_block_begins_when_the_text_has_come_and_ctrl_c_ends_the_command(
+    ws: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with running("echo $$; echo ready; sleep 600", until="ready", workspace=ws):
+        pid = int(capsys.readouterr().out.split()[0])
+        assert alive(pid)
+    assert not alive(pid)
+
+
+def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def fail() -> None:
+        with running("echo $$; sleep 600", until="\n", workspace=ws):
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert not alive(int(capsys.readouterr().out))
+
+
+def test_what_does_not_listen_is_killed_and_said_to_be(
+    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(terminal, "STOP_SECONDS", 0.5)
+    with running(STUBBORN, until="up", workspace=ws):
+        pass
+    assert "after Ctrl-C: killed]" in capsys.readouterr().out
+
+
+def test_nothing_is_run_while_the_notebook_is_graded(
+    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(GRADING_VARIABLE, "1")
+    shell(f"touch {ws / 'one'}", workspace=ws)
+    with running(f"touch {ws / 'two'}", workspace=ws):
+        pass
+    assert list(ws.iterdir()) == []
+    assert capsys.readouterr().out == 2 * f"{terminal.GRADED}\n"
+
+
+def test_a_missing_workspace_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"there is no folder .*nowhere: run this from the assignment's folder"):
+        shell("true", workspace=tmp_path / "nowhere")

@@ -1,0 +1,28 @@
+"""Announcing often: a profile for Fast DDS that is there while rclpy starts, and gone afterwards."""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from autograder.ros.discovery import PROFILES_VARIABLE, announcing_often
+
+
+def test_the_profile_is_there_in_the_block_and_gone_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(PROFILES_VARIABLE, raising=False)
+    with announcing_often():
+        path = Path(os.environ[PROFILES_VARIABLE])
+        tags = [element.tag.rpartition("}")[2] for element in ET.fromstring(path.read_bytes()).iter()]
+        assert "leaseAnnouncement" in tags
+    assert PROFILES_VARIABLE not in os.environ
+    assert not path.exists()
+
+
+def test_profiles_that_the_user_has_chosen_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(PROFILES_VARIABLE, "/etc/mine.xml")
+    with announcing_often():
+        assert os.environ[PROFILES_VARIABLE] == "/etc/mine.xml"
+    assert os.environ[PROFILES_VARIABLE] == "/etc/mine.xml"
