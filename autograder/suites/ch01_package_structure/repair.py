@@ -20,7 +20,7 @@ MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
     points=2,
     group=GROUP,
     hints=(
-        "Run colcon build --packages-select wall_alarm in ws and read the first line that says error.",
+        "Run colcon build --paths src/wall_alarm in ws and read the first line that says error.",
         "The marker is an empty file: resource/wall_alarm.",
     ),
     doc=contract.COLCON,

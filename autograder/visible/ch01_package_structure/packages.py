@@ -103,7 +103,7 @@ def test_shared(workspace: Workspace, dance: Installed) -> None:
     group=GROUP,
     visibility=SEEN,
     hints=(
-        "Run colcon build --packages-select wall_alarm in ws and read the first line that says error.",
+        "Run colcon build --paths src/wall_alarm in ws and read the first line that says error.",
         "The marker is an empty file: resource/wall_alarm.",
     ),
     doc=contract.COLCON,
