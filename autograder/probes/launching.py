@@ -14,7 +14,6 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lab.launching import LaunchLab, Stop, command, sandbox
 from autograder.lab.workspace import Workspace
-from autograder.lockstep.failures import tail
 from autograder.sandbox.launcher import launch
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
@@ -201,9 +200,11 @@ def require_written(output: str) -> None:
     Raises:
         StudentError: it did.
     """
-    if "NotImplementedError" in output:
+    lines = output.splitlines()
+    first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
+    if first is not None:
         sentence = "A part of the launch file is still to be written: put your code in place of the raise."
-        raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, tail(output)))
+        raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, "\n".join(lines[max(first - 1, 0) : first + 2])))
 
 
 def with_files(workspace: Workspace, name: str, package: str, files: Mapping[str, str]) -> Workspace:
