@@ -27,7 +27,6 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Range
 
 DEADLINE = 5.0  # s: only a broken node makes a test wait so long
-START = 10.0  # s: for a program that has to be started first
 
 
 class Robot(Node):
@@ -51,11 +50,11 @@ class Robot(Node):
         self.nodes.append(node)
         self.test_executor.add_node(node)
 
-    def meet(self):
-        """Wait until a guard is at the other end of all three topics."""
+    def meet(self, seconds=DEADLINE):
+        """Wait, so many seconds at most, until a guard is at the other end of all topics."""
         self.until(lambda: self.sensor.get_subscription_count() > 1
                    and self.planner.get_subscription_count() > 0
-                   and self.count_publishers('cmd_vel') > 0, START)
+                   and self.count_publishers('cmd_vel') > 0, seconds)
 
     def until(self, condition, seconds=DEADLINE):
         """Spin until condition() is true; fail the test when that takes longer than that."""
