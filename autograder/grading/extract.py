@@ -131,6 +131,7 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment = {
         **workspace.environment(),
         GRADING_VARIABLE: "1",
+        "USER": "student",  # the sandbox has no list of users, and ros2 pkg create asks for one
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
         "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
         "JUPYTER_RUNTIME_DIR": str(workspace.scratch / "jupyter"),
