@@ -16,16 +16,16 @@
 
 import math
 
-SIDE_END = math.pi / 2  # rad: the sectors beside the front end straight to the side
+FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2  # rad: the bearings of the sectors' middles
 
 
-def nearest(scan, first, last):
+def nearest(scan, middle, half_angle):
     """
-    Return the distance to the nearest thing between two bearings, in metres.
+    Return the distance to the nearest thing in a sector, in metres.
 
-    scan is a sensor_msgs/LaserScan. A beam's bearing is angle_min + i * angle_increment,
-    wrapped to (-pi, pi]; it belongs to the sector when first <= bearing <= last. Its reading
-    counts by REP 117:
+    scan is a sensor_msgs/LaserScan. A beam's bearing is angle_min + i * angle_increment; it
+    belongs to the sector when it is at most half_angle from middle, the shorter way round.
+    Its reading counts by REP 117:
 
     nan                               invalid, as if the beam were not there
     +inf                              nothing within range_max
@@ -38,12 +38,8 @@ def nearest(scan, first, last):
     readings = [
         reading
         for index, reading in enumerate(scan.ranges)
-        if first <= bearing(scan, index) <= last
+        if abs(math.remainder(scan.angle_min + index * scan.angle_increment - middle, math.tau))
+        <= half_angle
         and (math.isinf(reading) or scan.range_min <= reading <= scan.range_max)
     ]
     return min(readings, default=math.nan)
-
-
-def bearing(scan, index):
-    """Return the bearing of a beam in rad, from -pi to pi: 0 is forward, positive is left."""
-    return math.remainder(scan.angle_min + index * scan.angle_increment, math.tau)

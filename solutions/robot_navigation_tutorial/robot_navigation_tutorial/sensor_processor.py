@@ -23,7 +23,7 @@ from sensor_msgs.msg import LaserScan
 
 from robot_navigation_tutorial.parameters import declare
 from robot_navigation_tutorial.running import run
-from robot_navigation_tutorial.sectors import nearest, SIDE_END
+from robot_navigation_tutorial.sectors import FRONT, LEFT, nearest, RIGHT
 
 
 class SensorProcessor(Node):
@@ -38,12 +38,12 @@ class SensorProcessor(Node):
         """
         Name the node sensor_processor; declare its parameter, create its topics.
 
-        front_half_angle: 0.52 rad, from 0.1 to 1.0. scan: qos_profile_sensor_data.
+        half_angle: 0.52 rad, from 0.1 to 0.78. scan: qos_profile_sensor_data.
         clearance: a queue of 10. kwargs are handed on to Node.
         """
         super().__init__('sensor_processor', **kwargs)
-        declare(self, 'front_half_angle', 0.52, 0.1, 1.0,
-                'rad: how far the front sector reaches to each side')
+        declare(self, 'half_angle', 0.52, 0.1, 0.78,
+                'rad: how far a sector reaches to each side of its middle')
         self.publisher = self.create_publisher(Clearance, 'clearance', 10)
         self.create_subscription(
             LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data)
@@ -52,13 +52,12 @@ class SensorProcessor(Node):
         """
         Publish the scan's clearance, with the scan's own header.
 
-        front: from -front_half_angle to front_half_angle. left: from there to SIDE_END.
-        right: the same on the other side. valid: no sector is nan.
+        front, left, right: the nearest thing within half_angle of each sector's middle.
+        valid: none of the three is nan.
         """
-        half = self.get_parameter('front_half_angle').value
-        front = nearest(scan, -half, half)
-        left = nearest(scan, half, SIDE_END)
-        right = nearest(scan, -SIDE_END, -half)
+        half_angle = self.get_parameter('half_angle').value
+        front, left, right = (
+            nearest(scan, middle, half_angle) for middle in (FRONT, LEFT, RIGHT))
         valid = not any(math.isnan(distance) for distance in (front, left, right))
         self.publisher.publish(Clearance(
             header=scan.header, valid=valid, front=front, left=left, right=right))

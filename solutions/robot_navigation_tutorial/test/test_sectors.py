@@ -17,7 +17,7 @@
 import math
 
 import pytest
-from robot_navigation_tutorial.sectors import bearing, nearest, SIDE_END
+from robot_navigation_tutorial.sectors import FRONT, LEFT, nearest, RIGHT
 from sensor_msgs.msg import LaserScan
 
 NAN = math.nan
@@ -37,15 +37,14 @@ def scan(readings, angle_min=-math.pi, fill=INF):
 
 @pytest.mark.parametrize('angle_min', [-math.pi, 0.0])
 @pytest.mark.parametrize(('degrees', 'sector'), [
-    (-29, 'front'), (0, 'front'), (29, 'front'), (31, 'left'), (89, 'left'), (-31, 'right'),
-    (-89, 'right'), (91, None), (-91, None), (180, None),
+    (-29, 'front'), (0, 'front'), (29, 'front'), (61, 'left'), (119, 'left'), (-61, 'right'),
+    (-119, 'right'), (45, None), (-45, None), (121, None), (-121, None), (180, None),
 ])
 def test_a_thing_is_in_the_sector_of_its_bearing(angle_min, degrees, sector):
     """Wherever the scan starts, 0 is forward and left is positive."""
     seen = scan({degrees: 0.5}, angle_min)
-    sectors = {'front': (-HALF, HALF), 'left': (HALF, SIDE_END), 'right': (-SIDE_END, -HALF)}
-    for name, (first, last) in sectors.items():
-        assert nearest(seen, first, last) == (0.5 if name == sector else INF)
+    for name, middle in {'front': FRONT, 'left': LEFT, 'right': RIGHT}.items():
+        assert nearest(seen, middle, HALF) == (0.5 if name == sector else INF)
 
 
 @pytest.mark.parametrize(('reading', 'expected'), [
@@ -53,21 +52,16 @@ def test_a_thing_is_in_the_sector_of_its_bearing(angle_min, degrees, sector):
 ])
 def test_a_reading_counts_by_rep_117(reading, expected):
     """One odd reading beside a wall 3 m away, before it and behind it."""
-    assert nearest(scan({0: reading, 5: 3.0}), -HALF, HALF) == expected
-    assert nearest(scan({0: 3.0, 5: reading}), -HALF, HALF) == expected
+    assert nearest(scan({0: reading, 5: 3.0}), FRONT, HALF) == expected
+    assert nearest(scan({0: 3.0, 5: reading}), FRONT, HALF) == expected
 
 
 @pytest.mark.parametrize('fill', [NAN, 0.0, 12.0])
 def test_without_a_reading_that_counts_the_distance_is_nan(fill):
     """A blind sector is not a clear one."""
-    assert math.isnan(nearest(scan({90: 1.0}, fill=fill), -HALF, HALF))
+    assert math.isnan(nearest(scan({90: 1.0}, fill=fill), FRONT, HALF))
 
 
 def test_a_scan_without_beams_says_nothing():
     """No beam, no distance."""
-    assert math.isnan(nearest(LaserScan(range_max=10.0), -HALF, HALF))
-
-
-def test_bearings_are_wrapped():
-    """A beam at 350 degrees looks 10 degrees to the right."""
-    assert bearing(scan({}, 0.0), 350) == pytest.approx(math.radians(-10.0))
+    assert math.isnan(nearest(LaserScan(range_max=10.0), FRONT, HALF))
