@@ -21,7 +21,7 @@ QUIET_SECONDS = 1.5  # real time without a change, once each program that runs h
 STOP_SECONDS = 20.0  # real time for the end; nodes that end cleanly need 0.2
 SHOW_SECONDS = 30.0
 
-_NAME = re.compile(r"^    '(?P<name>.+)':$")
+_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>\[.*\])")
 _QUOTED = re.compile(r"'([^']*)'")

@@ -12,6 +12,7 @@ from autograder.ros.ros2 import packages
 from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, Ros2Error
 from autograder.ros.ros2.parsing import Outcome, Verb
 
+OVERRIDE = "OVERRIDE_LAUNCH_PROCESS_OUTPUT"  # read by `launch`, the real one or its stand-in
 _SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 
 
@@ -42,11 +43,12 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="Show arguments that may be given to the launch file",
     )
-    which.add_argument(
+    parser.add_argument(
         "-a",
         "--show-all-subprocesses-output",
         action="store_true",
-        help="Show all launched subprocesses' output by overriding their output configuration",
+        help="Show all launched subprocesses' output by overriding their output configuration using the "
+        f"{OVERRIDE} envvar",
     )
     parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
     parser.add_argument(
@@ -66,8 +68,7 @@ def _run(args: argparse.Namespace) -> Outcome:
     if args.launch_prefix is not None:
         arguments["launch-prefix"] = args.launch_prefix
     if args.show_all_subprocesses_output:
-        # The switch that `launch` has for this.
-        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
+        os.environ[OVERRIDE] = "both"
     try:
         import launch
         from launch.launch_description_sources import AnyLaunchDescriptionSource
@@ -124,7 +125,7 @@ def launch_arguments(words: list[str]) -> dict[str, str]:
     parsed: dict[str, str] = {}
     for word in words:
         name, sign, value = word.partition(":=")
-        if not sign or not name:
+        if not sign or not name or not value:
             raise Ros2Error(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
         parsed[name] = value
     return parsed
@@ -137,11 +138,14 @@ def argument_lines(description: Any) -> Iterator[str]:
     if not arguments:
         yield "\n  No arguments."
     for argument in arguments:
-        yield f"\n    '{argument.name}':"
+        conditional = argument._conditionally_included
+        yield f"\n    '{argument.name}':{'*' if conditional else ''}"
         yield f"        {argument.description}"
         if argument.default_value is not None:
             shown = " + ".join(substitution.describe() for substitution in argument.default_value)
             yield f"        (default: {shown})"
+    if any(argument._conditionally_included for argument in arguments):
+        yield "\n* argument(s) which are only used if specific conditions occur"
 
 
 VERB = Verb("launch", "Run a launch file", _arguments, _run)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from rclpy.action import (
     get_action_client_names_and_types_by_node,
@@ -50,8 +51,9 @@ def _info(args: argparse.Namespace) -> Outcome:
         same = graph.node_names(session, include_hidden=True).count(wanted)
         if same > 1:
             print(
-                f"There are {same} nodes in the graph with the exact name '{wanted.full_name}'. "
-                "You are seeing information about only one of them."
+                f'There are {same} nodes in the graph with the exact name "{wanted.full_name}". '
+                "You are seeing information about only one of them.",
+                file=sys.stderr,
             )
         print(wanted.full_name)
         for heading, names_and_types in _sections(session, wanted, args.include_hidden):

@@ -18,6 +18,7 @@ from autograder.ros.ros2.exceptions import NotCoveredError, Ros2Error
 from autograder.ros.ros2.parsing import Outcome
 from autograder.ros.ros2.pkg_templates import LICENCE_TEXTS, PackageSpec
 
+MANIFEST, LICENCE = "package.xml", "LICENSE"
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -61,18 +62,20 @@ def run(args: argparse.Namespace) -> Outcome:
         print("Supported licenses:", *LICENCE_TEXTS, sep="\n")
         return None
     spec = _spec(args)
-    _describe(spec, Path(args.destination_directory))
     folder = Path(args.destination_directory) / spec.name
     if folder.exists():
         return (
             f"\nAborted!\nThe directory already exists: {_shown(folder)}\n"
             "Either remove the directory or choose a different destination directory or package name"
         )
+    _describe(spec, Path(args.destination_directory))
     licence = templates.licence_text(spec.licence, spec.maintainer_name, date.today().year)
     made: set[Path] = set()
     try:
         for relative, text in files(spec, licence):
             _write(folder, relative, text, made)
+            if relative == MANIFEST:
+                print("creating source folder" if _is_python(spec) else "creating source and include folder")
     except OSError as error:
         return f"unable to create {folder}: {error}"
     if licence is None:
@@ -85,29 +88,42 @@ def run(args: argparse.Namespace) -> Outcome:
 
 
 def files(spec: PackageSpec, licence: str | None) -> Iterator[tuple[str, str]]:
-    """Yield the path and the text of each file of a package; a path that ends in a slash is a folder."""
-    yield "package.xml", templates.package_xml(spec)
+    """Yield the path and the text of each file of a package, in the real command's order.
+
+    A path that ends in a slash is a folder.
+    """
+    yield MANIFEST, templates.package_xml(spec)
+    yield from _python_files(spec) if _is_python(spec) else _cpp_files(spec)
     if licence is not None:
-        yield "LICENSE", licence
-    if spec.build_type == "ament_python":
-        yield f"{spec.name}/__init__.py", ""
-        yield "setup.py", templates.setup_py(spec)
-        yield "setup.cfg", templates.setup_cfg(spec)
-        yield f"resource/{spec.name}", ""
-        for name, text in templates.PYTHON_TESTS.items():
-            yield f"test/{name}", text
-        if spec.library_name:
-            yield f"{spec.name}/{spec.library_name}/__init__.py", ""
-        if spec.node_name:
-            yield f"{spec.name}/{spec.node_name}.py", templates.python_node(spec)
-        return
+        yield LICENCE, licence
+
+
+def _python_files(spec: PackageSpec) -> Iterator[tuple[str, str]]:
+    yield f"{spec.name}/", ""
+    yield "setup.py", templates.setup_py(spec)
+    yield "setup.cfg", templates.setup_cfg(spec)
+    yield f"resource/{spec.name}", ""
+    yield f"{spec.name}/__init__.py", ""
+    for name, text in templates.PYTHON_TESTS.items():
+        yield f"test/{name}", text
+    if spec.node_name:
+        yield f"{spec.name}/{spec.node_name}.py", templates.python_node(spec)
+    if spec.library_name:
+        yield f"{spec.name}/{spec.library_name}/__init__.py", ""
+
+
+def _cpp_files(spec: PackageSpec) -> Iterator[tuple[str, str]]:
     yield "src/", ""
     yield f"include/{spec.name}/", ""
     yield "CMakeLists.txt", templates_cpp.cmakelists(spec)
-    if spec.library_name:
-        yield from templates_cpp.cpp_library(spec).items()
     if spec.node_name:
         yield f"src/{spec.node_name}.cpp", templates_cpp.cpp_node(spec)
+    if spec.library_name:
+        yield from templates_cpp.cpp_library(spec).items()
+
+
+def _is_python(spec: PackageSpec) -> bool:
+    return spec.build_type == "ament_python"
 
 
 def _spec(args: argparse.Namespace) -> PackageSpec:
@@ -172,17 +188,17 @@ def _describe(spec: PackageSpec, destination: Path) -> None:
 
 
 def _write(folder: Path, relative: str, text: str, made: set[Path]) -> None:
-    """Write a file and the folders above it, telling of each as the real command does."""
+    """Write a file and the folder above it, telling of both as the real command does."""
     path = folder / relative
     is_folder = relative.endswith("/")
-    last = path if is_folder else path.parent
-    for parent in (p for p in (*reversed(last.parents), last) if p == folder or folder in p.parents):
-        if parent not in made:
-            print(f"creating folder {_shown(parent)}")
-            parent.mkdir(parents=True)
-            made.add(parent)
+    parent = path if is_folder else path.parent
+    if parent not in made:
+        print(f"creating folder {_shown(parent)}")
+        parent.mkdir(parents=True)
+        made.add(parent)
     if not is_folder:
-        print(f"creating {_shown(path)}")
+        if relative != LICENCE:
+            print(f"creating {_shown(path)}")
         path.write_text(text, encoding="utf-8")
 
 

@@ -241,6 +241,22 @@ def test_output_goes_where_it_is_asked_to(start: Start, tmp_path: Path) -> None:
     assert (tmp_path / "log" / "latest").resolve() == log.parent
 
 
+def test_all_output_is_shown_if_that_is_asked_for(
+    start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    everything = {"[to-log-2] pipe to-log", "[to-log-2] error to-log", "[mixed-3] pipe mixed", "[mixed-3] error mixed"}
+    by_option = start("output", "word:=hi", "--show-all-subprocesses-output")
+    assert by_option.finish() == 0
+    assert everything <= set(by_option.text.splitlines())
+    (log,) = (tmp_path / "log").glob("2*/launch.log")
+    assert "[mixed-3] error mixed" in log.read_text()
+    assert not (log.parent / "mixed-3-stderr.log").exists()
+    monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "own_log")
+    by_variable = start("output", "word:=hi")
+    assert by_variable.finish() == 0
+    assert not [line for line in by_variable.text.splitlines() if line.startswith("[to-screen-1]")]
+
+
 def test_a_function_makes_as_many_processes_as_an_argument_says(start: Start) -> None:
     launch = start("opaque", "robots:=3")
     for index in range(3):

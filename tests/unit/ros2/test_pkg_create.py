@@ -26,8 +26,36 @@ def test_it_tells_of_each_file(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == "going to create a new package"
     assert "maintainer: ['A <A@todo.todo>']" in printed
-    assert "creating ./p/setup.py" in printed
+    assert printed[printed.index("creating folder ./p") :] == [
+        "creating folder ./p",
+        "creating ./p/package.xml",
+        "creating source folder",
+        "creating folder ./p/p",
+        "creating ./p/setup.py",
+        "creating ./p/setup.cfg",
+        "creating folder ./p/resource",
+        "creating ./p/resource/p",
+        "creating ./p/p/__init__.py",
+        "creating folder ./p/test",
+        "creating ./p/test/test_copyright.py",
+        "creating ./p/test/test_flake8.py",
+        "creating ./p/test/test_pep257.py",
+    ]
     assert Path("p/LICENSE").is_file()
+
+
+def test_it_tells_of_the_folders_for_sources_and_headers(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["pkg", "create", "p", "--license", "MIT", "--node-name", "n"]) is None
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[printed.index("creating folder ./p") :] == [
+        "creating folder ./p",
+        "creating ./p/package.xml",
+        "creating source and include folder",
+        "creating folder ./p/src",
+        "creating folder ./p/include/p",
+        "creating ./p/CMakeLists.txt",
+        "creating ./p/src/n.cpp",
+    ]
 
 
 def test_an_unknown_licence_is_allowed_with_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
@@ -43,10 +71,11 @@ def test_licences_can_be_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert not Path("p").exists()
 
 
-def test_an_existing_folder_is_left_alone() -> None:
+def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
     Path("p").mkdir()
     outcome = main(["pkg", "create", "p"])
     assert isinstance(outcome, str)
+    assert capsys.readouterr().out == ""
     assert "The directory already exists: ./p" in outcome
     assert list(Path("p").iterdir()) == []
 

@@ -176,9 +176,13 @@ def test_dotted_names_nest() -> None:
 
 
 def test_launch_arguments_are_names_and_values() -> None:
-    assert launch_arguments(["a:=1", "b:=x:=y", "a:=2", "c:="]) == {"a": "2", "b": "x:=y", "c": ""}
-    with pytest.raises(Ros2Error, match="malformed launch argument 'a=1', expected format '<name>:=<value>'"):
-        launch_arguments(["a=1"])
+    assert launch_arguments(["a:=1", "b:=x:=y", "a:=2"]) == {"a": "2", "b": "x:=y"}
+
+
+@pytest.mark.parametrize("word", ["a=1", ":=1", "a:="])
+def test_a_launch_argument_lacks_neither_name_nor_value(word: str) -> None:
+    with pytest.raises(Ros2Error, match=f"malformed launch argument '{word}', expected format '<name>:=<value>'"):
+        launch_arguments([word])
 
 
 def test_a_path_of_a_launch_file_takes_all_other_words_as_arguments(tmp_path: Path) -> None:
@@ -213,8 +217,8 @@ def test_any_description_survives_setup_py(description: str) -> None:
 def test_each_build_type_has_its_files() -> None:
     python = dict(files(spec(node_name="n", library_name="l"), "licence"))
     assert set(python) == {
-        "package.xml", "LICENSE", "setup.py", "setup.cfg", "resource/p", "p/__init__.py", "p/n.py", "p/l/__init__.py",
-        "test/test_copyright.py", "test/test_flake8.py", "test/test_pep257.py",
+        "package.xml", "LICENSE", "setup.py", "setup.cfg", "resource/p", "p/", "p/__init__.py", "p/n.py",
+        "p/l/__init__.py", "test/test_copyright.py", "test/test_flake8.py", "test/test_pep257.py",
     }  # fmt: skip
     assert "extras_require={'test': ['pytest']}" in python["setup.py"]
     assert "script_dir=$base/lib/p" in python["setup.cfg"]
