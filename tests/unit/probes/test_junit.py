@@ -1,0 +1,71 @@
+"""Reports of test runs are read with bounds, whoever wrote them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from autograder.probes.junit import MAX_BYTES, MAX_MESSAGE, Claims, Verdict, parse, read
+
+REPORT = """<?xml version="1.0" encoding="utf-8"?><testsuites><testsuite name="pytest">
+<testcase classname="test.test_limits" name="test_a[0.5]" />
+<testcase classname="test.test_limits" name="test_b"><failure message="assert 1 == 2&#10;more">x</failure></testcase>
+<testcase classname="test.test_limits" name="test_c"><error message="failed on setup">trace</error></testcase>
+<testcase classname="test_limits" name="test_d"><skipped message="not today" /></testcase>
+<testcase classname="test.test_limits" name="test_e" />
+<testcase classname="test.test_limits" name="test_e"><error message="failed on teardown">trace</error></testcase>
+</testsuite></testsuites>"""
+
+
+def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
+    claims = parse(REPORT.encode())
+    assert claims is not None
+    assert claims.verdicts == {
+        "test_limits::test_a[0.5]": Verdict.PASSED,
+        "test_limits::test_b": Verdict.FAILED,
+        "test_limits::test_c": Verdict.ERROR,
+        "test_limits::test_d": Verdict.SKIPPED,
+        "test_limits::test_e": Verdict.ERROR,
+    }
+    assert claims.messages["test_limits::test_b"] == "assert 1 == 2"
+    assert claims.messages["test_limits::test_a[0.5]"] == ""
+
+
+def test_a_message_is_cut_to_its_bound() -> None:
+    text = f'<testsuite><testcase classname="t" name="a"><failure message="{"x" * 9999}"/></testcase></testsuite>'
+    claims = parse(text.encode())
+    assert claims is not None
+    assert len(claims.messages["t::a"]) == MAX_MESSAGE
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"1 passed",
+        b"\xff\xfe<",
+        b"<testsuite>" + b" " * MAX_BYTES + b"</testsuite>",
+        b'<!DOCTYPE a [<!ENTITY b "c">]><testsuite>&b;</testsuite>',
+        b'<?xml version="1.0" encoding="no-such-code"?><testsuite/>',
+    ],
+    ids=["empty", "text", "bytes", "large", "entities", "encoding"],
+)
+def test_what_is_no_small_plain_report_is_nothing(data: bytes) -> None:
+    assert parse(data) is None
+
+
+def test_a_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "report.xml"
+    path.write_text('<testsuite><testcase classname="t" name="a"/></testsuite>')
+    assert read(path) == Claims({"t::a": Verdict.PASSED}, {"t::a": ""})
+
+
+def test_links_pipes_and_folders_are_not_read(tmp_path: Path) -> None:
+    real = tmp_path / "real.xml"
+    real.write_text("<testsuite/>")
+    (tmp_path / "link.xml").symlink_to(real)
+    os.mkfifo(tmp_path / "pipe.xml")
+    for name in ("link.xml", "pipe.xml", ".", "missing.xml"):
+        assert read(tmp_path / name) is None

@@ -1,0 +1,34 @@
+"""Sleeps are found by reading, in any spelling."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.probes.sleeping import MAX_BYTES, sleeps
+
+SLEEPY = """import time
+from time import sleep
+import rclpy
+
+time.sleep(1)
+sleep(0.1)
+# time.sleep(2)
+text = 'time.sleep(3)'
+node.get_clock().sleep_for(1)
+rclpy.spin_once(node, timeout_sec=0.1)
+"""
+
+
+def test_the_lines_of_sleeps_are_found_and_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "test_it.py"
+    path.write_text(SLEEPY)
+    assert sleeps(path) == [5, 6]
+
+
+@pytest.mark.parametrize("text", ["def (", "\0", "-" * 5000 + "1", "#" * (MAX_BYTES + 1)])
+def test_a_file_that_cannot_be_read_as_python_has_none(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "test_it.py"
+    path.write_text(text)
+    assert sleeps(path) == []

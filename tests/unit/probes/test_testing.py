@@ -1,0 +1,208 @@
+"""Runs of a student's tests: what they claim of a version, and what they cannot do to the run."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import GraderError
+from autograder.lab import Workspace
+from autograder.probes import testing
+from autograder.probes.testing import Order, Report, run, source_of
+from autograder.probes.versions import Version
+from autograder.ros import environment
+from autograder.sandbox import Ending
+
+RIGHT = Version({"package.xml": "<package/>", "half/__init__.py": "def half(x):\n    return x / 2\n"}, {})
+WRONG = Version({**RIGHT.files, "half/__init__.py": "def half(x):\n    return x // 2\n"}, {})
+GOOD = """from half import half
+
+def test_odd():
+    assert half(3) == 1.5
+
+def test_even():
+    assert half(4) == 2
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    """A workspace in which a package `half` was built."""
+    (tmp_path / "ws/src/half/test").mkdir(parents=True)
+    (tmp_path / "ws/src/half/package.xml").write_text("<package/>")
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
+    (workspace.root / "src/half/test" / name).write_text(text)
+
+
+def runs(workspace: Workspace, *orders: Order) -> list[Report]:
+    return run(workspace, "half", orders, lanes=2)
+
+
+def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    right, wrong = runs(workspace, Order(("test_half.py",), RIGHT), Order(("test_half.py",), WRONG))
+    assert right.passed
+    assert right.executed == ("test_half::test_odd", "test_half::test_even")
+    assert wrong.failed == ("test_half::test_odd",)
+    assert wrong.claims.messages["test_half::test_odd"].startswith("assert 1 == 1.5")
+    assert wrong.objects(right)
+    assert not right.objects(right)
+
+
+def test_a_run_can_end_with_the_first_failure_and_go_backwards(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    first, backwards = runs(
+        workspace,
+        Order(("test_half.py",), WRONG, first_failure=True),
+        Order(("test_half.py",), RIGHT, backwards=True),
+    )
+    assert first.executed == ("test_half::test_odd",)
+    assert backwards.executed == ("test_half::test_even", "test_half::test_odd")
+
+
+def test_tests_that_cannot_be_read_object_to_nothing(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    (right,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, "import no_such_module\n" + GOOD)
+    (unread,) = runs(workspace, Order(("test_half.py",), WRONG))
+    assert unread.status == 2
+    assert not unread.objects(right)
+
+
+def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
+    write(workspace, "import pytest\n\n\n@pytest.mark.skip(reason='later')\ndef test_it():\n    assert False\n")
+    (skipped,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, "X = 1\n")
+    (empty,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert skipped.status == 0
+    assert not skipped.passed
+    assert empty.status == 5
+    assert not empty.passed
+
+
+@pytest.mark.parametrize(
+    "trick",
+    [
+        "import os\nos._exit(0)",
+        "import sys\nprint('2 passed', '<testsuite tests=\"2\"/>')\nsys.exit(0)",
+        "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
+    ],
+    ids=["_exit", "exit", "kill"],
+)
+def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str) -> None:
+    write(workspace, trick + "\n" + GOOD)
+    (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert not report.passed
+    assert report.executed == ()
+
+
+def test_a_report_that_is_a_link_is_not_followed(workspace: Workspace) -> None:
+    secret = workspace.root.parent / "secret.xml"
+    secret.write_text('<testsuite><testcase classname="a" name="forged"/></testsuite>')
+    trick = f"""
+import atexit, os
+def leave():
+    path = os.path.join(os.environ['HOME'], {testing.REPORT!r})
+    os.path.lexists(path) and os.unlink(path)
+    os.symlink({str(secret)!r}, path)
+atexit.register(leave)
+"""
+    write(workspace, trick + GOOD)
+    (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert report.executed == ()
+    assert report.status is None
+
+
+def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(testing, "LIMITS", replace(testing.LIMITS, wall_seconds=4.0))
+    monkeypatch.setattr(testing.sandboxed, "__kwdefaults__", {"limits": testing.LIMITS, "network": False})
+    write(workspace, GOOD + "\n\ndef test_for_ever():\n    while True:\n        pass\n")
+    (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert report.ending is Ending.WALL_TIME
+    assert not report.passed
+
+
+def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
+    write(
+        workspace,
+        "import os\nfrom pathlib import Path\n\n\ndef test_first():\n    mark = Path(os.environ['HOME'], 'mark')\n"
+        "    assert not mark.exists()\n    mark.touch()\n",
+    )
+    assert all(report.passed for report in run(workspace, "half", [Order(("test_half.py",), RIGHT)] * 3, lanes=1))
+
+
+def test_two_versions_are_seen_at_one_place(workspace: Workspace) -> None:
+    place = "half.__file__, os.getcwd(), sys.path, sorted(os.environ.items())"
+    write(
+        workspace, f"import os\nimport sys\n\nimport half\n\n\ndef test_place():\n    assert not hash(str(({place})))\n"
+    )
+    reports = run(workspace, "half", [Order(("test_half.py",), RIGHT), Order(("test_half.py",), WRONG)], lanes=1)
+    messages = {report.claims.messages["test_half::test_place"] for report in reports}
+    assert len(messages) == 1
+    assert messages.pop().startswith("assert not ")
+
+
+def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
+    made = "import rclpy\nfrom rclpy.context import Context\n\nKEPT = []\n\n\ndef test_it():\n    context = Context()\n"
+    made += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
+    write(workspace, made + "    KEPT.append(node)\n")
+    (left,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, made + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
+    (clean,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert left.passed
+    assert left.left > 0
+    assert clean.passed
+    assert clean.left == 0
+
+
+def test_another_robot_is_heard_in_the_default_domain_only(workspace: Workspace) -> None:
+    listen = """
+import time
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from std_msgs.msg import String
+
+def heard(seconds, **init):
+    context = Context()
+    rclpy.init(context=context, **init)
+    node = rclpy.create_node('n', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    words = []
+    node.create_subscription(String, 'words', words.append, 10)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not words:
+        executor.spin_once(timeout_sec=0.1)
+    node.destroy_node()
+    rclpy.try_shutdown(context=context)
+    return bool(words)
+
+def test_default():
+    assert heard(30.0)
+
+def test_own():
+    assert not heard(1.0, domain_id=DOMAIN)
+"""
+    write(workspace, listen.replace("DOMAIN", str(1 + os.getpid() % 90)))
+    order = Order(("test_half.py",), RIGHT, intruder={"words": "std_msgs/msg/String"})
+    (report,) = runs(workspace, order)
+    assert report.passed, report.output
+
+
+def test_an_intruder_that_does_not_start_is_the_graders_failure(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    with pytest.raises(GraderError, match=r"the other robot did not start: .*no_such_msgs"):
+        runs(workspace, Order(("test_half.py",), RIGHT, intruder={"words": "no_such_msgs/msg/String"}))
+
+
+def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:
+    with pytest.raises(GraderError, match="other was built, but has no folder of its name below src"):
+        source_of(workspace, "other")

@@ -1,0 +1,128 @@
+"""Versions of a package look different each time, behave the same, and cannot be told apart by paths or times."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.exceptions import GraderError
+from autograder.probes.versions import WHEN, Version, disguise, lay_down, read
+from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults, style
+
+SOURCE = '''"""A secret comment."""
+
+SCALE = 2  # doubles
+
+
+class Counter:
+    """Counts."""
+
+    def __init__(self, start=0):
+        """Start."""
+        self.count = start
+
+    def add(self, step=1):
+        """Add."""
+        bigger = self.count + step
+        self.count = bigger
+        return [number * SCALE for number in (bigger,)][0]
+
+
+def outer(value, *, times=1):
+    """Nest."""
+    total = 0
+
+    def inner(total):
+        return total + value
+
+    for _ in range(times):
+        total = inner(total)
+    return total
+'''
+
+
+def run(text: str) -> tuple[Any, ...]:
+    space: dict[str, Any] = {}
+    exec(compile(text, "module", "exec"), space)
+    counter = space["Counter"](start=3)
+    return counter.add(step=2), counter.add(), space["outer"](5, times=3)
+
+
+def test_a_disguised_version_behaves_the_same_and_looks_different_for_each_seed() -> None:
+    version = Version({"a/b.py": SOURCE, "config/a.yaml": "x: 1"}, {})
+    texts = {disguise(version, seed).files["a/b.py"] for seed in range(5)}
+    assert len(texts) == 5
+    for text in texts:
+        assert run(text) == run(SOURCE) == (10, 12, 15)
+        for private in ("secret", "doubles", "Counts", "bigger", "self.count"):
+            assert private not in text
+        assert "SCALE = 2" in text
+    assert disguise(version, 1) == disguise(version, 1)
+    assert disguise(version, 1).files["config/a.yaml"] == "x: 1"
+
+
+def test_a_version_is_laid_down_as_if_it_had_been_built(tmp_path: Path) -> None:
+    tests = tmp_path / "tests"
+    tests.mkdir()
+    (tests / "test_it.py").write_text("")
+    version = Version(
+        {"p/a.py": "A = 1\n", "launch/a.launch.py": "B = 2\n", "setup.py": "", "package.xml": "<package/>"},
+        {"tool": "p.a"},
+    )
+    source = lay_down(version, "p", tests, tmp_path / "ws")
+    install = tmp_path / "ws/install/p"
+    assert source == tmp_path / "ws/src/p"
+    assert {path.relative_to(source).as_posix() for path in source.rglob("*.*")} == {
+        "p/a.py",
+        "launch/a.launch.py",
+        "setup.py",
+        "package.xml",
+        "test/test_it.py",
+    }
+    assert (install / "share/p/launch/a.launch.py").read_text() == "B = 2\n"
+    assert (install / "share/ament_index/resource_index/packages/p").is_file()
+    assert (install / "lib/p/tool").stat().st_mode & 0o111
+    assert len(list(install.glob("lib/python3*/site-packages/p/a.py"))) == 1
+    assert {path.stat().st_mtime for path in (tmp_path / "ws").rglob("*")} == {WHEN}
+
+
+def test_a_packages_tests_and_caches_are_no_part_of_its_version(tmp_path: Path) -> None:
+    for name in ("p/a.py", "p/__pycache__/a.pyc", "test/test_a.py", "package.xml"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("")
+    assert set(read(tmp_path, {}).files) == {"p/a.py", "package.xml"}
+
+
+def test_all_versions_have_the_same_files() -> None:
+    draw = random.Random(1)
+    names = {frozenset(broken(fault, name, draw).files) for fault in faults() for name in STYLES}
+    assert names == {frozenset(style(name).files) for name in STYLES}
+    assert len(names) == 1
+
+
+@pytest.mark.parametrize("fault", faults(), ids=lambda fault: str(fault.id))
+@pytest.mark.parametrize("name", STYLES)
+def test_every_fault_fits_both_styles(fault: Fault, name: str) -> None:
+    faulty = broken(fault, name, random.Random(1)).files
+    right = disguise(style(name), random.Random(1).getrandbits(32)).files
+    assert {path for path in right if right[path] != faulty[path]} >= {fault.file}
+    compile(faulty[fault.file], fault.file, "exec")
+
+
+def test_a_fault_that_no_longer_fits_is_named() -> None:
+    fault = Fault("lost", "stop", "speed_guard/limits.py", dict.fromkeys(STYLES, ("no such text", "")), frozenset())
+    with pytest.raises(GraderError, match=r"fault lost: 'no such text' stands 0 times in speed_guard/limits.py"):
+        broken(fault, STYLES[0], random.Random(1))
+
+
+def test_a_fault_must_not_stand_twice_unless_it_says_so() -> None:
+    edits = dict.fromkeys(STYLES, ("return", "return None or"))
+    with pytest.raises(GraderError, match=r"stands \d times"):
+        broken(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))
+    last = Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset(STYLES))
+    text = broken(last, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
+    assert text.rstrip().endswith("return None or wanted")
