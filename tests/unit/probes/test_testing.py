@@ -100,7 +100,7 @@ def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str
     write(workspace, trick + "\n" + GOOD)
     (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
     assert not report.passed
-    assert report.executed == ()
+    assert "test_half::test_odd" not in report.executed
 
 
 def test_a_report_that_is_a_link_is_not_followed(workspace: Workspace) -> None:
@@ -199,7 +199,7 @@ def test_own():
 
 def test_an_intruder_that_does_not_start_is_the_graders_failure(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    with pytest.raises(GraderError, match=r"the other robot did not start: .*no_such_msgs"):
+    with pytest.raises(GraderError, match=r"(?s)the other robot did not start: .*no_such_msgs"):
         runs(workspace, Order(("test_half.py",), RIGHT, intruder={"words": "no_such_msgs/msg/String"}))
 
 
