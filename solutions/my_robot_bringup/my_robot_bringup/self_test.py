@@ -42,7 +42,7 @@ class SelfTest(Node):
 
 
 def main(args=None):
-    """Run the test; return the exit status, 0 for a robot that may drive and 1 for one that may not."""
+    """Run the test; return the exit status: 0 for a robot that may drive, 1 for others."""
     rclpy.init(args=args)
     try:
         node = SelfTest()
