@@ -52,6 +52,11 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
     parser.add_argument(
+        "--launch-prefix-filter",
+        help="Regex pattern for filtering which executables the --launch-prefix is applied to by matching the "
+        "executable name",
+    )
+    parser.add_argument(
         "package_name", help="Name of the ROS package which contains the launch file, or path of a launch file"
     )
     parser.add_argument("launch_file_name", nargs="?", help="Name of the launch file")
@@ -67,6 +72,8 @@ def _run(args: argparse.Namespace) -> Outcome:
     arguments = launch_arguments(words)
     if args.launch_prefix is not None:
         arguments["launch-prefix"] = args.launch_prefix
+    if args.launch_prefix_filter is not None:
+        arguments["launch-prefix-filter"] = args.launch_prefix_filter
     if args.show_all_subprocesses_output:
         os.environ[OVERRIDE] = "both"
     try:

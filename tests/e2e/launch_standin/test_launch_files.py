@@ -241,6 +241,14 @@ def test_output_goes_where_it_is_asked_to(start: Start, tmp_path: Path) -> None:
     assert (tmp_path / "log" / "latest").resolve() == log.parent
 
 
+def test_a_prefix_goes_before_the_executables_that_its_filter_names(start: Start) -> None:
+    launch = start("output", "--launch-prefix", "echo instead of", "--launch-prefix-filter", "print(env|f)")
+    assert launch.finish() == 0
+    assert "[echo-7] instead of printenv" in launch.text
+    assert "[echo-10] instead of printf no line end" in launch.text
+    assert "[pwd-9] /" in launch.text
+
+
 def test_all_output_is_shown_if_that_is_asked_for(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
