@@ -50,7 +50,8 @@ class Installed:
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""
-        return _read(self.prefix / "share" / self.package / name)
+        path = self.prefix / "share" / self.package / name
+        return _read(path) if path.parent.resolve().is_relative_to(self.prefix.resolve()) else None
 
 
 def look(install: Path, package: str) -> Installed:

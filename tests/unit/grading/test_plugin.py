@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import Outcome
-from autograder.diagnosis import OK, Kind
+from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.grading.gallery import Gallery
 from autograder.grading.plugin import GradingPlugin, run
 from autograder.lab.workspace import Workspace
@@ -177,3 +177,28 @@ def test_what_lies_around_the_suite_is_not_collected(grade: Grade, tmp_path: Pat
             '''It is so.'''
         """)
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
+
+
+def test_checks_see_what_became_of_each_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "")
+    path = tmp_path / f"checks_{next(_NUMBERS)}.py"
+    path.write_text(
+        HEAD
+        + textwrap.dedent("""
+            @check(points=1, group="g")
+            def test_builds(builds):
+                '''It builds.'''
+                raise StudentError(builds["bad"])
+
+            @check(points=1, group="g")
+            def test_reads(builds):
+                '''It can be read.'''
+                expect(set(builds) == {"good", "bad"}, "?")
+        """)
+    )
+    broken = Diagnosis(Kind.BUILD_FAILED, "It does not build.")
+    workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
+    plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), {"good": OK, "bad": broken})
+    run((path,), plugin)
+    assert _outcomes(plugin) == {"builds": (Outcome.FAILED, 0.0), "reads": (Outcome.PASSED, 1.0)}
+    assert plugin.diagnosis == broken

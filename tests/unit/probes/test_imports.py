@@ -1,0 +1,96 @@
+"""What a package imports is read from its text, and held against what it declares."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.layout import SOLUTIONS
+from autograder.probes import imports, manifest
+
+FILES = {
+    "lamp/__init__.py": "",
+    "lamp/nodes/lamp_node.py": "import os, numpy.linalg\nfrom rclpy.node import Node\nfrom . import x\nimport lamp.x\n",
+    "lamp/late.py": "def f():\n    try:\n        import yaml\n    except ImportError:\n        pass\n",
+    "launch/lamp.launch.py": "from launch import LaunchDescription\nimport rclpy\n",
+    "test/helper.py": "",
+    "test/test_lamp.py": "import pytest\nimport helper\nimport numpy\nfrom lamp import late\n",
+    "setup.py": "import setuptools\n",
+    "build/lamp/stray.py": "import left_out\n",
+    "broken.py": "import (",
+}
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package that imports some things."""
+    for name, text in FILES.items():
+        path = tmp_path / "lamp" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return tmp_path / "lamp"
+
+
+def _names(found: tuple[imports.Import, ...]) -> list[str]:
+    return [each.module for each in found]
+
+
+def test_only_what_comes_from_outside_counts(package: Path) -> None:
+    assert _names(imports.imported(package)) == ["launch", "numpy", "pytest", "rclpy", "yaml"]
+
+
+def test_a_folder_called_launch_is_not_the_module_launch(package: Path) -> None:
+    assert _names(imports.imported(package, within=("launch",))) == ["launch", "rclpy"]
+    assert _names(imports.imported(package, without=("launch", "test"))) == ["numpy", "rclpy", "yaml"]
+
+
+def test_an_import_knows_where_it_stands_and_what_would_declare_it(package: Path) -> None:
+    numpy = imports.imported(package)[1]
+    assert numpy.files == ("lamp/nodes/lamp_node.py", "test/test_lamp.py")
+    assert numpy.keys[0] == "python3-numpy"
+    assert imports.Import("cv2", ()).keys[0] == "python3-opencv"
+    assert imports.Import("sensor_msgs", ()).keys[0] == "sensor_msgs"
+    assert imports.say([numpy]) == "lamp/nodes/lamp_node.py imports numpy (python3-numpy)"
+
+
+@pytest.mark.parametrize("declared", ["python3-numpy", "numpy"])
+def test_either_name_declares_a_module(package: Path, declared: str) -> None:
+    found = imports.undeclared(imports.imported(package), {declared, "rclpy", "launch", "python3-yaml"})
+    assert _names(found) == ["pytest"]
+
+
+def test_what_runs_is_declared_for_the_run_and_what_tests_need_for_the_tests(package: Path) -> None:
+    text = """<package format="3"><name>lamp</name><version>0.1.0</version><description>x</description>
+      <maintainer email="a@example.com">A</maintainer><license>MIT</license>
+      <depend>rclpy</depend><build_depend>launch</build_depend><test_depend>python3-numpy</test_depend></package>"""
+    found = imports.missing(package, manifest.parse(text))
+    assert _names(found["exec"]) == ["launch", "numpy", "yaml"]
+    assert _names(found["test"]) == ["pytest"]
+
+
+def test_the_reference_packages_declare_what_they_import() -> None:
+    for name in ("square_dance", "wall_alarm"):
+        folder = SOLUTIONS / name
+        assert imports.missing(folder, manifest.read(folder)) == {"exec": (), "test": ()}
+
+
+@pytest.mark.parametrize("text", ["import (", "\0", "-" * 100_000 + "1", "(" * 1000, "a" + ".b" * 50_000])
+def test_a_text_that_is_no_python_imports_nothing(text: str) -> None:
+    assert imports.modules(text) == frozenset()
+
+
+def test_files_too_large_or_linked_are_left_out(tmp_path: Path) -> None:
+    package = tmp_path / "lamp"
+    package.mkdir()
+    (package / "large.py").write_text("import numpy\n" + "#" * imports.MAX_BYTES)
+    (tmp_path / "elsewhere.py").write_text("import scipy\n")
+    (package / "linked.py").symlink_to(tmp_path / "elsewhere.py")
+    assert imports.imported(package) == ()
+
+
+def test_the_number_of_files_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(imports, "MAX_FILES", 2)
+    for name in "abc":
+        (tmp_path / f"{name}.py").write_text(f"import outside_{name}\n")
+    assert _names(imports.imported(tmp_path)) == ["outside_a", "outside_b"]

@@ -1,0 +1,90 @@
+"""What colcon installed is seen as `ros2` would see it, and nothing is followed or imported."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.probes import installed
+
+SITE = "lib/python3.12/site-packages"
+EGG = f"{SITE}/lamp-0.1.0-py3.12.egg-info"
+FILES = {
+    "lib/lamp/lamp": "#!/usr/bin/python3\n",
+    "bin/stray": "#!/usr/bin/python3\n",
+    f"{SITE}/lamp/__init__.py": "raise SystemExit('imported')",
+    f"{SITE}/lamp/nodes/__init__.py": "",
+    f"{SITE}/lamp/nodes/lamp.py": "",
+    f"{SITE}/test/__init__.py": "",
+    f"{EGG}/SOURCES.txt": "setup.py\nresource/lamp\n",
+    f"{EGG}/entry_points.txt": "[console_scripts]\nlamp = lamp.nodes.lamp:main\n",
+    f"{EGG}/requires.txt": "setuptools\n\n[test]\npytest\n\n[doc:python_version>'3']\nsphinx\n",
+    f"{EGG}/PKG-INFO": "Metadata-Version: 2.1\nName: lamp\nVersion: 0.1.0\nLicense: MIT\n\nA lamp.\n",
+    "share/ament_index/resource_index/packages/lamp": "",
+    "share/lamp/package.xml": "<package/>",
+    "share/lamp/package.bash": "",
+    "share/lamp/hook/pythonpath.sh": "",
+    "share/lamp/config/lamp.yaml": "a: 1\n",
+}
+
+
+@pytest.fixture
+def install(tmp_path: Path) -> Path:
+    """An install space with the package lamp in it."""
+    for name, text in FILES.items():
+        path = tmp_path / "install" / "lamp" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(0o755 if text.startswith("#!") else 0o644)
+    return tmp_path / "install"
+
+
+def test_everything_that_a_package_has_is_seen(install: Path) -> None:
+    found = installed.look(install, "lamp")
+    assert found.executables == ("lamp",)
+    assert found.misplaced == ("stray",)
+    assert found.modules == {"lamp", "lamp.nodes", "lamp.nodes.lamp", "test"}
+    assert found.marker
+    assert found.shared == ("package.xml", "config/lamp.yaml")
+    assert "resource/lamp" in found.listed
+    assert found.scripts == {"lamp": "lamp.nodes.lamp:main"}
+    assert found.extras == {"test": ("pytest",), "doc": ("sphinx",)}
+    assert (found.metadata["Version"], found.metadata["License"]) == ("0.1.0", "MIT")
+    assert found.read("config/lamp.yaml") == b"a: 1\n"
+
+
+def test_a_package_that_was_not_installed_has_nothing(tmp_path: Path) -> None:
+    found = installed.look(tmp_path / "install", "lamp")
+    assert (found.executables, found.modules, found.marker, found.shared) == ((), frozenset(), False, ())
+    assert found.read("package.xml") is None
+
+
+def test_a_file_that_may_not_be_run_is_no_executable(install: Path) -> None:
+    (install / "lamp/lib/lamp/lamp").chmod(0o644)
+    assert installed.look(install, "lamp").executables == ()
+
+
+def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.mkdir()
+    (secret / "key.yaml").write_text("secret")
+    share = install / "lamp/share/lamp"
+    (share / "config/link.yaml").symlink_to(secret / "key.yaml")
+    (share / "folder").symlink_to(secret)
+    (install / "lamp/lib/lamp/link").symlink_to("/bin/sh")
+    found = installed.look(install, "lamp")
+    assert found.shared == ("package.xml", "config/lamp.yaml")
+    assert found.executables == ("lamp",)
+    assert found.read("config/link.yaml") is None
+    assert found.read("folder/key.yaml") is None
+
+
+def test_a_file_too_large_is_not_read(install: Path) -> None:
+    (install / "lamp/share/lamp/config/lamp.yaml").write_bytes(b"#" * (installed.MAX_BYTES + 1))
+    assert installed.look(install, "lamp").read("config/lamp.yaml") is None
+
+
+def test_metadata_that_cannot_be_read_is_none(install: Path) -> None:
+    (install / "lamp" / EGG / "entry_points.txt").write_text("[console_scripts\nlamp")
+    assert installed.look(install, "lamp").scripts == {}

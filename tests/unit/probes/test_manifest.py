@@ -1,0 +1,90 @@
+"""package.xml is read as ROS reads it, and what ROS refuses is refused in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.layout import SOLUTIONS
+from autograder.probes import manifest
+
+TEXT = """<package format="3">
+  <name>lamp</name>
+  <version>0.1.0</version>
+  <description>A lamp</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <license>Apache-2.0</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <build_depend>eigen</build_depend>
+  <depend>rclpy</depend>
+  <exec_depend>launch</exec_depend>
+  <test_depend>python3-pytest</test_depend>
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export><build_type>ament_python</build_type></export>
+</package>
+"""
+
+
+def test_a_manifest_says_what_the_package_is_and_what_it_needs() -> None:
+    found = manifest.parse(TEXT)
+    assert (found.name, found.version, found.description, found.format) == ("lamp", "0.1.0", "A lamp", 3)
+    assert found.licences == ("MIT", "Apache-2.0")
+    assert found.maintainers == (("A", "a@example.com"),)
+    assert found.build_type == "ament_python"
+    assert found.groups == {"rosidl_interface_packages"}
+
+
+def test_a_plain_depend_is_for_the_build_and_for_the_run() -> None:
+    found = manifest.parse(TEXT)
+    assert found.needs("exec") == {"rclpy", "launch"}
+    assert found.needs("build") == {"rclpy", "eigen"}
+    assert found.needs("test") == {"python3-pytest"}
+    assert found.needs("exec", "test") == {"rclpy", "launch", "python3-pytest"}
+    assert found.needs() == {"rclpy", "launch", "python3-pytest", "eigen", "ament_cmake"}
+
+
+def test_a_manifest_without_a_build_type_says_so() -> None:
+    assert manifest.parse(TEXT.replace("<build_type>ament_python</build_type>", "")).build_type == ""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("a@example.com", "a@b", 'Invalid email "a@b"'),
+        ("<name>lamp</name>", "", 'exactly one "name" tag'),
+        ("<name>lamp</name>", "<name>La mp</name>", "does not follow naming conventions"),
+        ("<version>0.1.0</version>", "<version>one</version>", "version conventions"),
+        ("</description>", "", "not well-formed|mismatched|invalid XML"),
+        (TEXT, "", "invalid XML|no element"),
+        ('<package format="3">', '<!DOCTYPE a [<!ENTITY b "c">]><package format="3">', "which no manifest needs"),
+    ],
+)
+def test_what_ros_refuses_is_refused_with_the_reason(before: str, after: str, words: str) -> None:
+    with pytest.raises(CheckFailed, match=words):
+        manifest.parse(TEXT.replace(before, after), "lamp/package.xml")
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (None, "lamp has no package.xml"),
+        (b"<package>" + b" " * manifest.MAX_BYTES, "far larger than a manifest"),
+        (b"\xff\xfe<package/>", "not UTF-8"),
+    ],
+)
+def test_a_file_that_is_no_manifest_is_named(tmp_path: Path, data: bytes | None, words: str) -> None:
+    folder = tmp_path / "lamp"
+    folder.mkdir()
+    if data is not None:
+        (folder / "package.xml").write_bytes(data)
+    with pytest.raises(CheckFailed, match=words):
+        manifest.read(folder)
+
+
+def test_a_link_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").symlink_to(SOLUTIONS / "square_dance" / "package.xml")
+    with pytest.raises(CheckFailed, match=r"has no package\.xml"):
+        manifest.read(tmp_path)
