@@ -1,7 +1,8 @@
 """A suite: the checks of one assignment, read from the modules of one package.
 
 A suite's package says in `PACKAGES` which ROS 2 packages a submission must bring, and in `MODULES` which of its modules
-hold checks, in the order in which they are run.
+hold checks, in the order in which they are run. `FOLDERS`, if it is there, names what a submission brings in `src`
+besides: folders that are no packages.
 
 A suite that looks at the sources, too, says `BUILD_MAY_FAIL = True`: then a package that is missing or does not build
 does not end the grading. It is something that the checks see, by the fixture `builds`, and those that need a built
@@ -31,6 +32,7 @@ class Suite:
         checks: every check in that order.
         version: changes whenever a file of the suite does.
         build_may_fail: whether its checks are run even if a package is missing or does not build.
+        folders: what a submission brings in `src` besides its packages.
     """
 
     assignment: str
@@ -39,6 +41,12 @@ class Suite:
     checks: tuple[Check, ...]
     version: str
     build_may_fail: bool = False
+    folders: tuple[str, ...] = ()
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The folders of `src` that an answer is made of: the packages and the rest."""
+        return self.packages + self.folders
 
     @property
     def max_score(self) -> float:
@@ -82,6 +90,7 @@ def read(home: str, assignment: str) -> Suite:
         tuple(checks),
         digest.hexdigest()[:12],
         getattr(described, "BUILD_MAY_FAIL", False),
+        tuple(getattr(described, "FOLDERS", ())),
     )
 
 

@@ -34,9 +34,9 @@ def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None
     suite = suites.load(ASSIGNMENT)
     shown = [mutant for mutant in mutants(ASSIGNMENT) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:
-        lay_down_reference(suite.packages, Path(folder) / REFERENCE)
+        lay_down_reference(suite.sources, Path(folder) / REFERENCE)
         for mutant in shown:
-            lay_down(mutant, suite.packages, Path(folder) / mutant.id)
+            lay_down(mutant, suite.sources, Path(folder) / mutant.id)
         (Path(folder) / "empty").mkdir()
         names = [REFERENCE, *(mutant.id for mutant in shown), "empty"]
         entries = tuple(Entry(name, Path(folder) / name) for name in names)

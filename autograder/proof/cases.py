@@ -44,16 +44,16 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
         assignment: whose suite is to be proved.
         quick: one mutant a check, no generated ones and no attacks.
     """
-    packages = suites.load(assignment).packages
+    sources = suites.load(assignment).sources
     found = [
-        Case(Kind.REFERENCE, "reference", partial(lay_down_reference, packages), full),
+        Case(Kind.REFERENCE, "reference", partial(lay_down_reference, sources), full),
         Case(Kind.RELEASE, "release", partial(write_release, assignment), nothing),
-        *_variants(assignment, packages),
+        *_variants(assignment, sources),
     ]
     chosen = one_a_check(assignment) if quick else mutants(assignment)
-    found += [Case(Kind.MUTANT, m.id, partial(lay_down, m, packages), partial(as_named, m)) for m in chosen]
+    found += [Case(Kind.MUTANT, m.id, partial(lay_down, m, sources), partial(as_named, m)) for m in chosen]
     if not quick:
-        found += [_generated(made, packages) for made in generated(assignment)]
+        found += [_generated(made, sources) for made in generated(assignment)]
         found += [_attack(attack) for attack in attacks(assignment)]
     return tuple(found)
 
@@ -89,21 +89,21 @@ def write_release(assignment: str, folder: Path) -> None:
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
 
 
-def _variants(assignment: str, packages: tuple[str, ...]) -> Iterator[Case]:
+def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
     """Yield the right answers of another style: whole files that take the place of the reference's."""
     folder = suites.load(assignment).files[0].parent / "variants"
     for variant in sorted(folder.iterdir()) if folder.is_dir() else ():
 
         def write(target: Path, variant: Path = variant) -> None:
-            lay_down_reference(packages, target)
+            lay_down_reference(sources, target)
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
         yield Case(Kind.VARIANT, variant.name, write, full)
 
 
-def _generated(made: Generated, packages: tuple[str, ...]) -> Case:
+def _generated(made: Generated, sources: tuple[str, ...]) -> Case:
     def write(folder: Path) -> None:
-        lay_down_reference(packages, folder)
+        lay_down_reference(sources, folder)
         (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
 
     return Case(Kind.GENERATED, made.id, write, killed, made.reason)

@@ -68,19 +68,19 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
     return tuple(_mutant(entry, data["file"], known) for entry in data["mutants"])
 
 
-def lay_down_reference(packages: tuple[str, ...], folder: Path) -> None:
-    """Copy packages of the reference solution to `folder`/src."""
-    for package in packages:
-        shutil.copytree(layout.SOLUTIONS / package, folder / "src" / package)
+def lay_down_reference(sources: tuple[str, ...], folder: Path) -> None:
+    """Copy packages and other folders of the reference solution to `folder`/src."""
+    for source in sources:
+        shutil.copytree(layout.SOLUTIONS / source, folder / "src" / source)
 
 
-def lay_down(mutant: Mutant, packages: tuple[str, ...], folder: Path) -> None:
+def lay_down(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None:
     """Write a mutant as a source tree, `folder`/src.
 
     Raises:
         GraderError: an edit no longer fits the reference; the message names it.
     """
-    lay_down_reference(packages, folder)
+    lay_down_reference(sources, folder)
     for edit in mutant.edits:
         _apply(mutant, edit, folder / "src" / edit.file)
 
