@@ -131,6 +131,9 @@ class LaunchLab:
         try:
             holder = [sys.executable, "-I", "-S", str(Path(hold.__file__)), str(theirs)]
             self.process: Process = launch([*holder, *self._command], self._sandbox, pass_fds=(theirs,))
+        except BaseException:
+            self._leave()
+            raise
         finally:
             os.close(theirs)
         return self
@@ -139,10 +142,7 @@ class LaunchLab:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.process.__exit__(kind, error, trace)
-        os.close(self._pipe)
-        self._executor.shutdown(timeout_sec=0)
-        self.node.destroy_node()
-        self._context.try_shutdown()
+        self._leave()
 
     @property
     def output(self) -> str:
@@ -244,6 +244,12 @@ class LaunchLab:
         holder = self.process.innermost()
         pids = [pid for pid in measure(holder).pids if pid != holder and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
+
+    def _leave(self) -> None:
+        os.close(self._pipe)
+        self._executor.shutdown(timeout_sec=0)
+        self.node.destroy_node()
+        self._context.try_shutdown()
 
     def _ask(self, node: str, names: Collection[str], seconds: float) -> dict[str, Any] | None:
         client = self.node.create_client(GetParameters, f"{node}/get_parameters")
