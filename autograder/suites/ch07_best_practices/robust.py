@@ -12,10 +12,13 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.lab import Workspace
 from autograder.probes.calls import call, calls, made, make
+from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence
 from autograder.visible.ch07_best_practices.contract import ERRORS, LOGGING, QOS, RANDOM, ROBUST, RULE_STATUS
 from autograder.visible.ch07_best_practices.robot import WORDS, Robust, expected
 
 GROUP = "robust"
+DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
+LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
 @check(
@@ -176,6 +179,30 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
     expect(
         honest, f"timer_callback with a broken generator raised {called.raised} instead of the AttributeError itself."
     )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=(
+        "The table of the exercise names type, default and range of each.",
+        "declare_parameter(name, default, descriptor)",
+    ),
+)
+def test_declared(workspace: Workspace) -> None:
+    """Its three parameters are declared with the defaults and ranges of the contract."""
+    with Robust(workspace) as lab:
+        node = NodeParameters(lab, "/robust_node")
+        missing = missing_sentence(DEFAULTS, node.names())
+        expect(not missing, missing)
+        wrong = differences(node.values(*DEFAULTS), DEFAULTS)
+        described = node.descriptors(*DEFAULTS)
+    expect(not wrong, f"Without any file or argument, {', '.join(wrong)}.")
+    for name, limits in LIMITS.items():
+        ranges = [*described[name].floating_point_range, *described[name].integer_range]
+        found = [(each.from_value, each.to_value) for each in ranges]
+        expect(found == [limits], f"{name} is declared with {found or 'no range'}, and should have {limits}.")
 
 
 @check(

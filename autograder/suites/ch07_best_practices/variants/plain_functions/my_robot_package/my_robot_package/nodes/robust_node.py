@@ -19,8 +19,8 @@ def read_sensor(generator, failure_probability):
     """Return 'Success' or raise SensorError."""
     number = generator.random()
     if not number < failure_probability:
-        return 'Success'
-    raise SensorError(f'drew {number:.3f}')
+        return "Success"
+    raise SensorError(f"drew {number:.3f}")
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Streak:
     def words(self):
         """Put it into words."""
         if not self.length:
-            return 'ok'
+            return "ok"
         return f"{'failed' if self.length <= self.limit else 'unstable'}: {self.length} in a row"
 
 
@@ -42,40 +42,48 @@ class RobustNode(Node):
 
     def __init__(self, generator=None, **kwargs):
         """Declare, and set the clock ticking."""
-        super().__init__('robust_node', **kwargs)
-        self.declare_parameters('', [
-            ('failure_probability', 0.1, ParameterDescriptor(
-                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0)])),
-            ('seed', 0, ParameterDescriptor(
-                integer_range=[IntegerRange(from_value=0, to_value=2**31 - 1)])),
-            ('max_errors', 10, ParameterDescriptor(
-                integer_range=[IntegerRange(from_value=1, to_value=1000)])),
-        ])
-        seed = self.get_parameter('seed').value
+        super().__init__("robust_node", **kwargs)
+        self.declare_parameters(
+            "",
+            [
+                (
+                    "failure_probability",
+                    0.1,
+                    ParameterDescriptor(floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0)]),
+                ),
+                ("seed", 0, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=2**31 - 1)])),
+                ("max_errors", 10, ParameterDescriptor(integer_range=[IntegerRange(from_value=1, to_value=1000)])),
+            ],
+        )
+        seed = self.get_parameter("seed").value
         self._dice = random.Random(seed or None) if generator is None else generator
-        self._streak = Streak(self.get_parameter('max_errors').value)
-        self._status = self.create_publisher(String, 'status', QoSProfile(
-            depth=5,
-            reliability=QoSReliabilityPolicy.RELIABLE,
-            durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
-        ))
+        self._streak = Streak(self.get_parameter("max_errors").value)
+        self._status = self.create_publisher(
+            String,
+            "status",
+            QoSProfile(
+                depth=5,
+                reliability=QoSReliabilityPolicy.RELIABLE,
+                durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
+            ),
+        )
         self._timer = self.create_timer(1.0, self.timer_callback)
 
     def timer_callback(self):
         """Read once."""
         failure = None
         try:
-            read_sensor(self._dice, self.get_parameter('failure_probability').value)
+            read_sensor(self._dice, self.get_parameter("failure_probability").value)
         except SensorError as error:
             failure = error
         before = self._streak.length
         self._streak.length = 0 if failure is None else before + 1
         if failure is not None:
-            self.get_logger().error(f'no reading: {failure}', throttle_duration_sec=5.0)
+            self.get_logger().error(f"no reading: {failure}", throttle_duration_sec=5.0)
             if self._streak.length == self._streak.limit + 1:
-                self.get_logger().fatal('this is no longer normal')
+                self.get_logger().fatal("this is no longer normal")
         elif before:
-            self.get_logger().info(f'Recovered after {before} errors')
+            self.get_logger().info(f"Recovered after {before} errors")
         self._status.publish(String(data=self._streak.words()))
 
 

@@ -10,8 +10,7 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
 
-BEST_EFFORT = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def clean(node, processor, scans, means, msg):
@@ -23,19 +22,23 @@ def clean(node, processor, scans, means, msg):
         average.data = processor.average()
         means.publish(average)
         return
-    node.get_logger().warning('blind', throttle_duration_sec=1.0)
+    node.get_logger().warning("blind", throttle_duration_sec=1.0)
 
 
 def main(args=None):
     """Make the node, and spin it in several threads."""
     rclpy.init(args=args)
     try:
-        node = rclpy.create_node('sensor_processor')
-        scans = node.create_publisher(LaserScan, 'scan_filtered', BEST_EFFORT)
-        means = node.create_publisher(Float32, 'mean_distance', 10)
+        node = rclpy.create_node("sensor_processor")
+        scans = node.create_publisher(LaserScan, "scan_filtered", BEST_EFFORT)
+        means = node.create_publisher(Float32, "mean_distance", 10)
         node.create_subscription(
-            LaserScan, 'scan', partial(clean, node, DataProcessor(10), scans, means), BEST_EFFORT,
-            callback_group=ReentrantCallbackGroup())
+            LaserScan,
+            "scan",
+            partial(clean, node, DataProcessor(10), scans, means),
+            BEST_EFFORT,
+            callback_group=ReentrantCallbackGroup(),
+        )
         executor = MultiThreadedExecutor()
         executor.add_node(node)
         executor.spin()

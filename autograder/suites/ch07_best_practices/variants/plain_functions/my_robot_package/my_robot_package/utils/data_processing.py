@@ -6,7 +6,7 @@ import numpy as np
 def mask_invalid(ranges, range_min, range_max):
     """Mask by a boolean array."""
     readings = np.array(ranges, dtype=float)
-    with np.errstate(invalid='ignore'):
+    with np.errstate(invalid="ignore"):
         valid = np.isinf(readings) | ((readings >= range_min) & (readings <= range_max))
     return np.where(valid, readings, np.nan).tolist()
 
@@ -32,7 +32,7 @@ class DataProcessor:
         """Mask, and remember."""
         masked = mask_invalid(ranges, range_min, range_max)
         mean = mean_distance(masked)
-        self._means = [*self._means, *([] if mean is None else [mean])][-self._size:]
+        self._means = [*self._means, *([] if mean is None else [mean])][-self._size :]
         return masked
 
     def average(self):
