@@ -11,7 +11,7 @@ from autograder.notebook.errors import Notice
 if TYPE_CHECKING:
     from sim.view import Picture
 
-WIDTH, HEIGHT = 5.4, 4.4  # inches a drive
+WIDTH, HEIGHT = 6.0, 4.9  # inches a drive
 
 
 def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice:

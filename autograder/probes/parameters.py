@@ -1,0 +1,219 @@
+"""A node's parameters: asked for and changed over its own services, and judged in a student's words.
+
+    node = NodeParameters(lab, "/configured_node")
+    node.values("safety_distance")                       # {"safety_distance": 0.5}
+    node.change({"safety_distance": 9.0})                # Answer(accepted=False, reason="... out of range ...")
+
+What a node answers is the student's to forge: it is shown shortened, and believed only where behaviour agrees.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
+from difflib import SequenceMatcher
+from pathlib import Path
+from typing import Any
+
+import yaml
+from rcl_interfaces.msg import ParameterDescriptor, ParameterType
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically
+from rclpy.parameter import Parameter, parameter_value_to_python
+
+from autograder.checks import CheckFailed
+from autograder.lab import Lab
+
+Value = bool | int | float | str | list[object] | None
+
+OWN = frozenset({"use_sim_time", "start_type_description_service"})  # what rclpy declares on every node
+SECONDS = 10.0  # of real time for an answer
+PATIENCE_NS = 1_000_000  # of the node's time between two looks for it
+SHOWN = 200  # characters of a node's own words
+ALIKE = 0.6
+MAX_FILE = 64 * 1024
+TYPES = {
+    ParameterType.PARAMETER_NOT_SET: "of no type yet",
+    ParameterType.PARAMETER_BOOL: "a bool",
+    ParameterType.PARAMETER_INTEGER: "an integer",
+    ParameterType.PARAMETER_DOUBLE: "a double",
+    ParameterType.PARAMETER_STRING: "a string",
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a node says to a request to change parameters.
+
+    Attributes:
+        accepted: whether it carried it out.
+        reason: its words when it did not, shortened.
+    """
+
+    accepted: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class NodeParameters:
+    """The parameter services of one node.
+
+    Attributes:
+        lab: where the node runs.
+        node: its fully qualified name.
+    """
+
+    lab: Lab
+    node: str
+    _clients: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    def names(self) -> frozenset[str]:
+        """Return the names of all declared parameters, rclpy's own left out."""
+        response = self._ask(ListParameters, "list_parameters", ListParameters.Request())
+        return frozenset(response.result.names) - OWN
+
+    def values(self, *names: str) -> dict[str, Value]:
+        """Return values by name; an undeclared name is left out."""
+        # One request each: a node answers nothing at all when one of the names is unknown.
+        answers = {
+            name: self._ask(GetParameters, "get_parameters", GetParameters.Request(names=[name])) for name in names
+        }
+        return {name: parameter_value_to_python(found.values[0]) for name, found in answers.items() if found.values}
+
+    def descriptors(self, *names: str) -> dict[str, ParameterDescriptor]:
+        """Return descriptors by name; an undeclared name is left out."""
+        requests = {name: DescribeParameters.Request(names=[name]) for name in names}
+        answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
+        return {name: found.descriptors[0] for name, found in answers.items() if found.descriptors}
+
+    def change(self, values: Mapping[str, Value]) -> Answer:
+        """Ask the node to set parameters, all in one request."""
+        request = SetParametersAtomically.Request(
+            parameters=[Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+        )
+        result = self._ask(SetParametersAtomically, "set_parameters_atomically", request).result
+        return Answer(result.successful, shortened(result.reason))
+
+    def _ask(self, kind: Any, name: str, request: Any) -> Any:
+        """Call one of the node's services; a node in lockstep answers while it is stepped.
+
+        Raises:
+            CheckFailed: the node has no such service, or does not answer.
+        """
+        if name not in self._clients:
+            self._clients[name] = self.lab.node.create_client(kind, f"{self.node}/{name}")
+        client = self._clients[name]
+        there = self.lab.wait_for(client.service_is_ready, SECONDS)
+        if not there:
+            raise CheckFailed(f"The node has no service {self.node}/{name}: leave its parameter services on.")
+        number = client.handle.send_request(request)
+        deadline = time.monotonic() + SECONDS
+        while time.monotonic() < deadline:
+            header, response = client.handle.take_response(kind.Response)
+            if header is not None and header.request_id.sequence_number == number:
+                return response
+            self.lab.step(PATIENCE_NS)
+        raise CheckFailed(f"The node did not answer a request to {self.node}/{name} within {SECONDS:.0f} s.")
+
+
+def shortened(text: str) -> str:
+    """Return a node's own words on one line of bounded length."""
+    line = " ".join(text.split())
+    return line if len(line) <= SHOWN else f"{line[:SHOWN]}…"
+
+
+def near_misses(wanted: Collection[str], found: Collection[str]) -> dict[str, str]:
+    """Return the wanted names that are missing, each with the one name that seems to stand for it, or ''."""
+    missing, extra = sorted(set(wanted) - set(found)), sorted(set(found) - set(wanted))
+    likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
+    near: dict[str, str] = {}
+    for name, other in sorted(likeness, key=lambda pair: -likeness[pair]):
+        if likeness[name, other] >= ALIKE and name not in near and other not in near.values():
+            near[name] = other
+    return {name: near.get(name, "") for name in missing}
+
+
+def missing_sentence(wanted: Collection[str], found: Collection[str]) -> str:
+    """Say which wanted parameters a node does not declare, near misses named; '' if it declares all of them."""
+    parts = [
+        f"{name} (it declares {shortened(near)})" if near else name for name, near in near_misses(wanted, found).items()
+    ]
+    return f"The node does not declare {', '.join(parts)}." if parts else ""
+
+
+def same(value: Value, wanted: Value) -> bool:
+    """Say whether a parameter's value is the wanted one, of the same type; doubles may differ by rounding."""
+    if type(value) is not type(wanted):
+        return False
+    if isinstance(value, float) and isinstance(wanted, float):
+        return abs(value - wanted) <= 1e-9
+    return value == wanted
+
+
+def as_declared(values: Mapping[str, Value], declared: Mapping[str, Value]) -> dict[str, Value]:
+    """Return numbers in the type that a node declares, integer or double: a wrong type is one error, not many."""
+    return {name: _in_type_of(declared.get(name), value) for name, value in values.items()}
+
+
+def _in_type_of(like: Value, value: Value) -> Value:
+    if isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
+        return value
+    if type(like) is float:
+        return float(value)
+    return int(value) if type(like) is int else value
+
+
+def differences(values: Mapping[str, Value], wanted: Mapping[str, Value]) -> list[str]:
+    """Say for each wanted parameter that has another value what it is and what it should be."""
+    return [
+        f"{name} is {said(values.get(name))} instead of {said(value)}"
+        for name, value in wanted.items()
+        if not same(values.get(name), value)
+    ]
+
+
+def said(value: Value) -> str:
+    """Put a value into words that tell 1 from 1.0 and from '1'."""
+    return "not set" if value is None else shortened(repr(value))
+
+
+def read_file(path: Path) -> dict[str, dict[str, Value]]:
+    """Read a parameter file: values by parameter, by the node or wildcard that they are for, in the file's order.
+
+    Raises:
+        CheckFailed: it is missing, still to be written, no YAML, or not nested as ROS reads it; says what to do.
+    """
+    if not path.is_file():
+        raise CheckFailed(
+            f"{path.parent.name}/{path.name} is not installed: write it into the package's config folder."
+        )
+    text = path.read_text(errors="replace")[: MAX_FILE + 1]
+    if len(text) > MAX_FILE:
+        raise CheckFailed(f"{path.name} is far larger than a parameter file.")
+    if "NotImplementedError" in text:
+        raise CheckFailed(f"{path.name} is still to be written: put your lines in place of the raise.")
+    try:
+        data = yaml.safe_load(text)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise CheckFailed(f"{path.name} is no YAML: {shortened(str(error))}.") from None
+    if not isinstance(data, dict):
+        raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
+    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in data.items()}
+
+
+def _values(file: str, node: str, below: object) -> dict[str, Value]:
+    if node == "ros__parameters":
+        raise CheckFailed(f"In {file}, ros__parameters stands at the left margin: it belongs below a node, indented.")
+    if not isinstance(below, dict) or not below:
+        raise CheckFailed(f"In {file}, nothing is below {node}: indent ros__parameters under it.")
+    if set(below) != {"ros__parameters"}:
+        near = _listed(name for name in below if name != "ros__parameters")
+        raise CheckFailed(f"In {file}, {near} stands directly below {node}: ROS reads what is below ros__parameters.")
+    values = below["ros__parameters"]
+    if not isinstance(values, dict) or not values:
+        raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")
+    return {str(name): value for name, value in values.items()}
+
+
+def _listed(names: Iterable[object]) -> str:
+    return ", ".join(shortened(str(name)) for name in names)

@@ -1,0 +1,66 @@
+"""The contract of the exercises, as data, and the names that the checks use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rcl_interfaces.msg import ParameterType
+
+from autograder.probes.parameters import Value
+
+PACKAGE = "my_robot_package"
+EXECUTABLE = "configured_node"
+NODE = "/configured_node"
+FLEET = "fleet_params.yaml"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A parameter as the exercise asks for it.
+
+    Attributes:
+        type: a constant of ParameterType.
+        default: its value when nobody sets it.
+        low: the least value, None without a range.
+        high: the greatest value, None without a range.
+        unit: what its description names, '' without a unit.
+    """
+
+    type: int
+    default: Value
+    low: float | None = None
+    high: float | None = None
+    unit: str = ""
+
+
+DOUBLE = ParameterType.PARAMETER_DOUBLE
+WANTED = {
+    "robot_name": Wanted(ParameterType.PARAMETER_STRING, "DefaultRobot"),
+    "max_linear_velocity": Wanted(DOUBLE, 0.3, 0.0, 1.0, "m/s"),
+    "safety_distance": Wanted(DOUBLE, 0.5, 0.2, 3.0, "m"),
+    "slow_distance": Wanted(DOUBLE, 1.0, 0.2, 3.0, "m"),
+    "control_frequency": Wanted(DOUBLE, 10.0, 1.0, 50.0, "Hz"),
+    "battery_threshold": Wanted(ParameterType.PARAMETER_INTEGER, 20, 0, 100, "percent"),
+}
+DEFAULTS = {name: wanted.default for name, wanted in WANTED.items()}
+CHANGEABLE = {name: value for name, value in DEFAULTS.items() if name != "robot_name"}
+
+SHARED: dict[str, Value] = {
+    "max_linear_velocity": 0.3,
+    "safety_distance": 0.6,
+    "slow_distance": 1.5,
+    "battery_threshold": 25,
+}
+OWN: dict[str, dict[str, Value]] = {
+    "scout": {"robot_name": "Scout", "max_linear_velocity": 0.6},
+    "porter": {"robot_name": "Porter", "safety_distance": 1.0, "control_frequency": 20.0},
+}
+
+PARAMETERS = "https://docs.ros.org/en/jazzy/Concepts/Basic/About-Parameters.html"
+IN_A_CLASS = "https://docs.ros.org/en/jazzy/Tutorials/Beginner-Client-Libraries/Using-Parameters-In-A-Class-Python.html"
+ARGUMENTS = "https://docs.ros.org/en/jazzy/How-To-Guides/Node-arguments.html"
+
+
+def fleet_values(name: str) -> dict[str, Value]:
+    """Return every value that a robot of this name has with the fleet's file."""
+    return {**DEFAULTS, **SHARED, **OWN.get(name, {})}

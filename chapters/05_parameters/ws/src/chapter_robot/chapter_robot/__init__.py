@@ -1,0 +1,1 @@
+"""The controller as a textbook prints it."""

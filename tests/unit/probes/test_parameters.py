@@ -1,0 +1,102 @@
+"""What is said of a node's parameters and of parameter files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.probes.parameters import (
+    MAX_FILE,
+    SHOWN,
+    as_declared,
+    differences,
+    missing_sentence,
+    near_misses,
+    read_file,
+    same,
+    shortened,
+)
+
+WANTED = ("safety_distance", "slow_distance")
+
+
+def test_a_missing_name_is_told_with_the_one_that_stands_for_it() -> None:
+    assert near_misses(WANTED, {"saftey_distance", "slow_distance"}) == {"safety_distance": "saftey_distance"}
+    sentence = missing_sentence(WANTED, {"saftey_distance"})
+    assert sentence == "The node does not declare safety_distance (it declares saftey_distance), slow_distance."
+
+
+def test_nothing_is_said_where_nothing_is_missing() -> None:
+    assert missing_sentence(WANTED, {*WANTED, "another"}) == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted", "equal"),
+    [
+        (1, 1.0, False),
+        (True, 1, False),
+        (0.1 + 0.2, 0.3, True),
+        ("1", "1", True),
+        (None, 0.0, False),
+        (0.3, 0.4, False),
+    ],
+)
+def test_values_are_the_same_only_in_the_same_type(value: object, wanted: object, equal: bool) -> None:
+    assert same(value, wanted) is equal  # type: ignore[arg-type]
+
+
+def test_differences_tell_an_integer_from_a_double() -> None:
+    told = differences({"a": 1, "b": 2.0}, {"a": 1.0, "b": 2.0, "c": "x"})
+    assert told == ["a is 1 instead of 1.0", "c is not set instead of 'x'"]
+
+
+def test_numbers_take_the_type_that_a_node_declares_and_nothing_else_does() -> None:
+    declared = {"a": 20.0, "b": 1, "c": "x", "d": True}
+    taken = as_declared({"a": 45, "b": 2.0, "c": 3, "d": 1, "e": 4}, declared)
+    assert {name: repr(value) for name, value in taken.items()} == {
+        "a": "45.0",
+        "b": "2",
+        "c": "3",
+        "d": "1",
+        "e": "4",
+    }
+
+
+def test_a_nodes_own_words_are_one_line_of_bounded_length() -> None:
+    assert shortened("two\nlines") == "two lines"
+    assert len(shortened("x" * 10_000)) == SHOWN + 1
+
+
+def test_a_file_is_read_in_its_order(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.yaml"
+    path.write_text("scout:\n  ros__parameters: {a: 1}\n/**:\n  ros__parameters:\n    b: 2.0\n")
+    assert list(read_file(path).items()) == [("scout", {"a": 1}), ("/**", {"b": 2.0})]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("a: [", "fleet.yaml is no YAML: .*"),
+        ("", "fleet.yaml names no node"),
+        ("- a", "fleet.yaml names no node"),
+        ("/**:\nros__parameters:\na: 1\n", "nothing is below /\\*\\*: indent ros__parameters"),
+        ("ros__parameters:\n  a: 1\n", "ros__parameters stands at the left margin"),
+        ("/**:\n  ros_parameters:\n    a: 1\n", "ros_parameters stands directly below /\\*\\*"),
+        ("/**:\n  a: 1\n", "a stands directly below /\\*\\*: ROS reads what is below ros__parameters"),
+        ("/**:\n  ros__parameters:\n", "/\\*\\* has no values"),
+        ("raise NotImplementedError('x')\n", "fleet.yaml is still to be written"),
+        ("# " + "x" * MAX_FILE, "far larger than a parameter file"),
+    ],
+)
+def test_a_file_that_ros_would_not_read_is_told_why(tmp_path: Path, text: str, sentence: str) -> None:
+    path = tmp_path / "fleet.yaml"
+    path.write_text(text)
+    with pytest.raises(CheckFailed, match=sentence):
+        read_file(path)
+
+
+def test_a_file_that_is_not_installed_is_named(tmp_path: Path) -> None:
+    with pytest.raises(CheckFailed, match=r"config/fleet.yaml is not installed"):
+        read_file(tmp_path / "config" / "fleet.yaml")
