@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-import fnmatch
+import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -16,6 +16,8 @@ from autograder.probes import imports, manifest
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
 from autograder.visible.ch01_package_structure import contract
+
+TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
 def folder(workspace: Workspace, name: str) -> Path:
@@ -128,9 +130,9 @@ def licence(installed: Installed) -> str:
 
 def expect_pytest(installed: Installed) -> None:
     """Fail the check unless setup.py names pytest in a way that colcon test sees."""
-    extras = [line for lines in installed.extras.values() for line in lines]
+    named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
     expect(
-        any(fnmatch.fnmatch(line, "pytest*") for line in extras),
+        "pytest" in named,
         "The installed package names no pytest for its tests, so colcon test would run none of them: tests_require is "
         "no longer known, extras_require={'test': ['pytest']} is.",
     )
