@@ -29,7 +29,7 @@ class Aspect(str, Enum):
 
     FIELDS = "fields"  # a field's name, place or order
     TYPES = "types"
-    BOUNDS = "bounds"  # an array's or a string's size
+    BOUNDS = "bounds"  # how many elements or characters there may be
     DEFAULTS = "defaults"
     CONSTANTS = "constants"
 
@@ -44,8 +44,10 @@ class Field:
 
     @property
     def element(self) -> str:
-        """The type without array and without bounds."""
-        return self.type.partition("[")[0].partition("<")[0]
+        """The type without bounds: `float64[<=8]` is a `float64[]`; `float64[8]`, of one size, is itself."""
+        element, _, array = self.type.partition("[")
+        plain = element.partition("<")[0]
+        return plain if not array else f"{plain}[]" if array.startswith(("<", "]")) else f"{plain}[{array}"
 
 
 @dataclass(frozen=True)
