@@ -121,7 +121,7 @@ def test_the_processor_answers_a_scan_with_its_clearance(world, peer):
     def show(name, left):
         scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=math.radians(1.0))
         scan.header.frame_id = name
-        scan.ranges = [2.0] * 30 + [left] * 62 + [2.0] * 268
+        scan.ranges = [2.0] * 60 + [left] * 61 + [2.0] * 239
         # Best effort: a scan may be lost, the next one comes.
         timer = peer.create_timer(0.05, lambda: lidar.publish(scan))
         world.until(lambda: found and found[-1].header.frame_id == name)

@@ -1,0 +1,77 @@
+"""What the three nodes must have in the ROS graph, and what is there instead."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from rclpy.node import Node
+
+from autograder.lab.meeting import NAME
+from autograder.visible.ch08_capstone.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
+
+_SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
+_TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """One end of a topic or service: whose it is, what kind, its name and type."""
+
+    node: str
+    kind: str
+    name: str
+    type: str
+
+
+ENDPOINTS = (
+    Endpoint(PROCESSOR, "subscription", "/scan", _SCAN),
+    Endpoint(PROCESSOR, "publisher", "/clearance", _CLEARANCE),
+    Endpoint(CONTROLLER, "subscription", "/clearance", _CLEARANCE),
+    Endpoint(CONTROLLER, "publisher", "/cmd_vel", _TWIST),
+    Endpoint(CONTROLLER, "service", "/enable", "std_srvs/srv/SetBool"),
+    Endpoint(MONITOR, "subscription", "/scan", _SCAN),
+    Endpoint(MONITOR, "subscription", "/clearance", _CLEARANCE),
+    Endpoint(MONITOR, "subscription", "/cmd_vel", _TWIST),
+    Endpoint(MONITOR, "publisher", "/health", _HEALTH),
+)
+
+
+def say_missing(seen_from: Mapping[str, Node]) -> list[str]:
+    """Say for each node and endpoint that is not there what is there instead; nothing when all are.
+
+    Args:
+        seen_from: by program, the grader's node that sees it in the graph.
+    """
+    missing = []
+    for program, node in seen_from.items():
+        there = [(name, space) for name, space in node.get_node_names_and_namespaces() if name != NAME]
+        if (program, "/") in there:
+            wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == program]
+            missing += [said for endpoint in wanted if (said := _say(node, endpoint))]
+        else:
+            others = ", ".join(f"{space.rstrip('/')}/{name}" for name, space in there) or "no node"
+            missing.append(f"The executable {program} starts {others}, instead of /{program}.")
+    return missing
+
+
+def _say(node: Node, wanted: Endpoint) -> str:
+    found = dict(_find(node, wanted.kind)(wanted.node, "/"))
+    types = found.get(wanted.name)
+    if types is None:
+        near = difflib.get_close_matches(wanted.name, found, 1, 0.5)
+        instead = f"; it has {near[0]}" if near else ""
+        return f"{wanted.node} has no {wanted.kind} {wanted.name}{instead}."
+    if list(types) != [wanted.type]:
+        return f"{wanted.node}: {wanted.name} has the type {', '.join(types)}, instead of {wanted.type}."
+    return ""
+
+
+def _find(node: Node, kind: str) -> Callable[[str, str], list[tuple[str, list[str]]]]:
+    finders: dict[str, Callable[[str, str], list[tuple[str, list[str]]]]] = {
+        "publisher": node.get_publisher_names_and_types_by_node,
+        "subscription": node.get_subscriber_names_and_types_by_node,
+        "service": node.get_service_names_and_types_by_node,
+    }
+    return finders[kind]

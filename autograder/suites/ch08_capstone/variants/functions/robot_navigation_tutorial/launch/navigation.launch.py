@@ -1,0 +1,31 @@
+"""The three nodes, put together by substitutions."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def start(context):
+    """Return the nodes, once the arguments are known."""
+    file = LaunchConfiguration("params_file").perform(context)
+    sim = LaunchConfiguration("use_sim_time").perform(context).lower() == "true"
+    common = {"package": "robot_navigation_tutorial", "output": "screen"}
+    parameters = [file, {"use_sim_time": sim}]
+    return [
+        Node(executable=name, name=name, parameters=parameters, **common)
+        for name in ("status_monitor", "navigation_controller", "sensor_processor")
+    ]
+
+
+def generate_launch_description():
+    """Declare two arguments, then start."""
+    default = [FindPackageShare("robot_navigation_tutorial"), "/config/navigation.yaml"]
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("use_sim_time", default_value="false", description="use /clock"),
+            DeclareLaunchArgument("params_file", default_value=default, description="a YAML file"),
+            OpaqueFunction(function=start),
+        ]
+    )

@@ -1,0 +1,88 @@
+"""Clearances in, velocities out: a node as a part of a controller, and two threads."""
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from robot_navigation_interfaces.msg import Clearance
+from robot_navigation_tutorial.steering import Turn, decide
+from std_srvs.srv import SetBool
+
+PARAMETERS = {
+    "forward_speed": (0.3, 0.05, 0.5, "metres a second"),
+    "turn_speed": (0.8, 0.1, 1.5, "radians a second"),
+    "safety_distance": (0.6, 0.3, 2.0, "metres"),
+    "data_timeout": (0.5, 0.2, 2.0, "seconds"),
+}
+
+
+class Controller:
+    """Holds a node, the newest clearance and the turn."""
+
+    def __init__(self, node):
+        self.node = node
+        self.turn = Turn.NONE
+        self.seen = None
+        self.held = False
+        for name, (default, lowest, highest, unit) in PARAMETERS.items():
+            limits = FloatingPointRange(from_value=lowest, to_value=highest)
+            node.declare_parameter(name, default, ParameterDescriptor(description=unit, floating_point_range=[limits]))
+        self.motor = node.create_publisher(Twist, "cmd_vel", 10)
+        node.create_subscription(Clearance, "clearance", self.see, 10, callback_group=ReentrantCallbackGroup())
+        node.create_service(SetBool, "enable", self.hold)
+        node.create_timer(0.1, self.tick, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def parameter(self, name):
+        """Return a parameter's value of now."""
+        return self.node.get_parameter(name).value
+
+    def see(self, clearance):
+        """Remember what was seen, with the time of the scan in seconds."""
+        stamp = clearance.header.stamp
+        self.seen = (stamp.sec + stamp.nanosec * 1e-9, clearance)
+
+    def hold(self, request, response):
+        """Hold the robot, or let it go."""
+        self.held = not request.data
+        response.success, response.message = True, "held" if self.held else "free"
+        return response
+
+    def tick(self):
+        """Say what to do."""
+        self.motor.publish(self.command())
+
+    def command(self):
+        """Return the velocity of this moment."""
+        stop = Twist()
+        if self.held or self.seen is None:
+            return stop
+        then, clearance = self.seen
+        now = self.node.get_clock().now().nanoseconds * 1e-9
+        if not clearance.valid or now - then > self.parameter("data_timeout"):
+            return stop
+        limit = self.parameter("safety_distance")
+        self.turn = decide(clearance.front, clearance.left, clearance.right, limit, self.turn)
+        go = Twist()
+        if self.turn is Turn.NONE:
+            # Slower in front of an obstacle: a robot may be more careful than it has to be.
+            near = clearance.front < limit + 0.2
+            go.linear.x = self.parameter("forward_speed") * (0.5 if near else 1.0)
+        else:
+            go.angular.z = float(self.turn) * self.parameter("turn_speed")
+        return go
+
+
+def main():
+    """Run until told to stop."""
+    rclpy.init()
+    try:
+        node = rclpy.create_node("navigation_controller")
+        controller = Controller(node)
+        executor = MultiThreadedExecutor(num_threads=2)
+        executor.add_node(controller.node)
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()

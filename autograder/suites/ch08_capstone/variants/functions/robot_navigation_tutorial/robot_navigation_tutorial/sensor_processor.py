@@ -1,0 +1,53 @@
+"""Scans in, clearances out, without a class."""
+
+import math
+
+import rclpy
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from robot_navigation_interfaces.msg import Clearance
+from robot_navigation_tutorial.sectors import FRONT, LEFT, RIGHT, nearest
+from sensor_msgs.msg import LaserScan
+
+
+def process(half, scan):
+    """Turn a scan into a clearance."""
+    answer = Clearance(header=scan.header)
+    answer.front = nearest(scan, FRONT, half)
+    answer.left = nearest(scan, LEFT, half)
+    answer.right = nearest(scan, RIGHT, half)
+    answer.valid = not (math.isnan(answer.front) or math.isnan(answer.left) or math.isnan(answer.right))
+    return answer
+
+
+def make(**kwargs):
+    """Return the node with its wires connected."""
+    node = rclpy.create_node("sensor_processor", **kwargs)
+    half = ParameterDescriptor(description="half of a sector in rad")
+    half.floating_point_range = [FloatingPointRange(from_value=0.1, to_value=0.78)]
+    node.declare_parameter("half_angle", 0.52, half)
+    out = node.create_publisher(Clearance, "clearance", 10)
+
+    def on_scan(scan):
+        out.publish(process(node.get_parameter("half_angle").value, scan))
+
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    node.create_subscription(LaserScan, "scan", on_scan, best_effort)
+    return node
+
+
+def main():
+    """Run until told to stop."""
+    rclpy.init()
+    node = make()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()

@@ -1,0 +1,61 @@
+"""Fixtures of the suite: the system in the lab, and numbers drawn from the seed."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from autograder.lab import Workspace
+from autograder.visible.ch08_capstone.messages import load_messages, types
+from autograder.visible.ch08_capstone.system import System
+
+
+class Stable:
+    """Keeps one system for several checks, and starts it anew once one of its programs has ended."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self._stack = ExitStack()
+        self._system: System | None = None
+
+    def system(self) -> System:
+        """Return a system that runs."""
+        if self._system is None or not self._system.alive:
+            self.close()
+            system = System(self._workspace, types(load_messages(self._workspace)))
+            self._system = self._stack.enter_context(system)
+        return self._system
+
+    def close(self) -> None:
+        """Let the present system go."""
+        self._system = None
+        self._stack.close()
+
+
+@pytest.fixture(scope="session")
+def stable(workspace: Workspace) -> Iterator[Stable]:
+    """The place where the shared system runs."""
+    place = Stable(workspace)
+    yield place
+    place.close()
+
+
+@pytest.fixture(scope="session")
+def running(stable: Stable) -> Callable[[], System]:
+    """Return a running system each time it is called, the same one as long as its programs live."""
+    return stable.system
+
+
+@pytest.fixture
+def system(stable: Stable) -> System:
+    """The system, which has seen other scans before; each check shows it an open space first, if that matters."""
+    return stable.system()
+
+
+@pytest.fixture
+def draw(request: pytest.FixtureRequest, seed: int) -> random.Random:
+    """Random numbers of this check, the same for the same seed."""
+    return random.Random(f"{seed}:{request.function.__name__}")
