@@ -27,7 +27,6 @@ import pytest
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from robot_navigation_interfaces.msg import Health
-from robot_navigation_tutorial.status_monitor import HEALTH_QOS
 from sensor_msgs.msg import LaserScan
 
 
@@ -49,7 +48,7 @@ def test_the_robot_drives_while_it_sees_and_stops_when_the_lidar_dies(world):
     peer = world.add(Node('peer', context=world.context))
     commands, reports = [], []
     peer.create_subscription(Twist, 'cmd_vel', commands.append, 10)
-    peer.create_subscription(Health, 'health', reports.append, HEALTH_QOS)
+    peer.create_subscription(Health, 'health', reports.append, 10)
     lidar = peer.create_publisher(LaserScan, 'scan', qos_profile_sensor_data)
     scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=0.01, ranges=[2.0] * 628)
 
