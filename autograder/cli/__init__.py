@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
+from pathlib import Path
 
 import click
 
 from autograder import __version__
-from autograder.cli.check import check
-from autograder.cli.demo import demo
-from autograder.cli.doctor import doctor
-from autograder.cli.export import export
-from autograder.cli.grade import grade
-from autograder.cli.notebooks import notebooks
-from autograder.cli.verify import verify
 from autograder.exceptions import AutograderError, UsageError
 
+VERBS = ("check", "demo", "doctor", "export", "grade", "notebooks", "release", "verify")
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+
+class Verbs(click.Group):
+    """The verbs whose modules are there, each imported when it is called: the students' bundle has fewer."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the verbs."""
+        return [verb for verb in VERBS if Path(__file__).with_name(f"{verb}.py").is_file()]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a verb."""
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        command: click.Command = getattr(importlib.import_module(f"autograder.cli.{cmd_name}"), cmd_name)
+        return command
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__)
 def group() -> None:
     """Checks and grades packages for ROS 2 Jazzy that students write in Python."""
-
-
-for verb in (check, demo, doctor, export, grade, notebooks, verify):
-    group.add_command(verb)
 
 
 def main(arguments: list[str] | None = None) -> None:

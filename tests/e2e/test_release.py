@@ -1,0 +1,82 @@
+"""The students' bundle works by itself, and holds no hidden check and no solution."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from autograder import layout
+from autograder.cli import group
+from autograder.course import Form, chapters, in_form
+
+
+@pytest.fixture(scope="module")
+def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("release") / "course"
+    assert run("--out", str(out)).exit_code == 0
+    return out
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(group, ["release", *arguments])
+
+
+def text_of(folder: Path) -> str:
+    return "\n".join(path.read_text(errors="replace") for path in folder.rglob("*") if path.is_file())
+
+
+def test_every_chapter_is_in_it_as_nbgrader_releases_it(bundle: Path) -> None:
+    for chapter in chapters():
+        released = in_form(chapter.read(), Form.RELEASED)
+        text = (bundle / "chapters" / chapter.assignment / chapter.path.name).read_text()
+        assert all(cell.id in text for cell in released.cells)
+        assert "BEGIN SOLUTION" not in text
+        assert "BEGIN MARK SCHEME" not in text
+
+
+def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
+    shown = text_of(bundle)
+    hidden = {
+        line.strip()
+        for path in layout.SUITES.glob("ch*/**/*")
+        if path.suffix in (".py", ".yaml") and path.name != "conftest.py"
+        for line in path.read_text().splitlines()
+        if line.startswith(("def test_", "    expect(", "  - id: ")) and len(line.strip()) > 30
+    }
+    public = text_of(layout.ROOT / "autograder" / "visible")
+    assert len(hidden) > 300
+    assert [line for line in sorted(hidden) if line in shown and line not in public] == []
+    assert not (bundle / "solutions").exists()
+
+
+def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
+    """A copy of Python's environment is not needed for it: the code of the bundle comes first on the path."""
+    check = [sys.executable, "-m", "autograder", "check", "00_welcome"]
+    environment = {**os.environ, "PYTHONPATH": str(bundle)}
+    done = subprocess.run(
+        check, cwd=bundle / "chapters" / "00_welcome", env=environment, text=True, capture_output=True
+    )
+    assert done.returncode == 1, done.stderr
+    assert "square" in done.stdout or "hint 1" in done.stdout
+    listed = subprocess.run(
+        [sys.executable, "-m", "autograder", "--help"], cwd=bundle, env=environment, text=True, capture_output=True
+    )
+    assert "check" in listed.stdout
+    assert "verify" not in listed.stdout
+
+
+def test_a_folder_that_exists_is_not_written_to(tmp_path: Path) -> None:
+    result = run("--out", str(tmp_path))
+    assert "exists: give a folder that is still to be made" in str(result.exception)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_chapter_is_named_and_nothing_is_written(tmp_path: Path) -> None:
+    result = run("--out", str(tmp_path / "new"), "99_flying")
+    assert "there is no chapter 99_flying; there are: 00_welcome" in str(result.exception)
+    assert not (tmp_path / "new").exists()
