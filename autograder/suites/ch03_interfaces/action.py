@@ -26,7 +26,7 @@ NAMES = {
 }
 EXECUTOR = (
     "While execute runs in its loop, other callbacks need another thread: spin with a MultiThreadedExecutor.",
-    "callback_group=ReentrantCallbackGroup() for the ActionServer; the odometry may stay in the node's own group.",
+    "rclpy.spin(node, executor=MultiThreadedExecutor()) in main, which is given.",
 )
 
 

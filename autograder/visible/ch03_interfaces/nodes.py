@@ -59,7 +59,7 @@ def test_trip(adviser: Adviser) -> None:
     depends=BUILT,
     hints=(
         "goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.",
-        "Without a MultiThreadedExecutor and a ReentrantCallbackGroup, execute never hears of the odometry.",
+        "Without a MultiThreadedExecutor, execute never hears of the odometry.",
     ),
     doc=contract.ACTION,
 )

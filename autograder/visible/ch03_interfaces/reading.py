@@ -8,6 +8,8 @@ from autograder.packages import find_packages
 from autograder.probes.interfaces import MAX_BYTES, Aspect, Interface, Unreadable, closest, compare, parse, share
 from autograder.visible.ch03_interfaces.contract import INTERFACES
 
+STUB = "YOUR CODE HERE"  # what a released cell holds where the answer belongs
+
 
 def expect_like(workspace: Workspace, wanted: Interface, *aspects: Aspect) -> None:
     """Fail the check unless a definition has what the contract says, in these aspects; points for what is right."""
@@ -28,7 +30,9 @@ def read(workspace: Workspace, wanted: Interface) -> Interface:
         near = closest(wanted.path, present)
         raise CheckFailed(f"There is no {INTERFACES}/{wanted.path}" + (f", but a {near}." if near else "."))
     try:
-        return parse(INTERFACES, wanted.path, path.read_bytes()[: MAX_BYTES + 1].decode())
+        text = path.read_bytes()[: MAX_BYTES + 1].decode()
+        expect(STUB not in text, f"{wanted.path} is still to be written.")
+        return parse(INTERFACES, wanted.path, text)
     except UnicodeDecodeError:
         raise CheckFailed(f"{wanted.path} is not UTF-8 text.") from None
     except Unreadable as error:

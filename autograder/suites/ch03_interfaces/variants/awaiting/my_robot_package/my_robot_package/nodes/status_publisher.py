@@ -1,0 +1,72 @@
+"""The status publisher as functions around a plain node."""
+
+from functools import partial
+import math
+
+from my_robot_interfaces.msg import RobotStatus
+from my_robot_interfaces.srv import CheckTrip
+import rclpy
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import BatteryState, JointState
+
+
+def percent(battery):
+    """Return whole percent, -1 for unknown."""
+    charge = battery.percentage if battery is not None else math.nan
+    if math.isnan(charge) or charge < 0 or charge > 1:
+        return -1
+    return int(charge * 100 + 0.5)
+
+
+def report(node, heard, name, publisher):
+    """Publish the status."""
+    battery = heard.get(BatteryState)
+    joints = heard.get(JointState)
+    charging = battery and battery.power_supply_status == battery.POWER_SUPPLY_STATUS_CHARGING
+    status = RobotStatus(robot_name=name, battery_level=percent(battery), is_charging=bool(charging))
+    status.header.frame_id = "base_link"
+    status.header.stamp = node.get_clock().now().to_msg()
+    status.joint_positions.extend(joints.position if joints else [])
+    publisher.publish(status)
+
+
+def answer(heard, request, response):
+    """Judge a trip."""
+    level = percent(heard.get(BatteryState))
+    if level < 0:
+        response.reason = "no battery has been heard of"
+        return response
+    if any(math.isnan(leg) or math.isinf(leg) or leg < 0 for leg in request.legs):
+        response.reason = "no such leg"
+        return response
+    left = max(0, math.floor(level - sum(request.legs) / request.METRES_PER_PERCENT))
+    enough = left >= request.reserve
+    return CheckTrip.Response(possible=enough, battery_at_end=left, reason="" if enough else "too far")
+
+
+def main():
+    """Spin in two threads; callbacks take turns all the same."""
+    rclpy.init()
+    node = rclpy.create_node("status_publisher")
+    name = node.declare_parameter("robot_name", "MyRobot01").value
+    period = node.declare_parameter("status_period", 1.0).value
+    heard = {}
+    for kind, topic in ((BatteryState, "battery_state"), (JointState, "joint_states")):
+        node.create_subscription(kind, topic, partial(heard.__setitem__, kind), 10)
+    publisher = node.create_publisher(
+        RobotStatus,
+        "robot_status",
+        QoSProfile(depth=5, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
+    )
+    node.create_service(CheckTrip, "check_trip", partial(answer, heard))
+    node.create_timer(period, partial(report, node, heard, name, publisher))
+    executor = MultiThreadedExecutor(num_threads=2)
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
