@@ -41,6 +41,9 @@ c.Exchange.root = exchange
 
 c.ClearSolutions.code_stub = {"python": CODE_STUB}
 
+# A mark scheme stands in the locked cell of its question, from which autograding brings it back for formgrader.
+c.ClearMarkScheme.enforce_metadata = False
+
 c.Autograde.exporter_class = "autograder.nbgrader.SubmissionExporter"
 c.Autograde.sanitize_preprocessors = [
     "autograder.nbgrader.RestoreCells",

@@ -116,6 +116,11 @@ def is_graded(cell: NotebookNode) -> bool:
     return bool(cell.metadata.get("nbgrader", {}).get("grade"))
 
 
+def is_manual(cell: NotebookNode) -> bool:
+    """Say whether students write in this cell and a person gives the points, in nbgrader's formgrader."""
+    return is_graded(cell) and is_solution(cell)
+
+
 def is_solution(cell: NotebookNode) -> bool:
     """Say whether students write in this cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("solution"))

@@ -8,7 +8,7 @@ from enum import Enum
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.holes import without_marks
+from autograder.course.holes import without_marks, without_scheme
 
 # What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
 # the node that runs into it ends, and what it ended with is this sentence.
@@ -31,7 +31,7 @@ def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     made: NotebookNode = copy.deepcopy(notebook)
     if form is Form.SOLVED:
         for cell in made.cells:
-            cell.source = without_marks(cell.source)
+            cell.source = without_scheme(without_marks(cell.source))
     elif form is Form.RELEASED:
         made = _released(made)
     nbformat.validate(made)
@@ -43,7 +43,13 @@ def _released(notebook: NotebookNode) -> NotebookNode:
     from nbgrader import preprocessors
     from traitlets.config import Config
 
-    config = Config({"ClearSolutions": {"code_stub": {"python": CODE_STUB}}})
+    config = Config(
+        {
+            "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
+            # A scheme stands in the locked cell of the question, where autograding brings it back.
+            "ClearMarkScheme": {"enforce_metadata": False},
+        }
+    )
     steps = (
         preprocessors.LockCells,
         preprocessors.ClearSolutions,

@@ -14,6 +14,8 @@ from autograder.course.exceptions import CourseError
 
 BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
+BEGIN_SCHEME = "### BEGIN MARK SCHEME"
+END_SCHEME = "### END MARK SCHEME"
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -84,6 +86,16 @@ def with_cuts(text: str, cuts: Sequence[tuple[str, str]]) -> str:
 def without_marks(text: str) -> str:
     """Return the text without the lines that mark solutions: what a student who solved it would have."""
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
+
+
+def without_scheme(text: str) -> str:
+    """Return the text without mark schemes, which are for those who mark."""
+    kept, inside = [], False
+    for line in text.split("\n"):
+        inside = inside or line.strip() == BEGIN_SCHEME
+        kept += [] if inside else [line]
+        inside = inside and line.strip() != END_SCHEME
+    return "\n".join(kept)
 
 
 def without_licence(text: str) -> str:

@@ -9,12 +9,13 @@ from collections.abc import Iterator
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.cells import group, is_graded
+from autograder.course.cells import group, is_graded, is_manual
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
+from autograder.course.holes import BEGIN_SCHEME as MARK_SCHEME
 
 _FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
-_HEADING = re.compile(r"^(#{1,6}) +\S", re.MULTILINE)
+_HEADING = re.compile(r"^(#{1,6}) +(?!BEGIN |END )\S", re.MULTILINE)  # marks of nbgrader's look like headings
 _IMAGE = re.compile(r"!\[(?P<alt>[^\]]*)\]\((?P<target>[^)]*)\)")
 _IMG = re.compile(r"<img\b[^>]*>", re.IGNORECASE)
 _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
@@ -118,7 +119,23 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         except CourseError as error:
             yield cell.id, str(error)
             continue
-        if is_graded(cell) and not found.get("solution") and (not found.get("locked") or named is None):
+        if is_graded(cell) and not is_manual(cell) and (not found.get("locked") or named is None):
             yield cell.id, 'a grade cell is locked and names its group of checks: {"course": {"group": ...}}'
+        if is_manual(cell):
+            yield from ((cell.id, message) for message in _manual(cell, named))
+        if MARK_SCHEME in cell.source and not found.get("locked"):
+            yield cell.id, "holds a mark scheme but is not locked: autograding could not bring it back"
         if "BEGIN SOLUTION" in cell.source and not found.get("solution"):
             yield cell.id, "holds a solution but is not marked as a solution cell"
+
+
+def _manual(cell: NotebookNode, named: str | None) -> Iterator[str]:
+    marks = cell.metadata.nbgrader
+    if marks.get("locked"):
+        yield "students answer in this cell: it must not be locked"
+    if not marks.get("points"):
+        yield "a manually graded cell needs points above 0"
+    if named is not None:
+        yield f"a person gives its points: it cannot stand for the group {named!r} of checks, too"
+    if "BEGIN SOLUTION" not in cell.source:
+        yield "a manually graded cell holds a model answer, between the solution marks"

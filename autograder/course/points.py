@@ -1,4 +1,7 @@
-"""Holds the points of a notebook's grade cells and those of its hidden suite together."""
+"""Holds the points of a notebook's grade cells and those of its hidden suite together.
+
+Cells to which a person gives the points are no business of the suite's.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from collections.abc import Sequence
 from nbformat import NotebookNode
 
 from autograder.checks import Check
-from autograder.course.cells import group, is_graded
+from autograder.course.cells import group, is_graded, is_manual
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 
@@ -54,7 +57,7 @@ def _wrong(name: str, notebook: NotebookNode, points: dict[str, float]) -> list[
     wrong: list[tuple[Finding, NotebookNode | None]] = []
     seen: set[str] = set()
     for cell in notebook.cells:
-        if not is_graded(cell):
+        if not is_graded(cell) or is_manual(cell):
             continue
         named, cell_id = group(cell), cell.get("id", "without id")
         if named is None or named not in points:

@@ -30,7 +30,7 @@ from autograder.course.findings import Finding
 SYLLABUS = layout.ROOT / "assets" / "syllabus.yaml"
 Key = TypeVar("Key", str, int)
 PARTS = ("sections", "examples", "steps", "questions")
-_HEADING = re.compile(r"^#{1,6} +(.+)$", re.MULTILINE)
+_HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)

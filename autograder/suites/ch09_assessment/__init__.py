@@ -1,0 +1,6 @@
+"""The hidden suite of 09_assessment: the key to the questions, and a small system from an empty folder."""
+
+PACKAGES = ("motor_guard_interfaces", "motor_guard")
+FOLDERS = ("assessment",)
+MODULES = ("choices", "packages", "nodes", "launches")
+BUILD_MAY_FAIL = True

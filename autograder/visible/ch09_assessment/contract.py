@@ -1,0 +1,54 @@
+"""The contract of the practical question, in numbers, and the names that the checks use."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from itertools import accumulate
+from statistics import fmean
+
+SHEET = "assessment/answers.yaml"  # below src
+QUESTIONS = tuple(f"q{number}" for number in range(1, 13))
+LETTERS = "abcd"
+
+PACKAGE, INTERFACES = "motor_guard", "motor_guard_interfaces"
+THERMOMETER, SMOOTHER, GUARD = PROGRAMS = ("thermometer", "smoother", "guard")
+LAUNCH_FILE = "motor_guard.launch.py"
+MESSAGES = {
+    "msg/Temperature.msg": "builtin_interfaces/Time stamp\nfloat32 celsius\n",
+    "msg/Decision.msg": "builtin_interfaces/Time stamp\nbool cooling\nfloat32 celsius\n",
+}
+
+PERIOD, MEAN, SWING = 0.5, 50.0, 20.0  # s, degrees Celsius, degrees
+READINGS_A_TURN = 20
+WINDOW = 5
+HOT, COOL = 60.0, 50.0  # degrees Celsius
+TOLERANCE = 1e-3  # degrees: a temperature is a 32-bit float
+
+_DOCS = "https://docs.ros.org/en/jazzy"
+PACKAGES_DOC = f"{_DOCS}/How-To-Guides/Developing-a-ROS-2-Package.html"
+INTERFACES_DOC = f"{_DOCS}/Tutorials/Beginner-Client-Libraries/Custom-ROS2-Interfaces.html"
+NODES_DOC = f"{_DOCS}/Tutorials/Beginner-Client-Libraries/Writing-A-Simple-Py-Publisher-And-Subscriber.html"
+PARAMETERS_DOC = f"{_DOCS}/Tutorials/Beginner-Client-Libraries/Using-Parameters-In-A-Class-Python.html"
+LAUNCH_DOC = f"{_DOCS}/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
+
+
+def reading(number: int, mean: float = MEAN, swing: float = SWING) -> float:
+    """Return what the thermometer measures in its reading of this number, from 0, in degrees Celsius."""
+    return mean + swing * math.sin(math.tau * number / READINGS_A_TURN)
+
+
+def averages(readings: list[float], window: int = WINDOW) -> list[float]:
+    """Return the average after each of the readings, all of them numbers."""
+    return [fmean(readings[max(0, end - window) : end]) for end in range(1, len(readings) + 1)]
+
+
+def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[bool]:
+    """Return for each temperature whether the fan runs; it is off before the first."""
+
+    def decide(cooling: bool, celsius: float) -> bool:
+        if not math.isfinite(celsius) or celsius >= hot:
+            return True
+        return cooling and celsius > cool
+
+    return list(accumulate(temperatures, decide, initial=False))[1:]
