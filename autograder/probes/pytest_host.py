@@ -1,9 +1,10 @@
 """Runs pytest in the sandbox, reports how it ended, and stays until the trusted side has looked at what is left.
 
-    python pytest_host.py ENDED_FD GO_FD REVERSED ARGUMENTS...
+    python pytest_host.py ANSWER_FD GO_FD REVERSED REPORT ARGUMENTS...
 
-When pytest has ended, its exit status goes to ENDED_FD; the process then waits for the end of GO_FD. All of it is in
-the power of the tests that run here: the trusted side takes what it hears for their claim.
+When pytest has ended, its exit status and its report, a file of JUnit XML, go to ANSWER_FD; the process then waits for
+the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears for their
+claim.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -26,12 +28,15 @@ class Reversed:
 
 def main() -> int:
     """Run pytest with the arguments of the command line."""
-    ended, go, backwards = (int(argument) for argument in sys.argv[1:4])
-    arguments, sys.argv = sys.argv[4:], ["pytest"]
+    answer, go, backwards = (int(argument) for argument in sys.argv[1:4])
+    report = Path(sys.argv[4])
+    arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]
     status = int(pytest.main(arguments, plugins=[Reversed()] if backwards else []))
     gc.collect()  # what nothing refers to any more is not left behind
     sys.stdout.flush()
-    os.write(ended, f"{status}\n".encode())
+    text = report.read_bytes() if report.is_file() else b""
+    with os.fdopen(answer, "wb") as stream:
+        stream.write(b"%d %d\n%b" % (status, len(text), text))
     os.read(go, 1)
     return status
 

@@ -1,19 +1,18 @@
-"""Finds the sleeps in a Python file, by reading it: nothing of it is run."""
+"""Finds the sleeps in Python source, by reading it: nothing of it is run."""
 
 from __future__ import annotations
 
 import ast
-from pathlib import Path
 
 MAX_BYTES = 256 * 1024
 
 
-def sleeps(path: Path) -> list[int]:
-    """Return the lines on which a file calls `sleep`; none for a file that is no readable Python."""
-    if path.stat().st_size > MAX_BYTES:
+def sleeps(source: bytes) -> list[int]:
+    """Return the lines on which source calls `sleep`; none where it is no readable Python."""
+    if len(source) > MAX_BYTES:
         return []
     try:
-        tree = ast.parse(path.read_bytes())
+        tree = ast.parse(source)
         calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []

@@ -1,16 +1,19 @@
 """Runs a student's tests against versions of the package under test: what do they say of each?
 
-    reports = run(workspace, "speed_guard", [Order(("test_limits.py",), right), Order(("test_limits.py",), faulty)])
+    source = take(workspace, "speed_guard")
+    reports = run(workspace, source, [Order(("test_limits.py",), right), Order(("test_limits.py",), faulty)])
 
 Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
 "fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
-version it has before it: every run gets a sandbox of its own with a fresh home, no network but its own loopback, the
-same paths, times and environment, and sees its version and nothing of the others, the suites or earlier runs. See
-`versions` for how versions are kept alike. What remains is written there, too.
+version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
+times and environment, and nothing that it can write to but a /tmp that dies with it. It sees its version and nothing of
+the others, the suites or earlier runs. See `versions` for how versions are kept alike. What remains is written there,
+too.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import queue
 import selectors
@@ -24,22 +27,27 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import autograder.ros
-from autograder.exceptions import GraderError
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
+from autograder.grading.intake import take_source
 from autograder.lab.workspace import Workspace
 from autograder.probes import junit
 from autograder.probes.junit import Claims, Verdict
 from autograder.probes.versions import Version, lay_down
-from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox
-from autograder.sandbox.launcher import launch
+from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
+from autograder.sandbox.launcher import current_tier, launch
+from autograder.sandbox.limits import MIB
 
 HOST = Path(__file__).with_name("pytest_host.py")
 INTRUDER = Path(__file__).with_name("intruder.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
-LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=768)
+# Five at a time have to fit into the limits of a cell.
+LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB)
 LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 DISTURBED_DOMAIN = 97  # where a test meets the intruder, unless it has a domain of its own
 READY_SECONDS = 30.0
-REPORT = "report.xml"
+HOME = Path("/tmp")  # the sandbox's own
+HEADER = 32  # bytes of an answer's first line, at most
 
 
 @dataclass(frozen=True)
@@ -100,12 +108,46 @@ class Report:
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
 
 
-def run(workspace: Workspace, package: str, orders: Sequence[Order], lanes: int = LANES) -> list[Report]:
-    """Carry the orders out, some at a time; return a report for each, in their order.
+@dataclass(frozen=True)
+class Source:
+    """A student's package as plain files; its tests are those below `test`.
 
-    The tests are those in `test` of the student's package, whichever version they run against.
+    Attributes:
+        package: its name.
+        files: by path below its folder.
+    """
+
+    package: str
+    files: Mapping[str, bytes]
+
+    @property
+    def tests(self) -> dict[str, bytes]:
+        """The files below `test`, by their paths there."""
+        return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
+
+
+def take(workspace: Workspace, package: str) -> Source:
+    """Read a package's source, which the student's code could write to while it was built: plain files only.
 
     Raises:
+        StudentError: there is something else than plain files, or no folder of the package's name.
+    """
+    entries = take_source(workspace.root)
+    folder = next(
+        (e.path.parent for e in entries if e.path.name == "package.xml" and e.path.parent.name == package), None
+    )
+    if folder is None:
+        sentence = f"There is no folder src/{package} with a package.xml: a package's folder has its name."
+        raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
+    inside = [entry for entry in entries if entry.path.is_relative_to(folder)]
+    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
+
+
+def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: int = LANES) -> list[Report]:
+    """Carry the orders out, some at a time; return a report for each, in their order.
+
+    Raises:
+        StudentError: there is no room left on the disk.
         GraderError: an intruder did not start.
     """
     free: queue.SimpleQueue[int] = queue.SimpleQueue()
@@ -115,7 +157,12 @@ def run(workspace: Workspace, package: str, orders: Sequence[Order], lanes: int 
     def carry_out(order: Order) -> Report:
         lane = free.get()
         try:
-            return _run(workspace, package, order, lane)
+            return _run(workspace, source, order, lane)
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+                raise
+            sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
+            raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
         finally:
             free.put(lane)
 
@@ -131,75 +178,89 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, ne
     return replace(plain, mounts=mounts, environment=environment, network=network)
 
 
-def _run(workspace: Workspace, package: str, order: Order, lane: int) -> Report:
+def _run(workspace: Workspace, source: Source, order: Order, lane: int) -> Report:
     place = workspace.root.with_name(f"{workspace.root.name}-tests") / f"lane{lane}"
     shutil.rmtree(place, ignore_errors=True)
-    (place / "home").mkdir(parents=True)
-    domain = DISTURBED_DOMAIN if order.intruder else (workspace.domain + 1 + lane) % 100
-    there = replace(workspace, scratch=place / "home", domain=domain)
-    tests = source_of(workspace, package) / "test"
-    if order.version is None:
-        folder = tests.parent
-    else:
+    apart = workspace.domain if current_tier() is Tier.BUBBLEWRAP else (workspace.domain + 1 + lane) % 100
+    there = replace(workspace, domain=DISTURBED_DOMAIN if order.intruder else apart)
+    if order.version is not None:
         there = replace(there, root=place / "ws")
-        folder = lay_down(order.version, package, tests, there.root)
-    spec = replace(sandboxed(there, folder, HOST, network=bool(order.intruder)), workdir=folder)
+        folder = lay_down(order.version, source.package, source.tests, there.root)
+    else:
+        folder = place / "ws" / "src" / source.package
+        for name, data in source.files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
     with _disturbed(there, order.intruder) if order.intruder else nullcontext():
-        return _host(spec, place / "home" / REPORT, _arguments(folder, place / "home" / REPORT, order), order.backwards)
+        return _host(_confined(there, folder, order, place / "home"), order)
 
 
-def source_of(workspace: Workspace, package: str) -> Path:
-    """Return the folder of a package's source.
-
-    Raises:
-        GraderError: there is none, though it was built.
-    """
-    for manifest in sorted((workspace.root / "src").rglob("package.xml")):
-        if manifest.parent.name == package:
-            return manifest.parent
-    raise GraderError(f"{package} was built, but has no folder of its name below src")
+def _confined(workspace: Workspace, folder: Path, order: Order, home: Path) -> Sandbox:
+    """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
+    if current_tier() is Tier.BUBBLEWRAP:
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=bool(order.intruder))
+        return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
+    home.mkdir(parents=True)
+    return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
 
 
-def _arguments(folder: Path, report: Path, order: Order) -> list[str]:
+def _arguments(folder: Path, order: Order) -> list[str]:
     files = [str(folder / "test" / name) for name in order.files]
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder), "-p", "launch_pytest.plugin"]
-    quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2", f"--junitxml={report}"]
+    quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
     return [*plain, *quiet, *(["-x"] if order.first_failure else []), *files]
 
 
-def _host(spec: Sandbox, report: Path, arguments: list[str], backwards: bool) -> Report:
-    ended_read, ended_write = os.pipe()
+def _host(spec: Sandbox, order: Order) -> Report:
+    answer_read, answer_write = os.pipe()
     go_read, go_write = os.pipe()
-    command = [sys.executable, str(HOST), str(ended_write), str(go_read), str(int(backwards)), *arguments]
+    report = Path(spec.environment["HOME"]) / "report.xml"
+    command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(order.backwards)), str(report)]
     try:
-        process = launch(command, spec, pass_fds=(ended_write, go_read))
+        process = launch([*command, *_arguments(spec.workdir, order)], spec, pass_fds=(answer_write, go_read))
     finally:
-        os.close(ended_write)
+        os.close(answer_write)
         os.close(go_read)
     with process:
-        status = _status(ended_read, process)
+        status, text = _answer(answer_read, process)
         left = open_sockets(process.innermost()) if status is not None else 0
         os.close(go_write)
         process.wait(spec.limits.wall_seconds)
         ending = process.ending
-    claims = junit.read(report) if status is not None else None
+    claims = None if status is None else junit.parse(text)
     if claims is None:
         return Report(ending, None, Claims(), left, process.output)
     return Report(ending, status, claims, left, process.output)
 
 
-def _status(descriptor: int, process: Process) -> int | None:
-    """Return pytest's exit status as the run says it, or None when the process ends without a word."""
+def _answer(descriptor: int, process: Process) -> tuple[int | None, bytes]:
+    """Return pytest's exit status and its report, as the run says them; no status when it ends without a whole word."""
+    data = bytearray()
     try:
         with selectors.DefaultSelector() as selector:
             selector.register(descriptor, selectors.EVENT_READ)
-            while not selector.select(0.1):
-                if process.ending is not None:
-                    return None
-        word = os.read(descriptor, 16).strip()
-        return int(word) if word.isdigit() else None
+            while len(data) <= HEADER + junit.MAX_BYTES:
+                if selector.select(0.1):
+                    chunk = os.read(descriptor, 65536)
+                    if not chunk:
+                        break
+                    data += chunk
+                elif process.ending is not None:
+                    break
+                if (whole := _whole(bytes(data))) is not None:
+                    return whole
+        return None, b""
     finally:
         os.close(descriptor)
+
+
+def _whole(data: bytes) -> tuple[int, bytes] | None:
+    """Return status and report once an answer is there as a whole; its first line says how long it is."""
+    header, newline, text = data.partition(b"\n")
+    words = header.split()
+    if not newline or len(words) != 2 or not all(word.isdigit() for word in words) or len(header) > HEADER:
+        return None
+    return (int(words[0]), text) if len(text) == int(words[1]) else None
 
 
 def open_sockets(pid: int) -> int:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import ast
 import os
 import random
-import shutil
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -62,13 +61,13 @@ def disguise(version: Version, seed: int) -> Version:
     )
 
 
-def lay_down(version: Version, package: str, tests: Path, root: Path) -> Path:
+def lay_down(version: Version, package: str, tests: Mapping[str, bytes], root: Path) -> Path:
     """Write a version as a colcon workspace below `root`, as if it had been built; return its source folder.
 
     Args:
         version: the package under test.
         package: its name.
-        tests: the folder of tests that the source gets.
+        tests: the files of the folder `test` that the source gets.
         root: the workspace; it gets `src/PACKAGE` and `install/PACKAGE`.
     """
     source, prefix = root / "src" / package, root / "install" / package
@@ -85,8 +84,10 @@ def lay_down(version: Version, package: str, tests: Path, root: Path) -> Path:
         script.parent.mkdir(parents=True, exist_ok=True)
         script.write_text(_SCRIPT.format(python=sys.executable, module=module))
         script.chmod(0o755)
-    if tests.is_dir():
-        shutil.copytree(tests, source / "test", ignore=shutil.ignore_patterns("__pycache__"))
+    for name, data in tests.items():
+        path = source / "test" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
     for path in sorted(root.rglob("*"), reverse=True):
         os.utime(path, (WHEN, WHEN))
     return source

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from autograder.checks import check, expect
-from autograder.lab import Workspace
 from autograder.probes.junit import Verdict
 from autograder.suites.ch06_testing.examination import Examination
 from autograder.visible.ch06_testing import contract
@@ -22,9 +21,9 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
     hints=contract.NO_SLEEP,
     doc=contract.PYTEST,
 )
-def test_no_sleep(workspace: Workspace) -> None:
+def test_no_sleep(examination: Examination) -> None:
     """No test waits with time.sleep."""
-    expect_awake(workspace)
+    expect_awake(examination.source)
 
 
 @check(

@@ -16,7 +16,7 @@ from autograder.checks import CheckFailed, expect
 from autograder.lab import Workspace
 from autograder.probes import testing
 from autograder.probes.colcon import colcon_test
-from autograder.probes.testing import Order, Report
+from autograder.probes.testing import Order, Report, Source
 from autograder.sandbox import Ending
 from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults, right
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE
@@ -51,10 +51,14 @@ class Examination:
         self._draw = random.Random(f"{seed}:versions")
 
     @cached_property
+    def source(self) -> Source:
+        """The student's package, read once: later, `colcon test` lets its code write there."""
+        return testing.take(self._workspace, PACKAGE)
+
+    @cached_property
     def trial(self) -> dict[str, Report]:
         """What the tests of each file say of a right version."""
-        tests = testing.source_of(self._workspace, PACKAGE) / "test"
-        there = [name for name in LEAST if (tests / name).is_file()]
+        there = [name for name in LEAST if name in self.source.tests]
         return dict(zip(there, self._run([self._right(name, STYLES[0]) for name in there]), strict=True))
 
     @cached_property
@@ -128,7 +132,7 @@ class Examination:
         return Order((name,), right(style, self._draw), **more)
 
     def _run(self, orders: Sequence[Order]) -> list[Report]:
-        return testing.run(self._workspace, PACKAGE, orders)
+        return testing.run(self._workspace, self.source, orders)
 
 
 # What a test says of these versions stays here: only the first version's text is public.

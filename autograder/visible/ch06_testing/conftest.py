@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder.lab import Workspace
-from autograder.probes.testing import Order, Report, run, source_of
-from autograder.probes.versions import Version, read
+from autograder.probes.testing import Order, Report, Source, run, take
+from autograder.probes.versions import Version
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
 
 # Two mutants that anybody would think of. The hidden ones are less obvious.
@@ -25,14 +25,20 @@ RIGHT, MUTANT = "right", "mutant"
 
 
 @pytest.fixture(scope="session")
-def reports(workspace: Workspace) -> dict[tuple[str, str], Report]:
+def source(workspace: Workspace) -> Source:
+    """The student's package."""
+    return take(workspace, PACKAGE)
+
+
+@pytest.fixture(scope="session")
+def reports(workspace: Workspace, source: Source) -> dict[tuple[str, str], Report]:
     """What the tests of each file say of the package as it is, and of a mutant."""
-    source = source_of(workspace, PACKAGE)
-    version = read(source, SCRIPTS)
+    files = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
+    version = Version(files, SCRIPTS)
     orders: dict[tuple[str, str], Order] = {}
     for name in LEAST:
-        if (source / "test" / name).is_file():
+        if name in source.tests:
             orders[name, RIGHT] = Order((name,), version)
             mutant = Version({**version.files, **MUTANTS[name]}, SCRIPTS)
             orders[name, MUTANT] = Order((name,), mutant, first_failure=True)
-    return dict(zip(orders, run(workspace, PACKAGE, list(orders.values())), strict=True))
+    return dict(zip(orders, run(workspace, source, list(orders.values())), strict=True))

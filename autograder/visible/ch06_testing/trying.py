@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import Visibility, check, expect
-from autograder.lab import Workspace
-from autograder.probes.testing import Report
+from autograder.probes.testing import Report, Source
 from autograder.visible.ch06_testing import contract
 from autograder.visible.ch06_testing.conftest import MUTANT, RIGHT
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LIMITS
@@ -72,9 +71,9 @@ def test_guard_notice(reports: Reports) -> None:
     hints=contract.NO_SLEEP,
     doc=contract.PYTEST,
 )
-def test_no_sleep(workspace: Workspace) -> None:
+def test_no_sleep(source: Source) -> None:
     """No test waits with time.sleep."""
-    expect_awake(workspace)
+    expect_awake(source)
 
 
 @check(

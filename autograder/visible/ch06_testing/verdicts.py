@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import CheckFailed, expect
-from autograder.lab import Workspace
 from autograder.probes.sleeping import sleeps
-from autograder.probes.testing import Report, source_of
+from autograder.probes.testing import Report, Source
 from autograder.sandbox import Ending
 from autograder.visible.ch06_testing.contract import LEAST, PACKAGE
 
@@ -31,10 +30,10 @@ def expect_passed(name: str, report: Report | None) -> None:
     )
 
 
-def expect_awake(workspace: Workspace) -> None:
+def expect_awake(source: Source) -> None:
     """Fail the check if a test file sleeps."""
-    tests = source_of(workspace, PACKAGE) / "test"
-    found = [f"{path.name}, line {line}" for path in sorted(tests.rglob("*.py")) for line in sleeps(path)]
+    python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
+    found = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
     expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
 
 

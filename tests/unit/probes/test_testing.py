@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from autograder.exceptions import GraderError
+from autograder.exceptions import GraderError, StudentError
 from autograder.lab import Workspace
 from autograder.probes import testing
-from autograder.probes.testing import Order, Report, run, source_of
+from autograder.probes.testing import Order, Report, run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
 from autograder.sandbox import Ending
@@ -42,7 +44,7 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
 
 
 def runs(workspace: Workspace, *orders: Order) -> list[Report]:
-    return run(workspace, "half", orders, lanes=2)
+    return run(workspace, take(workspace, "half"), orders, lanes=2)
 
 
 def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
@@ -103,21 +105,37 @@ def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str
     assert "test_half::test_odd" not in report.executed
 
 
-def test_a_report_that_is_a_link_is_not_followed(workspace: Workspace) -> None:
-    secret = workspace.root.parent / "secret.xml"
-    secret.write_text('<testsuite><testcase classname="a" name="forged"/></testsuite>')
-    trick = f"""
-import atexit, os
-def leave():
-    path = os.path.join(os.environ['HOME'], {testing.REPORT!r})
-    os.path.lexists(path) and os.unlink(path)
-    os.symlink({str(secret)!r}, path)
-atexit.register(leave)
+@pytest.mark.parametrize(
+    "said",
+    ["0 99999999\\n<testsuite/>", "0 -1\\n", "all passed\\n", "0 12\\nno xml at all", "9" * 100],
+    ids=["long", "negative", "words", "no XML", "endless"],
+)
+def test_an_answer_that_is_none_claims_nothing(workspace: Workspace, said: str) -> None:
+    # The answer's descriptor is the first of the two that the host is given.
+    trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{said}')\n"
+    trick += "    except OSError:\n        pass\nos._exit(0)\n"
+    write(workspace, trick + GOOD)
+    (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert not report.passed
+    assert report.executed == ()
+
+
+def test_a_report_that_is_no_file_claims_nothing(workspace: Workspace) -> None:
+    trick = """
+import pytest
+
+@pytest.fixture(autouse=True)
+def folder(request):
+    yield
+    path = request.config.option.xmlpath
+    import os
+    os.makedirs(path, exist_ok=True)
+
 """
     write(workspace, trick + GOOD)
     (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert not report.passed
     assert report.executed == ()
-    assert report.status is None
 
 
 def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,7 +153,10 @@ def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
         "import os\nfrom pathlib import Path\n\n\ndef test_first():\n    mark = Path(os.environ['HOME'], 'mark')\n"
         "    assert not mark.exists()\n    mark.touch()\n",
     )
-    assert all(report.passed for report in run(workspace, "half", [Order(("test_half.py",), RIGHT)] * 3, lanes=1))
+    assert all(
+        report.passed
+        for report in run(workspace, take(workspace, "half"), [Order(("test_half.py",), RIGHT)] * 3, lanes=1)
+    )
 
 
 def test_two_versions_are_seen_at_one_place(workspace: Workspace) -> None:
@@ -143,7 +164,9 @@ def test_two_versions_are_seen_at_one_place(workspace: Workspace) -> None:
     write(
         workspace, f"import os\nimport sys\n\nimport half\n\n\ndef test_place():\n    assert not hash(str(({place})))\n"
     )
-    reports = run(workspace, "half", [Order(("test_half.py",), RIGHT), Order(("test_half.py",), WRONG)], lanes=1)
+    reports = run(
+        workspace, take(workspace, "half"), [Order(("test_half.py",), RIGHT), Order(("test_half.py",), WRONG)], lanes=1
+    )
     messages = {report.claims.messages["test_half::test_place"] for report in reports}
     assert len(messages) == 1
     assert messages.pop().startswith("assert not ")
@@ -204,5 +227,30 @@ def test_an_intruder_that_does_not_start_is_the_graders_failure(workspace: Works
 
 
 def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:
-    with pytest.raises(GraderError, match="other was built, but has no folder of its name below src"):
-        source_of(workspace, "other")
+    with pytest.raises(StudentError, match=r"There is no folder src/other with a package\.xml"):
+        take(workspace, "other")
+
+
+def test_a_link_that_the_build_left_among_the_tests_is_refused(workspace: Workspace) -> None:
+    (workspace.root / "src/half/test/secrets").symlink_to("/etc")
+    with pytest.raises(StudentError):
+        take(workspace, "half")
+
+
+def test_the_students_own_package_is_tested_as_it_was_built(workspace: Workspace) -> None:
+    site = workspace.install / f"half/lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages/half"
+    site.mkdir(parents=True)
+    (site / "__init__.py").write_text("def half(x):\n    return x / 2\n")
+    write(workspace, GOOD)
+    (report,) = runs(workspace, Order(("test_half.py",)))
+    assert report.passed
+
+
+def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> Path:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    write(workspace, GOOD)
+    monkeypatch.setattr(testing, "lay_down", full)
+    with pytest.raises(StudentError, match="no room left on the disk"):
+        runs(workspace, Order(("test_half.py",), RIGHT))

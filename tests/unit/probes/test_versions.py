@@ -65,14 +65,11 @@ def test_a_disguised_version_behaves_the_same_and_looks_different_for_each_seed(
 
 
 def test_a_version_is_laid_down_as_if_it_had_been_built(tmp_path: Path) -> None:
-    tests = tmp_path / "tests"
-    tests.mkdir()
-    (tests / "test_it.py").write_text("")
     version = Version(
         {"p/a.py": "A = 1\n", "launch/a.launch.py": "B = 2\n", "setup.py": "", "package.xml": "<package/>"},
         {"tool": "p.a"},
     )
-    source = lay_down(version, "p", tests, tmp_path / "ws")
+    source = lay_down(version, "p", {"test_it.py": b""}, tmp_path / "ws")
     install = tmp_path / "ws/install/p"
     assert source == tmp_path / "ws/src/p"
     assert {path.relative_to(source).as_posix() for path in source.rglob("*.*")} == {

@@ -1,0 +1,1 @@
+"""Each test file has what it needs."""

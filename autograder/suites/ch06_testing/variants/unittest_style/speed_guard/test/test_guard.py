@@ -1,0 +1,135 @@
+"""The node with its executor in a thread, and what it publishes in a queue."""
+
+import contextlib
+import queue
+import random
+import threading
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.context import Context
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Range
+from speed_guard.guard import SpeedGuard
+
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Harness:
+    """Talks to a guard that spins in another thread."""
+
+    def __init__(self, context, guard):
+        """Connect to the guard's topics."""
+        self.node = Node("harness", context=context)
+        self.out = queue.Queue()
+        self.echo = queue.Queue()
+        self.raw = self.node.create_publisher(Twist, "cmd_vel_raw", 5)
+        self.range = self.node.create_publisher(Range, "distance", BEST_EFFORT)
+        self.node.create_subscription(Twist, "cmd_vel", self.out.put, 50)
+        self.node.create_subscription(Range, "distance", self.echo.put, BEST_EFFORT)
+        self.executor = MultiThreadedExecutor(num_threads=2, context=context)
+        self.executor.add_node(self.node)
+        self.executor.add_node(guard)
+        self.thread = threading.Thread(target=self.executor.spin)
+        self.thread.start()
+
+    def distance(self, value):
+        """Publish a distance, and a harmless command after it, so that it has been taken when this returns."""
+        self.range.publish(Range(range=value))
+        self.echo.get(timeout=8.0)
+        self.answer(-1.0)
+
+    def answer(self, x, z=0.0):
+        """Publish a command and return what comes."""
+        message = Twist()
+        message.linear.x, message.angular.z = x, z
+        self.raw.publish(message)
+        return self.out.get(timeout=8.0)
+
+    def silence(self, seconds):
+        """Return whether nothing comes for so long."""
+        try:
+            self.out.get(timeout=seconds)
+        except queue.Empty:
+            return True
+        return False
+
+
+@contextlib.contextmanager
+def guarded(**parameters):
+    """Start a guard and a harness in a context of their own."""
+    context = Context()
+    rclpy.init(context=context, domain_id=random.randint(2, 90))
+    overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+    guard = SpeedGuard(context=context, parameter_overrides=overrides)
+    harness = Harness(context, guard)
+    try:
+        yield harness
+    finally:
+        harness.executor.shutdown()
+        harness.thread.join()
+        guard.destroy_node()
+        harness.node.destroy_node()
+        rclpy.try_shutdown(context=context)
+
+
+def test_name():
+    """The name is what parameters in a file go by."""
+    with guarded() as harness:
+        assert "speed_guard" in harness.node.get_node_names()
+
+
+def test_unknown_at_first():
+    """It does not move before it has seen."""
+    with guarded(timeout=30.0) as harness:
+        assert harness.answer(0.5).linear.x == 0.0
+
+
+def test_newest():
+    """The last distance counts, farther or nearer."""
+    with guarded(timeout=30.0) as harness:
+        for value, expected in [(1.0, 0.25), (9.0, 0.5), (0.4, 0.0), (1.25, 0.375)]:
+            harness.distance(value)
+            assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
+
+
+def test_turn():
+    """A turn goes through."""
+    with guarded(timeout=30.0) as harness:
+        assert harness.answer(0.5, z=-1.25).angular.z == -1.25
+
+
+def test_one_answer():
+    """There is one answer, and then silence."""
+    with guarded(timeout=30.0) as harness:
+        harness.answer(0.5)
+        assert harness.silence(0.3)
+
+
+def test_parameters():
+    """Both distances are parameters."""
+    with guarded(timeout=30.0, stop_distance=2.0, slow_distance=4.0) as harness:
+        for value, expected in [(1.9, 0.0), (3.0, 0.25), (4.5, 0.5)]:
+            harness.distance(value)
+            assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
+
+
+def test_stale():
+    """An old distance is forgotten."""
+    with guarded(timeout=0.15) as harness:
+        harness.distance(9.0)
+        assert harness.out.get(timeout=8.0) == Twist()
+        assert harness.answer(0.5).linear.x == 0.0
+
+
+def test_watchdog():
+    """One stop after a silence, none before it."""
+    with guarded(timeout=0.15) as harness:
+        assert harness.silence(0.5)
+        harness.answer(-0.5)
+        assert harness.out.get(timeout=8.0) == Twist()
+        assert harness.silence(0.5)

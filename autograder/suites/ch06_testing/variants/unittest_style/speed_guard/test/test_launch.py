@@ -1,0 +1,58 @@
+"""The launch file, tested beside the launch in a coroutine's place."""
+
+import os
+import time
+
+import launch
+import launch_pytest
+import pytest
+import rclpy
+from ament_index_python.packages import get_package_share_directory
+from geometry_msgs.msg import Twist
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Range
+
+DOMAIN = 91 + os.getpid() % 9
+
+
+@launch_pytest.fixture
+def system():
+    """Launch what the package installs."""
+    path = os.path.join(get_package_share_directory("speed_guard"), "launch", "guard.launch.py")
+    return launch.LaunchDescription(
+        [
+            launch.actions.SetEnvironmentVariable("ROS_DOMAIN_ID", str(DOMAIN)),
+            launch.actions.IncludeLaunchDescription(PythonLaunchDescriptionSource(path)),
+        ]
+    )
+
+
+@pytest.mark.launch(fixture=system)
+def test_crawls_at_0_55_m():
+    """Half-way between its 0.3 m and 0.8 m, half of the speed is left."""
+    context = Context()
+    rclpy.init(context=context, domain_id=DOMAIN)
+    node = rclpy.create_node("tester", context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    answers = []
+    node.create_subscription(Twist, "cmd_vel", lambda message: answers.append(message.linear.x), 10)
+    sensor = node.create_publisher(Range, "distance", qos_profile_sensor_data)
+    planner = node.create_publisher(Twist, "cmd_vel_raw", 10)
+    wanted = Twist()
+    wanted.linear.x = 1.0
+
+    def tick():
+        sensor.publish(Range(range=0.55))
+        planner.publish(wanted)
+
+    node.create_timer(0.05, tick)
+    end = time.monotonic() + 10.0
+    while time.monotonic() < end and not any(answer == pytest.approx(0.5) for answer in answers):
+        executor.spin_once(timeout_sec=0.1)
+    node.destroy_node()
+    rclpy.try_shutdown(context=context)
+    assert max(answers, default=0.0) == pytest.approx(0.5)
