@@ -73,7 +73,9 @@ def _record(bridge: Bridge, arena: Arena, stop: threading.Event) -> None:
 
     state = bridge.driver.state
     recorder = Recorder(bridge.simulation, state)
-    while not stop.wait(PERIOD):
+    running = True
+    while running:
+        running = not stop.wait(PERIOD)
         if bridge.driver.state.time_ns > state.time_ns:
             state = bridge.driver.state
             recorder.append(state)

@@ -1,0 +1,68 @@
+"""`source`: a workspace's interfaces, built beside the kernel, can be imported and sent; mistakes are told plainly."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.interfaces import build
+from autograder.notebook import Notice, source
+from autograder.notebook.desk import GRADING_VARIABLE
+
+# A process of its own, as a kernel is: what it imports and sets would stay in this one.
+KERNEL = """
+import sys
+from pathlib import Path
+from autograder.notebook import ros, source
+
+ros()
+print(source(sys.argv[1]))
+from course_words.msg import Word
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("kernel")
+node.create_publisher(Word, "words", 1).publish(Word(text="hello"))
+print(source(sys.argv[1]))
+definition = Path(sys.argv[1], "install/course_words/share/course_words/msg/Word.msg")
+definition.write_text("string text\\nint32 more\\n")
+print(source(sys.argv[1]))
+rclpy.shutdown()
+"""
+
+
+def test_a_workspace_that_is_not_there_or_not_built_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"there is no folder .*: run this from the assignment's folder, where ws is"):
+        source(tmp_path / "ws")
+    with pytest.raises(UsageError, match="has nothing built in it: run colcon build"):
+        source(tmp_path)
+    (tmp_path / "install").mkdir()
+    with pytest.raises(UsageError, match="has nothing built in it: run colcon build"):
+        source(tmp_path)
+
+
+def test_nothing_is_sourced_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(GRADING_VARIABLE, "1")
+    assert isinstance(source("/no/where"), Notice)
+
+
+def test_interfaces_built_beside_a_kernel_are_imported_and_sent_and_old_ones_are_noticed(tmp_path: Path) -> None:
+    prefix = tmp_path / "install" / "course_words"
+    prefix.parent.mkdir()
+    # As colcon lays it out: the generated libraries are in lib, which no loader of a running process knows.
+    made = build("course_words", {"msg/Word.msg": "string text\n"})
+    (prefix / "share/course_words/msg").mkdir(parents=True)
+    (prefix / "share/course_words/msg/Word.msg").write_text("string text\n")
+    (prefix / "lib").symlink_to(made / "lib")
+    ran = subprocess.run(
+        [sys.executable, "-c", KERNEL, str(tmp_path)], capture_output=True, text=True, env=os.environ, timeout=120
+    )
+    assert ran.returncode == 0, ran.stderr
+    first, second, third = (line for line in ran.stdout.splitlines() if "kernel" in line)
+    assert first == second == "This kernel can use course_words."
+    assert third.startswith("This kernel still holds the old course_words: choose Kernel, Restart")
