@@ -1,0 +1,114 @@
+"""The course as a new student takes it: a chapter's release in JupyterLab, the answer typed in, the check turned green.
+
+`make test` takes the first chapter and one with a robot that drives; `make tour` takes them all. Screenshots of each
+chapter's pictures and of its check stay in `.build/screenshots`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+from autograder.course import Chapter, Form, chapters, in_form, is_solution
+from autograder.course.sync import write_notebook
+from tests.browser.jupyter import Lab, lab
+
+__all__ = ["lab"]
+
+pytestmark = pytest.mark.browser
+
+EACH_TIME = ("00_welcome", "07_best_practices")
+MINUTES = 8
+CHOSEN = [
+    pytest.param(chapter, id=chapter.assignment, marks=[] if chapter.assignment in EACH_TIME else [pytest.mark.tour])
+    for chapter in chapters()
+]
+
+# The cell's editor gets the focus, all its text selected; what is typed next takes its place.
+EDIT = """async id => {
+    const notebook = window.jupyterapp.shell.currentWidget.content;
+    const index = notebook.widgets.findIndex(cell => cell.model.id === id);
+    await notebook.scrollToItem(index, "start");
+    notebook.activeCellIndex = index;
+    const cell = notebook.activeCell;
+    await cell.ready;
+    notebook.mode = "edit";
+    cell.editor.focus();
+    const end = cell.editor.getPositionAt(cell.model.sharedModel.source.length);
+    cell.editor.setSelection({start: {line: 0, column: 0}, end});
+}"""
+SOURCE = """id => {
+    const cells = window.jupyterapp.shell.currentWidget.content.widgets;
+    return cells.find(cell => cell.model.id === id).model.sharedModel.source;
+}"""
+FINISHED = """() => {
+    const panel = window.jupyterapp.shell.currentWidget;
+    const code = panel.content.widgets.map(cell => cell.model)
+        .filter(model => model.type === "code" && model.sharedModel.source.trim());
+    const failed = code.some(model => model.outputs.toJSON().some(output => output.output_type === "error"));
+    const idle = panel.sessionContext.session.kernel.status === "idle";
+    return idle && (failed || code.every(model => model.executionCount));
+}"""
+OUTPUTS = """() => JSON.stringify(window.jupyterapp.shell.currentWidget.content.widgets
+    .filter(cell => cell.model.type === "code")
+    .map(cell => [cell.model.id, cell.model.outputs.toJSON()]))"""
+
+
+def type_in(page: Page, cell: str, text: str) -> None:
+    """Replace a cell's text as somebody at the keyboard would who pastes an answer."""
+    page.evaluate(EDIT, cell)
+    page.keyboard.insert_text(text)
+    page.keyboard.press("Escape")
+    assert page.evaluate(SOURCE, cell) == text
+
+
+def outputs(page: Page) -> dict[str, list[dict[str, Any]]]:
+    """Return the outputs of each code cell, by its id."""
+    return dict(json.loads(page.evaluate(OUTPUTS)))
+
+
+def photograph(page: Page, cell: str, path: Path) -> None:
+    """Keep what a cell shows."""
+    page.evaluate(
+        """async id => {
+            const notebook = window.jupyterapp.shell.currentWidget.content;
+            await notebook.scrollToItem(notebook.widgets.findIndex(cell => cell.model.id === id), "center");
+        }""",
+        cell,
+    )
+    page.screenshot(path=path)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(60 * MINUTES + 120)
+@pytest.mark.parametrize("chapter", CHOSEN)
+def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screenshots: Path, chapter: Chapter) -> None:
+    name = chapter.assignment
+    shutil.copytree(chapter.folder, lab.folder / name, ignore=shutil.ignore_patterns("build", "install", "log"))
+    write_notebook(lab.folder / name / chapter.path.name, in_form(chapter.read(), Form.RELEASED))
+
+    lab.show(page, f"{name}/{chapter.path.name}")
+    solved = [cell for cell in in_form(chapter.read(), Form.SOLVED).cells if is_solution(cell)]
+    for cell in solved:
+        type_in(page, cell.id, cell.source)
+    lab.run_all(page)
+    page.wait_for_function(FINISHED, timeout=60_000 * MINUTES, polling=500)
+
+    shown = outputs(page)
+    errors = [output for cell in shown.values() for output in cell if output["output_type"] == "error"]
+    assert not errors, errors[0]["traceback"]
+    said = json.dumps(shown, ensure_ascii=False)
+    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said)
+    assert counts
+    assert all(passed == every for passed, every in counts), counts
+    pictures = [cell for cell, made in shown.items() if any("image/png" in out.get("data", {}) for out in made)]
+    checks = [cell for cell, made in shown.items() if "visible checks passed" in json.dumps(made)]
+    for cell in (*pictures[:3], checks[-1]):
+        photograph(page, cell, screenshots / f"tour-{name}-{cell}.png")
+    page.close()
