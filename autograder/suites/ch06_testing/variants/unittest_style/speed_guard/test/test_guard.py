@@ -38,7 +38,7 @@ class Harness:
         self.thread.start()
 
     def distance(self, value):
-        """Publish a distance, and a harmless command after it, so that it has been taken when this returns."""
+        """Publish a distance, and a harmless command: answered, it has been taken."""
         self.range.publish(Range(range=value))
         self.echo.get(timeout=8.0)
         self.answer(-1.0)

@@ -2,6 +2,7 @@
 
 import os
 import time
+from pathlib import Path
 
 import launch
 import launch_pytest
@@ -21,11 +22,11 @@ DOMAIN = 91 + os.getpid() % 9
 @launch_pytest.fixture
 def system():
     """Launch what the package installs."""
-    path = os.path.join(get_package_share_directory("speed_guard"), "launch", "guard.launch.py")
+    path = Path(get_package_share_directory("speed_guard")) / "launch" / "guard.launch.py"
     return launch.LaunchDescription(
         [
             launch.actions.SetEnvironmentVariable("ROS_DOMAIN_ID", str(DOMAIN)),
-            launch.actions.IncludeLaunchDescription(PythonLaunchDescriptionSource(path)),
+            launch.actions.IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path))),
         ]
     )
 
@@ -39,7 +40,7 @@ def test_crawls_at_0_55_m():
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     answers = []
-    node.create_subscription(Twist, "cmd_vel", lambda message: answers.append(message.linear.x), 10)
+    node.create_subscription(Twist, "cmd_vel", lambda msg: answers.append(msg.linear.x), 10)
     sensor = node.create_publisher(Range, "distance", qos_profile_sensor_data)
     planner = node.create_publisher(Twist, "cmd_vel_raw", 10)
     wanted = Twist()
