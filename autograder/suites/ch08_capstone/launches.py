@@ -25,7 +25,7 @@ from autograder.visible.ch08_capstone.contract import (
 )
 
 GROUP = "step_4"
-STARTS = ("installs", "interface_package")
+STARTS = ("executables", "shares", "interface_package")
 OTHER_CONFIG = "config/of_another_robot.yaml"
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",

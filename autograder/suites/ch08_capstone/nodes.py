@@ -18,7 +18,7 @@ from autograder.visible.ch08_capstone.contract import CONTROLLER, MONITOR, PARAM
 from autograder.visible.ch08_capstone.system import System, expect_driving, expect_still, expect_turning
 
 GROUP = "step_2"
-BUILT = ("installs", "clearance_message", "health_message", "interface_package")
+BUILT = ("executables", "clearance_message", "health_message", "interface_package")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 NEAR = PARAMETERS[CONTROLLER]["safety_distance"].default

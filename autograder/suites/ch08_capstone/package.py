@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import check, expect
 from autograder.diagnosis import Diagnosis
 from autograder.lab import Workspace
 from autograder.probes import imports, manifest
-from autograder.probes.installed import Installed, look
+from autograder.probes.installed import look
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
 from autograder.visible.ch08_capstone.sources import require_built, source_of
@@ -68,27 +68,51 @@ def test_dependencies(workspace: Workspace) -> None:
 
 
 @check(
-    points=3,
+    points=2,
     group=GROUP,
     hints=(
         "entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}",
-        "data_files holds pairs: a folder below share/, and the files that go there; glob('launch/*.launch.py').",
+        "install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.",
     ),
     doc=contract.PACKAGES_DOC,
 )
-def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """setup.py installs three executables, the marker, the manifest, the launch file and the configuration."""
+def test_executables(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
+    """Colcon builds the package of the nodes and installs its three executables where ros2 run looks."""
     require_built(builds, PACKAGE)
     found = look(workspace.install, PACKAGE)
-    wrong = _wrong(found)
-    if wrong:
-        raise CheckFailed(" ".join(wrong), fraction=round(max(0.0, 1.0 - len(wrong) / 4), 2))
+    absent = [name for name in PROGRAMS if name not in found.executables]
+    there = ", ".join(found.executables) or "none"
+    where = f" bin/, where ros2 run does not look, has {', '.join(found.misplaced)}." if found.misplaced else ""
+    expect(
+        not absent,
+        f"The executable {', '.join(absent)} is not installed; installed are: {there}.{where}",
+        fraction=round(0.9 * (1.0 - len(absent) / len(PROGRAMS)), 2),
+    )
 
 
 @check(
     points=1,
     group=GROUP,
-    depends=("manifests", "installs"),
+    depends=("executables",),
+    hints=(
+        "data_files holds pairs: a folder below share/, and the files that go there.",
+        "('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_shares(workspace: Workspace) -> None:
+    """setup.py installs the marker, the manifest, the launch file and the configuration."""
+    found = look(workspace.install, PACKAGE)
+    wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
+    absent = [path for path in wanted if path not in found.shared]
+    expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
+    expect(found.marker, "The ament index does not know the package: resource/ is not among the data_files.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("manifests", "executables"),
     hints=("Copy the four from one file to the other, to the letter.",),
     doc=contract.PACKAGES_DOC,
 )
@@ -105,22 +129,3 @@ def test_agreement(workspace: Workspace) -> None:
     ):
         given = said.get(header, "nothing")
         expect(given == wanted, f"{header.lower()}: package.xml says {wanted!r}, setup.py says {given!r}.")
-
-
-def _wrong(found: Installed) -> list[str]:
-    """Say what is not installed where it belongs."""
-    wrong = []
-    absent = [name for name in PROGRAMS if name not in found.executables]
-    if absent and found.misplaced:
-        wrong.append(
-            f"{', '.join(found.misplaced)} went to bin/, where ros2 run does not look: setup.cfg says where they go."
-        )
-    elif absent:
-        there = ", ".join(found.executables) or "none"
-        wrong.append(f"The executable {', '.join(absent)} is not installed; installed are: {there}.")
-    if f"resource/{PACKAGE}" not in found.listed and not found.marker:
-        wrong.append("The ament index does not know the package: resource/ is not among the data_files.")
-    for path in ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG):
-        if path not in found.shared:
-            wrong.append(f"share/{PACKAGE}/{path} is not installed: look at data_files.")
-    return wrong

@@ -92,7 +92,7 @@ def test_used(system: System) -> None:
 @check(
     points=2,
     group=GROUP,
-    depends=("installs",),
+    depends=("shares",),
     hints=(
         "By node, then ros__parameters, then name and value, each level indented by two blanks.",
         "A name that no node declares is ignored without a word: compare letter by letter.",

@@ -26,7 +26,7 @@ def tested(workspace: Workspace) -> Report:
 @check(
     points=2,
     group=GROUP,
-    depends=("installs", "interface_package"),
+    depends=("executables", "interface_package"),
     hints=(
         "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
         "test_flake8.py, test_pep257.py and test_integration.py are in test/, too.",
@@ -66,7 +66,17 @@ def test_linters_pass(tested: Report) -> None:
 @check(
     points=2,
     group=GROUP,
-    depends=("colcon_finds_tests", "readings", "turns", "stops", "enable", "dead_sensor", "launch_starts"),
+    depends=(
+        "colcon_finds_tests",
+        "qos",
+        "readings",
+        "turns",
+        "stops",
+        "enable",
+        "dead_sensor",
+        "launch_starts",
+        "config",
+    ),
     hints=(
         "Run colcon test in a terminal, then colcon test-result --all --verbose.",
         "test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.",
