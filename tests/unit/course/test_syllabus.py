@@ -1,0 +1,83 @@
+"""What the course has to hold is found in the notebooks, or named as missing."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.checks import Check, Visibility
+from autograder.course.survey import PAGE, Survey
+from autograder.course.syllabus import Place, Syllabus, coverage
+from autograder.course.tables import page
+from autograder.proof import guide
+
+from .notebooks import code, notebook, prose
+
+SYLLABUS = Syllabus(
+    {"nodes": "Write nodes"}, {"basic_node.py": "BasicNode", "Q1": "What is setup.py?"}, {7: ("no", "yes")}
+)
+CHECK = Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, ())
+OBJECTIVE = {"objective": "nodes", "exercise": "exercise", "groups": ["graph"]}
+
+
+def made(**course: object):  # type: ignore[no-untyped-def]
+    cells = (prose("# From a node to a robot", "title"), prose("## Write it", "exercise"), code("1", "node"))
+    cells[2].metadata["course"] = {"covers": ["basic_node.py"], "errata": [7]}
+    return notebook(*cells, **course)
+
+
+def messages(*chapters: object) -> list[str]:
+    return [finding.message for finding in coverage(SYLLABUS, chapters).findings]  # type: ignore[arg-type]
+
+
+def test_places_are_found_by_the_heading_above_them() -> None:
+    covered = coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+    assert covered.items == {"basic_node.py": [Place("02_nodes", "Write it")], "Q1": []}
+    assert covered.errata == {7: [Place("02_nodes", "Write it")]}
+    assert [(row.exercise, row.checks) for row in covered.rows] == [("Write it", (CHECK,))]
+
+
+def test_what_no_notebook_holds_is_named() -> None:
+    assert messages(("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])) == [
+        "no notebook holds 'Q1': What is setup.py?"
+    ]
+    assert "no hidden check holds 'nodes': Write nodes" in messages(("02_nodes", made(), []))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"objective": "flying"}, "the syllabus has no objective 'flying'"),
+        ({"exercise": "gone"}, "there is no cell 'gone'"),
+        ({"groups": ["graph", "wings"]}, "the suite has no group wings"),
+        ({"groups": []}, "no objective names the groups graph"),
+    ],
+)
+def test_an_objective_that_points_nowhere_is_named(change: dict[str, object], message: str) -> None:
+    assert message in messages(("02_nodes", made(objectives=[{**OBJECTIVE, **change}]), [CHECK]))
+
+
+def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
+    book = made(objectives=[OBJECTIVE], errata=[99])
+    assert "the syllabus has no 99" in messages(("02_nodes", book, [CHECK]))
+
+
+def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
+    covered = coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+    text = page(SYLLABUS, covered, {"02_nodes": "A | B"})
+    assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 |" in text
+    assert "| Write nodes | 02_nodes | Write it | `named` |" in text
+    assert "| 7 | no | yes | 02_nodes: Write it |" in text
+
+
+def test_the_course_holds_everything_and_its_pages_are_up_to_date() -> None:
+    survey = Survey.of_the_course()
+    assert [str(finding) for finding in survey.coverage.findings] == []
+    for path, text in ((PAGE, survey.page()), (guide.PAGE, guide.guide())):
+        assert path.read_text(encoding="utf-8") == text, f"{path.name} is stale: python -m autograder.course tables"
+
+
+def test_the_syllabus_names_all_that_the_chapter_has() -> None:
+    syllabus = Syllabus.read()
+    assert len(syllabus.objectives) == 6
+    assert set(syllabus.errata) == set(range(1, 49))
+    assert {f"step-{n}" for n in range(1, 8)} | {"Q1", "Q2", "Q3"} <= set(syllabus.items)
