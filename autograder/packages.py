@@ -13,6 +13,8 @@ def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
     found: dict[str, Path] = {}
     broken: dict[Path, str] = {}
     for manifest in sorted(source.rglob("package.xml")):
+        if manifest.is_symlink() or not manifest.is_file():  # a set-up script may have left a pipe that nobody fills
+            continue
         where = manifest.relative_to(source)
         if manifest.stat().st_size > MAX_MANIFEST:
             broken[manifest.parent] = f"src/{where} is far larger than a manifest."

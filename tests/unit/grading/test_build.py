@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -119,3 +120,12 @@ def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, t
     with pytest.raises(StudentError, match="which leads out of the install space") as caught:
         colcon.require_contained(tmp_path / "install")
     assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
+
+
+def test_a_pipe_or_a_link_is_no_manifest(tmp_path: Path) -> None:
+    _package(tmp_path)
+    for name in ("pipe", "link"):
+        (tmp_path / name).mkdir()
+    os.mkfifo(tmp_path / "pipe" / "package.xml")
+    (tmp_path / "link" / "package.xml").symlink_to(tmp_path / NAME / "package.xml")
+    assert packages.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
