@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from autograder.checks import check, expect
-from autograder.lab import Workspace
 from autograder.lab.launching import LaunchLab
 from autograder.probes import launching
 from autograder.suites.ch04_launch.inputs import Inputs
@@ -58,9 +57,9 @@ def test_includes(shared: Shared) -> None:
     ),
     doc=contract.SUBSTITUTIONS,
 )
-def test_fleet_arguments(workspace: Workspace) -> None:
+def test_fleet_arguments(shared: Shared) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    arguments = launching.shown_arguments(workspace, PACKAGE, FLEET)
+    arguments = launching.shown_arguments(shared.fleet_workspace(), PACKAGE, FLEET)  # those of what it includes, too
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
         launching.expect_argument(arguments, name, default)
 

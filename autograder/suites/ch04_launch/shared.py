@@ -39,6 +39,10 @@ class Shared:
         """Return two_robots.launch.py as it runs with these arguments."""
         return self._lab(FLEET, arguments, {SHARED: String}, robot="like")
 
+    def fleet_workspace(self) -> Workspace:
+        """Return the workspace in which two_robots.launch.py runs."""
+        return self._copy(FLEET, "like")
+
     def renamed_fleet(self) -> LaunchLab:
         """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
         return self._lab(FLEET, {}, {}, robot="wheels")
