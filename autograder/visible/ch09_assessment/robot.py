@@ -86,12 +86,12 @@ def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted:
 
 
 def refuses(workspace: Workspace, types: Types, name: str, **parameters: float) -> bool:
-    """Return whether a node ends with an error at its start with these parameters."""
+    """Return whether a node ends at its start with these parameters, by an exception or by itself."""
     try:
         with NodeLab(workspace, types, name, **parameters):
             return False
     except StudentError as error:
-        if error.diagnosis.kind is not Kind.CRASHED_AT_START:
+        if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):
             raise
         return True
 

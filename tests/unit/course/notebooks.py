@@ -17,8 +17,8 @@ def code(source: str, cell_id: str, **metadata: Any) -> NotebookNode:
     return new_code_cell(source, id=cell_id, metadata=metadata)
 
 
-def prose(source: str, cell_id: str) -> NotebookNode:
-    return new_markdown_cell(source, id=cell_id)
+def prose(source: str, cell_id: str, **metadata: Any) -> NotebookNode:
+    return new_markdown_cell(source, id=cell_id, metadata=metadata)
 
 
 def solution(grade_id: str) -> dict[str, Any]:
@@ -35,6 +35,10 @@ def grade(grade_id: str, points: float) -> dict[str, Any]:
         "solution": False,
         "task": False,
     }
+
+
+def manual(grade_id: str, points: float) -> dict[str, Any]:
+    return {**grade(grade_id, points), "locked": False, "solution": True}
 
 
 def notebook(*cells: NotebookNode, **course: Any) -> NotebookNode:

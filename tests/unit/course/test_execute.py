@@ -29,6 +29,13 @@ def test_the_solved_form_is_the_answer_without_marks() -> None:
     assert in_form(notebook(code(SOLVED, "s", nbgrader=solution("s"))), Form.SOLVED).cells[0].source == "answer = 42"
 
 
+def test_a_mark_scheme_is_in_the_source_only() -> None:
+    scheme = "Why?\n### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME\nHow?"
+    source = notebook(prose(scheme, "q", nbgrader={**solution("q"), "solution": False, "locked": True}))
+    for form in (Form.SOLVED, Form.RELEASED):
+        assert in_form(source, form).cells[0].source == "Why?\nHow?"
+
+
 def test_making_a_form_leaves_the_source_alone() -> None:
     source = notebook(code(SOLVED, "s", nbgrader=solution("s")))
     in_form(source, Form.RELEASED)

@@ -9,7 +9,7 @@ from nbformat.v4 import new_output
 from autograder.course import hygiene
 from autograder.course.hygiene import images_without_alt
 
-from .notebooks import code, grade, notebook, prose, solution
+from .notebooks import code, grade, manual, notebook, prose, solution
 
 
 def messages(made: NotebookNode) -> str:
@@ -22,6 +22,19 @@ def test_a_clean_notebook_has_no_findings() -> None:
         prose("## Next\n\n<img src='x.svg' alt='a wall'>", "next"),
         code("### BEGIN SOLUTION\n### END SOLUTION", "s", nbgrader=solution("s")),
         code("grade()", "g", nbgrader=grade("g", 1), course={"group": "graph"}),
+    )
+    assert messages(made) == ""
+
+
+ANSWER = "### BEGIN SOLUTION\nSo.\n### END SOLUTION"
+SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
+
+
+def test_marks_for_a_person_are_no_headings_and_need_no_group() -> None:
+    made = notebook(
+        prose("# Title", "title"),
+        prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
+        prose(ANSWER, "so", nbgrader=manual("so", 2)),
     )
     assert messages(made) == ""
 
@@ -97,6 +110,26 @@ def old_format() -> NotebookNode:
             "its nbgrader metadata is not valid: Duplicate grade id: same",
         ),
         (half_a_cell(), "is not valid nbformat"),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader={**manual("m", 1), "locked": True})),
+            "cell 'm': students answer in this cell: it must not be locked",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 0))),
+            "cell 'm': a manually graded cell needs points above 0",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 1), course={"group": "graph"})),
+            "a person gives its points: it cannot stand for the group 'graph' of checks, too",
+        ),
+        (
+            notebook(prose("# T", "t"), prose("So.", "m", nbgrader=manual("m", 1))),
+            "cell 'm': a manually graded cell holds a model answer, between the solution marks",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(SCHEME, "s")),
+            "cell 's': holds a mark scheme but is not locked",
+        ),
     ],
 )
 def test_what_is_wrong_is_named(made: NotebookNode, message: str) -> None:

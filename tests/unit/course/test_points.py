@@ -8,7 +8,7 @@ from nbformat import NotebookNode
 from autograder.checks import Check, Visibility
 from autograder.course import CourseError, set_points, wrong_points
 
-from .notebooks import code, grade, notebook
+from .notebooks import code, grade, manual, notebook, prose
 
 
 def one(check_id: str, group: str, points: float) -> Check:
@@ -30,6 +30,14 @@ def test_each_cell_gets_the_sum_of_its_groups_checks() -> None:
     assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0]
     assert wrong_points("n.ipynb", made, CHECKS) == []
     assert not set_points("n.ipynb", made, CHECKS)
+
+
+def test_points_that_a_person_gives_are_no_business_of_the_suites() -> None:
+    made = graded(reaction=0, graph=1)
+    made.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
+    assert set_points("n.ipynb", made, CHECKS)
+    assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0, 6]
+    assert wrong_points("n.ipynb", made, CHECKS) == []
 
 
 def test_wrong_points_are_named() -> None:
