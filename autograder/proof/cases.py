@@ -69,6 +69,7 @@ def one_a_check(assignment: str) -> tuple[Mutant, ...]:
     chosen: list[Mutant] = []
     uncovered = set(depends)
     for covers in (direct, {m.id: set(m.loses) for m in candidates}):
+        uncovered -= {name for m in chosen for name in covers[m.id]}
         while best := max(candidates, key=lambda m: (len(covers[m.id] & uncovered), not m.slow), default=None):
             if not covers[best.id] & uncovered:
                 break
