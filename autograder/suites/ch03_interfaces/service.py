@@ -14,6 +14,7 @@ from autograder.visible.ch03_interfaces.reporter import SERVICE
 
 GROUP = "service"
 ANSWERS = ("trip_answers",)
+SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
@@ -29,8 +30,14 @@ RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and poss
 )
 def test_trip_answers(adviser: Adviser) -> None:
     """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
-    there = dict(adviser.node.get_service_names_and_types())
-    own = sorted(name for name, kinds in there.items() if not kinds[0].startswith("rcl_interfaces/"))
+    there: dict[str, list[str]] = {}
+
+    def is_served() -> bool:
+        there.update(adviser.node.get_service_names_and_types())
+        return SERVICE in there
+
+    adviser.wait_for(is_served, SEEN_SECONDS)
+    own = sorted(name for name, kinds in there.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
     expect(
         SERVICE in there, f"There is no service {SERVICE}; the node serves {', '.join(own) or 'nothing of its own'}."
     )
