@@ -28,7 +28,7 @@ def test_drive_cancels(ready: Driver, draw: random.Random) -> None:
     """A cancel stops the robot at once: the goal ends CANCELED, and the result says how far it came and why."""
     x, y = ready.x, ready.y
     goal = ready.start(4.5, 0.5)
-    ready.roll(goal, LONG, until=lambda: math.dist((x, y), (ready.x, ready.y)) > 0.6)
+    ready.roll(goal, LONG, until=lambda: math.dist((x, y), (ready.x, ready.y)) > 0.9)
     there = ready.x, ready.y
     answer = goal.cancel()
     commands = ready.roll(goal, 3.0)
