@@ -19,7 +19,7 @@ import pytest
 from autograder.layout import SOLUTIONS
 from autograder.ros import environment
 
-PACKAGES = ("my_robot_interfaces", "my_robot_package")
+PACKAGES = ("my_robot_interfaces", "my_robot_package", "motor_guard_interfaces", "motor_guard")
 FIRST_WORDS = {
     "basic_node": "Basic node initialised",
     "configured_node": "DefaultRobot is ready",
