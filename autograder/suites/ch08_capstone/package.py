@@ -101,12 +101,11 @@ def test_executables(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> N
     doc=contract.PACKAGES_DOC,
 )
 def test_shares(workspace: Workspace) -> None:
-    """setup.py installs the marker, the manifest, the launch file and the configuration."""
+    """setup.py installs the manifest, the launch file and the configuration."""
     found = look(workspace.install, PACKAGE)
     wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
     absent = [path for path in wanted if path not in found.shared]
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
-    expect(found.marker, "The ament index does not know the package: resource/ is not among the data_files.")
 
 
 @check(
