@@ -28,7 +28,7 @@ class Claims:
     """What a run claims of its tests.
 
     Attributes:
-        verdicts: by test, `module::name`, in the order in which they ran.
+        verdicts: by test, `module::name` or `module::Class::name`, in the order in which they ran.
         messages: the first line of what went wrong, by test.
     """
 
@@ -60,14 +60,20 @@ def parse(data: bytes) -> Claims | None:
     verdicts: dict[str, Verdict] = {}
     messages: dict[str, str] = {}
     for case in root.iter("testcase"):
-        module = case.get("classname", "").rpartition(".")[2]
-        name = f"{module}::{case.get('name', '')}"
+        name = "::".join([*_place(case.get("classname", "")), case.get("name", "")])
         verdict, message = _verdict(case)
         # A test whose clean-up fails is there twice; what is bad stays.
         if verdicts.get(name, Verdict.PASSED) is Verdict.PASSED:
             verdicts[name] = verdict
             messages[name] = message
     return Claims(verdicts, messages)
+
+
+def _place(classname: str) -> list[str]:
+    """Return the test module in a dotted name, and the classes after it."""
+    parts = classname.split(".")
+    modules = [index for index, part in enumerate(parts) if part.startswith("test_")]
+    return parts[modules[-1] :] if modules else parts[-1:]
 
 
 def _verdict(case: ET.Element) -> tuple[Verdict, str]:

@@ -33,6 +33,11 @@ def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
     assert claims.messages["test_limits::test_a[0.5]"] == ""
 
 
+def test_a_test_in_a_class_belongs_to_its_module() -> None:
+    claims = parse(b'<testsuite><testcase classname="p.test.test_limits.Speed" name="test_a"/></testsuite>')
+    assert claims == Claims({"test_limits::Speed::test_a": Verdict.PASSED}, {"test_limits::Speed::test_a": ""})
+
+
 def test_a_message_is_cut_to_its_bound() -> None:
     text = f'<testsuite><testcase classname="t" name="a"><failure message="{"x" * 9999}"/></testcase></testsuite>'
     claims = parse(text.encode())
