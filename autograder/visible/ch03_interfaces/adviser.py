@@ -29,7 +29,7 @@ class Adviser(TalkingLab):
     def level(self, percent: int) -> None:
         """Set the battery's level; wait until the status shows that the program has heard of it."""
         self.publish(BATTERY, BatteryState(percentage=min(1.0, (percent + 0.25) / 100.0)))
-        self.wait_for(
+        self.listen_until(
             lambda: any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC)[-1:]),
             HEARD_SECONDS,
         )
@@ -37,6 +37,6 @@ class Adviser(TalkingLab):
     def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
         """Ask about a trip; return the response, fail the check if none comes."""
         request = self.types.check_trip.Request(legs=list(legs), reserve=reserve)
-        answer = self.call(self.types.check_trip, SERVICE, request)
+        answer = self.ask_service(self.types.check_trip, SERVICE, request)
         expect(answer is not None, "check_trip did not answer.")
         return answer

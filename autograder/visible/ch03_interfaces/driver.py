@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from autograder.checks import expect
 from autograder.lab import Workspace
 from autograder.visible.ch03_interfaces.contract import DRIVER, PACKAGE, PERIOD
-from autograder.visible.ch03_interfaces.talk import Goal, TalkingLab
+from autograder.visible.ch03_interfaces.talk import Submission, TalkingLab
 from autograder.visible.ch03_interfaces.types import Types
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
@@ -40,22 +40,22 @@ class Driver(TalkingLab):
             self._tell()
             self.run(LOOK)
 
-    def send(self, distance: float, speed: float | None = None) -> Goal:
+    def send(self, distance: float, speed: float | None = None) -> Submission:
         """Send a goal; fail the check if nobody answers."""
         goal = self.types.drive_distance.Goal(distance=distance)
         if speed is not None:
             goal.speed = speed
-        sent = self.send_goal(self.types.drive_distance, ACTION, goal)
+        sent = self.submit(self.types.drive_distance, ACTION, goal)
         expect(sent.accepted is not None, "The action server drive_distance did not answer a goal.")
         return sent
 
-    def start(self, distance: float, speed: float | None = None) -> Goal:
+    def start(self, distance: float, speed: float | None = None) -> Submission:
         """Send a goal that must be accepted."""
         sent = self.send(distance, speed)
         expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
         return sent
 
-    def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
+    def roll(self, goal: Submission, seconds: float, *, until: Any = None) -> list[Twist]:
         """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.
 
         Each command moves the robot for as long as it lasts, a tenth of a second.
@@ -70,13 +70,13 @@ class Driver(TalkingLab):
         self._obey(seen)
         return [stamped.message for stamped in self.messages(COMMANDS)[before:]]
 
-    def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
+    def finish(self, goal: Submission, seconds: float, situation: str) -> list[Twist]:
         """Let the wheels roll until the goal has ended; fail the check if it does not."""
         commands = self.roll(goal, seconds)
         expect(goal.status is not None, f"{situation}, the goal had not ended after {seconds:.0f} s.")
         return commands
 
-    def abandon(self, goal: Goal) -> None:
+    def abandon(self, goal: Submission) -> None:
         """Get rid of a goal that is of no further use, by a cancel or, if need be, by holding the wheels."""
         goal.cancel()
         self.stuck = True
