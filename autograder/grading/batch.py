@@ -20,10 +20,11 @@ ARCHIVES = (".zip", ".ipynb")
 
 @dataclass(frozen=True)
 class Entry:
-    """One submission of a class: whose it is, and where it lies."""
+    """One submission of a class: whose it is, where it lies, and which checks to run if not all."""
 
     student: str
     path: Path
+    only: tuple[str, ...] = ()
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
@@ -84,7 +85,13 @@ def grade_all(
         if stored is not None:
             return stored
         graded = grade_submission(
-            entry.path, assignment, student=entry.student, seed=seed, out=out / entry.student, isolation=isolation
+            entry.path,
+            assignment,
+            student=entry.student,
+            seed=seed,
+            out=out / entry.student,
+            isolation=isolation,
+            only=entry.only,
         )
         return graded.result
 

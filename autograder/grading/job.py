@@ -21,6 +21,7 @@ class Job:
         out: the folder that gets `result.json`, `notebook.ipynb` and the pictures.
         scratch: the cell's own file system; nothing in it outlives the cell.
         tier: how the submission is isolated.
+        only: the checks to run, for the proof; all of them when empty.
     """
 
     path: Path
@@ -30,6 +31,7 @@ class Job:
     out: Path
     scratch: Path
     tier: Tier
+    only: tuple[str, ...] = ()
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""
@@ -40,4 +42,4 @@ class Job:
         """Read a job from its JSON."""
         data = json.loads(text)
         paths = {name: Path(data[name]) for name in ("path", "out", "scratch")}
-        return cls(**{**data, **paths, "tier": Tier(data["tier"])})
+        return cls(**{**data, **paths, "tier": Tier(data["tier"]), "only": tuple(data["only"])})

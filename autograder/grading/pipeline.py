@@ -45,6 +45,7 @@ def grade_submission(
     seed: int,
     out: Path,
     isolation: Tier = Tier.BUBBLEWRAP,
+    only: tuple[str, ...] = (),
 ) -> Graded:
     """Grade one submission.
 
@@ -55,6 +56,7 @@ def grade_submission(
         seed: every hidden input is drawn from it; the same seed gives the same inputs.
         out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed.
         isolation: the sandbox's tier.
+        only: the checks to run, for the proof, where the others' points don't matter; all of them when empty.
 
     Returns:
         The result. `status` is `not_graded` when the grader failed twice; that is no zero.
@@ -73,7 +75,9 @@ def grade_submission(
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
         report = run_in_cell(
-            lambda scratch: _worker(Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation)),
+            lambda scratch: _worker(
+                Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, only)
+            ),
             isolation,
         )
         if report.returncode == 0 and (out / RESULT).is_file():

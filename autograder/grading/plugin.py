@@ -28,10 +28,16 @@ class GradingPlugin:
     """
 
     def __init__(
-        self, workspace: Workspace, seed: int, gallery: Gallery, builds: Mapping[str, Diagnosis] | None = None
+        self,
+        workspace: Workspace,
+        seed: int,
+        gallery: Gallery,
+        builds: Mapping[str, Diagnosis] | None = None,
+        only: frozenset[str] = frozenset(),
     ) -> None:
         self._workspace = workspace
         self._builds = builds or {}
+        self._only = only
         self._seed = seed
         self._gallery = gallery
         self.results: dict[str, CheckResult] = {}
@@ -64,13 +70,17 @@ class GradingPlugin:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[Any]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        check = declared(getattr(item, "function", None))
+        check = _declared_by(item)
         if check is not None:
             self._record(check, call)
         return (yield)
 
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        if self._only:
+            items[:] = [item for item in items if (check := _declared_by(item)) and check.id in self._only]
+
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        check = declared(getattr(item, "function", None))
+        check = _declared_by(item)
         for needed in check.depends if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'not checked: first "{self.results[needed].title}" has to pass')
@@ -98,6 +108,10 @@ class GradingPlugin:
             self.failures.append("".join(traceback.format_exception(error)))
             verdict = CheckResult.of(check, Outcome.NOT_CHECKED, "the grader failed here", seconds=seconds)
         self.results[check.id] = verdict
+
+
+def _declared_by(item: pytest.Item) -> Check | None:
+    return declared(getattr(item, "function", None))
 
 
 def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:

@@ -6,9 +6,10 @@ puts the program's robot into the simulator, in either of them.
 """
 
 from autograder.lab.drive import Drive, drive
+from autograder.lab.goals import Goal
 from autograder.lab.lockstep import LockstepLab
-from autograder.lab.meeting import Lab, Stamped
+from autograder.lab.meeting import Lab, Program, Stamped
 from autograder.lab.realtime import RealtimeLab
 from autograder.lab.workspace import Workspace
 
-__all__ = ["Drive", "Lab", "LockstepLab", "RealtimeLab", "Stamped", "Workspace", "drive"]
+__all__ = ["Drive", "Goal", "Lab", "LockstepLab", "Program", "RealtimeLab", "Stamped", "Workspace", "drive"]

@@ -1,47 +1,79 @@
-"""A lab in lockstep: the program's ROS time goes on only when the grader says so."""
+"""A lab in lockstep: the programs' ROS time goes on only when the grader says so."""
 
 from __future__ import annotations
 
 import math
 import sys
 import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
-from autograder.exceptions import GraderError
-from autograder.lab.meeting import Lab
-from autograder.lockstep import Stepper
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
+from autograder.lab.matching import connected
+from autograder.lab.meeting import Lab, Program
+from autograder.lockstep import Description, Stepper
+from autograder.lockstep.lockstep_host import channels
 from autograder.lockstep.protocol import START
 from autograder.sandbox import Process
 
 DELIVERY_SECONDS = 15.0  # real time, over a whole run, for messages that were announced and have not come yet
-SETTLE_SECONDS = 5.0  # real time for the names of the program's nodes to be seen
+SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be seen
 FINEST_TICK_NS = 10_000_000
+ROUNDS = 1000  # in one step; programs that still answer each other then will go on for ever
+
+
+class Player:
+    """One program of a lab in lockstep, and the mail that it has not been told of."""
+
+    def __init__(self, program: Program, stepper: Stepper) -> None:
+        self.program = program
+        self.stepper = stepper
+        self.description = Description()
+        self.reads: frozenset[str] = frozenset()
+        self.mail: Counter[str] = Counter()
+
+    def describe(self) -> Description:
+        """Ask what the program's nodes look like now."""
+        self.description = self.stepper.describe()
+        self.reads = self.description.reads()
+        return self.description
 
 
 class LockstepLab(Lab):
-    """A program that is stepped through ROS time: faster than real time, and the same every time.
+    """Programs that are stepped through ROS time: faster than real time, and the same every time.
 
-    It starts at ROS time `START`. `tick_ns` hits every firing of its timers, between 10 ms and 100 ms.
+    They start at ROS time `START`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. A step is
+    lived in rounds, the programs always in the order in which they were named: first all take what was sent before,
+    then their timers fire, then they take what they sent each other, until nobody has anything left to take.
     """
 
     def _start(self) -> None:
         self._now_ns = START
-        self._sent: dict[str, int] = {}
-        self._baseline: dict[str, int] = {}
         self._patience = DELIVERY_SECONDS
-        self._stepper = Stepper(self._sandbox, self._program, python=sys.executable, arguments=self._arguments)
-        self._stepper.wait_ready()
+        self._players: list[Player] = []
+        for program, path in zip(self.programs, self._paths, strict=True):
+            arguments = self._arguments(program)
+            stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
+            self._players.append(Player(program, stepper))
+        for player in self._players:
+            with self._naming(player):
+                player.stepper.wait_ready()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stepper.__exit__(kind, error, trace)
+        for player in self._players:
+            player.stepper.__exit__(kind, error, trace)
         super().__exit__(kind, error, trace)
 
     @property
-    def process(self) -> Process:
-        return self._stepper.process
+    def processes(self) -> tuple[Process, ...]:
+        return tuple(player.stepper.process for player in self._players)
 
     @property
     def now_ns(self) -> int:
@@ -51,54 +83,157 @@ class LockstepLab(Lab):
     def seconds(self) -> float:
         return (self._now_ns - START) / 1e9
 
-    def publish(self, topic: str, message: Any) -> None:
-        super().publish(topic, message)
-        if self.takes(topic):
-            self._sent[topic] = self._sent.get(topic, 0) + 1
-
     def step(self, dt_ns: int) -> None:
-        """Let the program take what was published, then run the timers that are due.
+        """Let the programs take what was published, then run the timers that are due.
 
         Raises:
             GraderError: messages were lost on the way, which loopback does not do by itself.
         """
         self._now_ns += dt_ns
-        reply = self._stepper.step(self._now_ns, self._sent)
-        if reply.late:
-            raise GraderError("messages that were sent to the student's node did not arrive")
-        # A count that is never reached is forged, or the student's own QoS dropped a message. Only what arrived counts,
-        # and all waiting in vain has one bound.
-        while not self._arrived(reply.published) and self._patience > 0.0:
-            began = time.monotonic()
-            self._spin(0.05)
-            if not self._arrived(reply.published):
-                self._patience -= time.monotonic() - began
-        for topic, messages in self._received.items():
-            self._baseline[topic] = reply.published.get(topic, 0) - len(messages)
+        if dt_ns and len(self._players) == 1:
+            self._turn(self._players[0], [self._now_ns - 1, self._now_ns])
+        elif dt_ns:
+            self._settle(self._now_ns - 1)
+            for player in self._players:
+                self._turn(player, [self._now_ns])
+        self._settle(self._now_ns)
+
+    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        self.step(0)
+        end = self._now_ns + round(seconds * 1e9)
+        while not condition():
+            if self._now_ns >= end:
+                return False
+            self.step(min(self.tick_ns, end - self._now_ns))
+        return True
 
     def quit(self) -> int | None:
-        """Interrupt the program as Ctrl-C does; return its exit status, None if it did not stop."""
-        return self._stepper.quit()
+        """Interrupt the programs as Ctrl-C does; return the first one's exit status, None if it did not stop."""
+        statuses = [player.stepper.quit() for player in self._players]
+        return statuses[0]
 
-    def _topics(self) -> set[str]:
-        description, before = self._stepper.describe()
-        self.tick_ns = max(FINEST_TICK_NS, math.gcd(self.tick_ns, *description.timers))
-        topics = {topic for topic in description.unmatched if topic in self._offers or topic in self._listens}
-        self._baseline = {topic: before.published.get(topic, 0) for topic in self._received}
-        self._await(lambda: all(self._peers(topic) for topic in topics))
-        self.wait_for(lambda: set(description.nodes) <= set(self.nodes()), SETTLE_SECONDS)
-        return topics
+    # Rounds.
 
-    def _connected(self, topics: set[str]) -> bool:
-        description, _ = self._stepper.describe()
-        matched = all(
-            publisher.get_subscription_count() >= description.subscriptions.get(topic, 0)
-            for topic, publisher in self._publishers.items()
+    def _settle(self, instant: int) -> None:
+        """Go round, at one instant, until nobody has mail."""
+        for _ in range(ROUNDS):
+            self._post(self._station.sent)
+            if not any(player.mail for player in self._players):
+                return
+            for player in self._players:
+                if player.mail:
+                    self._turn(player, [instant])
+        sentence = (
+            f"Your nodes answered each other {ROUNDS} times without any time going by, and would go on for ever: a "
+            "callback must not publish what makes it run again."
         )
-        return matched and not topics & set(description.unmatched)
+        raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
-    def _arrived(self, published: dict[str, int]) -> bool:
-        return all(
-            len(messages) >= published.get(topic, 0) - self._baseline.get(topic, 0)
-            for topic, messages in self._received.items()
-        )
+    def _turn(self, player: Player, instants: list[int]) -> None:
+        """Let one program live through instants, and deliver what it sends."""
+        self._post(self._station.sent)
+        mail, player.mail = player.mail, Counter()
+        with self._naming(player):
+            reply = player.stepper.step(instants, mail)
+        for channel in reply.late:
+            if mail[channel] and not any(channel in dict(other.description.writers) for other in self._players):
+                raise GraderError(f"messages that were sent to the student's node did not arrive: {channel}")
+        self._post(reply.sent, but=player)
+        self._expect(reply.sent)
+        self._collect()
+        if reply.changed:
+            self._meet()
+
+    def _post(self, sent: dict[str, int], but: Player | None = None) -> None:
+        """Put into every program's mail what was sent to it."""
+        for channel, count in sent.items():
+            for player in self._players:
+                if player is not but and channel in player.reads:
+                    player.mail[channel] += count
+        if sent is self._station.sent:
+            self._station.sent.clear()
+
+    def _expect(self, sent: dict[str, int]) -> None:
+        for channel, count in sent.items():
+            for ear in self._station.ears:
+                if channel in ear.channels:
+                    ear.expected += count
+
+    def _collect(self) -> None:
+        """Hear all that was said to the grader.
+
+        A count that is never reached is forged, or the student's own QoS dropped a message. Only what arrived counts,
+        and all waiting in vain has one bound.
+        """
+        while not self._all_heard() and self._patience > 0.0:
+            began = time.monotonic()
+            self._spin(0.05)
+            if not self._all_heard():
+                self._patience -= time.monotonic() - began
+        for ear in self._station.ears:
+            ear.expected = ear.count
+
+    def _all_heard(self) -> bool:
+        return all(ear.count >= ear.expected for ear in self._station.ears)
+
+    # Meeting.
+
+    def _meet(self) -> None:
+        super()._meet()
+        descriptions = [player.description for player in self._players]
+        for player in self._players:
+            others = [description for description in descriptions if description is not player.description]
+            early = _sum(description.early for description in others)
+            with self._naming(player):
+                player.stepper.meet(
+                    _sum(description.kept for description in others),
+                    {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
+                )
+        for ear in self._station.ears:
+            if ear.new:
+                ear.new = False
+                source = [d.early if ear.kind == "service" else d.kept if ear.latched else {} for d in descriptions]
+                ear.expected += sum(_sum(source)[channel] for channel in ear.channels)
+        self._collect()
+
+    def _topics(self) -> tuple[set[str], set[str]]:
+        descriptions = [player.describe() for player in self._players]
+        self.tick_ns = max(FINEST_TICK_NS, math.gcd(self.tick_ns, *(p for d in descriptions for p in d.timers)))
+        subscribed = {channels.topic_of(name[0]) for d in descriptions for name, _ in d.readers if name}
+        published = {channels.topic_of(name) for d in descriptions for name, _ in d.writers}
+        subscribed, published = subscribed & set(self._offers), published & set(self._listens)
+        self._await(lambda: all(map(self._readers, subscribed)) and all(map(self._writers, published)))
+        names = {name for description in descriptions for name in description.nodes}
+        self.wait_for(lambda: names <= set(self.nodes()), SETTLE_SECONDS)
+        return subscribed, published
+
+    def _connected(self) -> bool:
+        return connected([player.describe() for player in self._players], self._station)
+
+    def _reach(self, client: Any, seconds: float) -> bool:
+        def there() -> bool:
+            channel = channels.request(client.srv_name, client.srv_type)
+            return any(channel in player.description.servers for player in self._players)
+
+        if not there() and not self.until(there, seconds):
+            return False
+        self._await(client.service_is_ready)
+        return True
+
+    @contextmanager
+    def _naming(self, player: Player) -> Iterator[None]:
+        """Say which of several programs it is that failed."""
+        try:
+            yield
+        except StudentError as error:
+            if len(self._players) == 1:
+                raise
+            sentence = f"{player.program.executable}: {error.diagnosis.sentence}"
+            raise StudentError(replace(error.diagnosis, sentence=sentence)) from None
+
+
+def _sum(counts: Any) -> Counter[str]:
+    total: Counter[str] = Counter()
+    for count in counts:
+        total.update(count)
+    return total

@@ -1,32 +1,32 @@
-"""What both kinds of lab share: the grader's own node, and how its endpoints come to match the student's."""
+"""What both kinds of lab share: programs of a student's, and the grader's node that meets them over DDS."""
 
 from __future__ import annotations
 
 import itertools
 import math
+import shutil
+import tempfile
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
-import rclpy
-from rclpy.context import Context
-from rclpy.guard_condition import GuardCondition
-from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
+from autograder.lab.goals import Actions, Goal, Stamped
+from autograder.lab.station import DEPTH, NAME, Handler, Station
 from autograder.lab.workspace import Workspace
-from autograder.sandbox import Process
+from autograder.lockstep.lockstep_host.channels import type_name
+from autograder.sandbox import Mount, Process
+
+__all__ = ["DEPTH", "DOMAINS", "MEETING_SECONDS", "NAME", "Lab", "Program", "Stamped"]
 
 MEETING_SECONDS = 30.0  # real time for the two sides to find each other
-DEPTH = 1000
-NAME = "grader"
 DOMAINS = 100  # beyond about that number, DDS ports reach into the ephemeral ones
+FILES = "{files}"  # stands in arguments for the folder of the lab's files
 
 _LABS = itertools.count()
 
@@ -34,18 +34,16 @@ AnyLab = TypeVar("AnyLab", bound="Lab")
 
 
 @dataclass(frozen=True)
-class Stamped:
-    """A message that the student's program published.
+class Program:
+    """An executable of a package, and its arguments."""
 
-    `seconds` is when it arrived, in seconds of ROS time since the program started.
-    """
-
-    seconds: float
-    message: Any
+    package: str
+    executable: str
+    arguments: tuple[str, ...] = ()
 
 
 class Lab(ABC):
-    """One student's program and the grader's node that it meets over DDS; a context manager.
+    """A student's programs and the grader's node that they meet over DDS; a context manager.
 
     Name what the grader publishes and listens to, then enter:
 
@@ -55,11 +53,21 @@ class Lab(ABC):
             lab.run(0.1)
             lab.messages("/cmd_vel")
 
-    `StudentError` comes out of every method when the program crashes, hangs or goes over a limit.
+    `StudentError` comes out of every method when a program crashes, hangs or goes over a limit.
+
+    Args:
+        workspace: the student's built workspace.
+        package: of the one program; or
+        executable: its name in the package.
+        programs: several programs, which meet each other as well.
+        offers: topics that the grader publishes, with their types.
+        listens: topics that it hears, with their types.
+        arguments: of the one program; "{files}" in them stands for the folder of `files`.
+        files: texts by name, which the programs can read.
 
     Attributes:
-        node: the grader's node; its graph functions tell what the student's program really offers.
-        tick_ns: the step of ROS time that suits the program's timers.
+        node: the grader's node; its graph functions tell what the student's programs really offer.
+        tick_ns: the step of ROS time that suits the programs' timers.
     """
 
     tick_ns = 100_000_000
@@ -67,29 +75,32 @@ class Lab(ABC):
     def __init__(
         self,
         workspace: Workspace,
-        package: str,
-        executable: str,
+        package: str = "",
+        executable: str = "",
         *,
-        offers: dict[str, type] | None = None,
-        listens: dict[str, type] | None = None,
+        programs: tuple[Program, ...] = (),
+        offers: Mapping[str, type] | None = None,
+        listens: Mapping[str, type] | None = None,
         arguments: tuple[str, ...] = (),
+        files: Mapping[str, str] | None = None,
     ) -> None:
-        self._program = workspace.executable(package, executable)
-        self._arguments = arguments
+        self.programs = programs or (Program(package, executable, arguments),)
+        self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
         # Two labs may be open at once, with programs that have the same names: each pair meets in a domain of its own.
-        workspace = replace(workspace, domain=(workspace.domain + next(_LABS)) % DOMAINS)
-        self._sandbox = workspace.sandbox()
-        self._offers, self._listens = offers or {}, listens or {}
-        self._domain = workspace.domain
-        self._publishers: dict[str, Any] = {}
+        self._workspace = replace(workspace, domain=(workspace.domain + next(_LABS)) % DOMAINS)
+        self._sandbox = self._workspace.sandbox()
+        self._offers, self._listens = dict(offers or {}), dict(listens or {})
         self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
+        self._services: dict[str, tuple[Any, Handler]] = {}
+        self._files, self._folder = dict(files or {}), ""
+        self._inside = False
 
     # What a kind of lab has to know.
 
     @property
     @abstractmethod
-    def process(self) -> Process:
-        """The sandboxed program."""
+    def processes(self) -> tuple[Process, ...]:
+        """The sandboxed programs."""
 
     @property
     @abstractmethod
@@ -103,29 +114,35 @@ class Lab(ABC):
 
     @abstractmethod
     def step(self, dt_ns: int) -> None:
-        """Let the program live through the next `dt_ns` nanoseconds of ROS time."""
+        """Let the programs live through the next `dt_ns` nanoseconds of ROS time."""
+
+    @abstractmethod
+    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Let the programs live until `condition` holds, at most `seconds` of ROS time; return whether it does."""
 
     @abstractmethod
     def _start(self) -> None:
-        """Start the program and wait until it is up."""
+        """Start the programs and wait until they are up."""
 
     @abstractmethod
-    def _topics(self) -> set[str]:
-        """Return which topics of this lab the program has; the grader's endpoints are not made yet."""
+    def _topics(self) -> tuple[set[str], set[str]]:
+        """Return which topics the programs subscribe to, and which they publish, as far as this lab names them."""
 
     @abstractmethod
-    def _connected(self, topics: set[str]) -> bool:
-        """Return whether the program's endpoints on `topics` see the grader's."""
+    def _connected(self) -> bool:
+        """Return whether all endpoints see each other."""
 
     # What they share.
 
     def __enter__(self: AnyLab) -> AnyLab:
-        self._context = Context()
-        rclpy.init(args=[], context=self._context, domain_id=self._domain)
-        self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
-        self._bell = GuardCondition(callback=None, callback_group=None, context=self._context)
-        self._inbox: list[tuple[Any, Callable[[Any], None]]] = []
+        self._station = Station(self._workspace.domain)
+        self._actions = Actions(self._station, lambda: self.seconds)
+        self.node = self._station.node
+        self._inside = True
         try:
+            self._lay_down_files()
+            for name, (kind, handler) in self._services.items():
+                self._station.serve(kind, name, handler)
             self._start()
             self._meet()
         except BaseException:
@@ -136,33 +153,78 @@ class Lab(ABC):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.node.destroy_node()
-        self._context.try_shutdown()
+        self._inside = False
+        self._station.close()
+        if self._folder:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    @property
+    def process(self) -> Process:
+        """The first of the sandboxed programs."""
+        return self.processes[0]
 
     @property
     def output(self) -> str:
-        """What the program has printed and logged so far."""
-        return self.process.output
+        """What the programs have printed and logged so far."""
+        return "".join(process.output for process in self.processes)
 
     def takes(self, topic: str) -> bool:
-        """Return whether the program subscribes to a topic that the grader offers, with the right type."""
-        return topic in self._publishers
+        """Return whether a program subscribes to a topic that the grader offers, with the right type."""
+        return topic in self._station.publishers
 
     def publish(self, topic: str, message: Any) -> None:
-        """Publish a message. Nothing happens if the program does not subscribe to the topic."""
-        if topic in self._publishers:
-            self._publishers[topic].publish(message)
+        """Publish a message. Nothing happens if no program subscribes to the topic."""
+        if self.takes(topic):
+            self._station.publish(topic, message)
 
     def run(self, seconds: float) -> None:
-        """Let the program live through `seconds` of ROS time, tick by tick."""
+        """Let the programs live through `seconds` of ROS time, tick by tick."""
         left = round(seconds * 1e9)
         while left > 0:
             self.step(min(self.tick_ns, left))
             left -= self.tick_ns
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
-        """Return what the program published on `topic` after `since` and up to `until`, in seconds of ROS time."""
+        """Return what was published on `topic` after `since` and up to `until`, in seconds of ROS time."""
         return [stamped for stamped in self._received[topic] if since < stamped.seconds <= until]
+
+    def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
+        """Call a service of the student's; the programs live on, at most `seconds` of ROS time.
+
+        Returns:
+            The response; None if there is no such service of that type, or it does not answer in time.
+        """
+        answers: list[Any] = []
+        began = self.seconds
+        client = self._station.client(service_type, name)
+        if not self._reach(client, seconds):
+            return None
+        self._station.ask(service_type, name, request, answers.append)
+        return answers[0] if self.until(lambda: bool(answers), began + seconds - self.seconds) else None
+
+    def serve(self, service_type: Any, name: str, handler: Handler) -> None:
+        """Offer a service to the student's programs; before the lab is entered, it is there when they start.
+
+        `handler` gets a request and returns a response, or None for a service that never answers.
+        """
+        self._services[name] = service_type, handler
+        if self._inside:
+            self._station.serve(service_type, name, handler)
+            self._meet()
+
+    def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
+        """Send a goal to an action server of the student's; it goes on while the programs live on.
+
+        `seconds` of ROS time are given to a server that is not there yet; if it does not come, `accepted` stays None.
+        """
+        clients = self._actions.prepare(action_type, name, self._writers)
+        if not all([self._reach(client, seconds) for client in clients]):
+            return Goal()
+        return self._actions.send(action_type, name, goal)
+
+    def wait(self, goal: Goal, seconds: float) -> bool:
+        """Let the programs live until a goal is over, at most `seconds` of ROS time; return whether it is."""
+        return self.until(lambda: goal.over, seconds)
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Listen until `condition` holds, at most `seconds` of real time; return whether it does."""
@@ -178,32 +240,32 @@ class Lab(ABC):
         found = self.node.get_node_names_and_namespaces()
         return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != NAME)
 
+    @abstractmethod
+    def _reach(self, client: Any, seconds: float) -> bool:
+        """Let a new client of the grader's meet its server, at most `seconds` of ROS time; return whether it has."""
+
     def _meet(self) -> None:
-        """Make endpoints that match the program's own, and wait until both sides see each other."""
-        topics = self._topics()
-        offered = {topic for topic in topics & set(self._offers) if self._same_type(topic, self._offers[topic])}
-        listened = {topic for topic in topics & set(self._listens) if self._same_type(topic, self._listens[topic])}
-        for topic in sorted(offered):
-            qos = _offered_qos(self._peers(topic))
-            self._publishers[topic] = self.node.create_publisher(self._offers[topic], topic, qos)
-        for topic in sorted(listened):
-            qos = _requested_qos(self._peers(topic))
-            receive = self._receiver(topic)
-            self._inbox.append((self.node.create_subscription(self._listens[topic], topic, receive, qos), receive))
-        ours = [publisher.get_subscription_count for publisher in self._publishers.values()]
-        self._await(lambda: all(count() for count in ours) and self._connected(offered | listened))
+        """Make endpoints that match the programs' own, and wait until all see each other."""
+        subscribed, published = self._topics()
+        for topic in sorted(subscribed & set(self._offers) - set(self._station.publishers)):
+            if self._same_type(self._offers[topic], peers := self._readers(topic)):
+                self._station.offer(topic, self._offers[topic], peers)
+        for topic in sorted(published & set(self._listens) - self._heard()):
+            if self._same_type(self._listens[topic], peers := self._writers(topic)):
+                self._station.listen(topic, self._listens[topic], peers, self._receiver(topic))
+        self._await(self._connected)
 
-    def _peers(self, topic: str) -> list[Any]:
-        find = (
-            self.node.get_subscriptions_info_by_topic
-            if topic in self._offers
-            else self.node.get_publishers_info_by_topic
-        )
-        return [peer for peer in find(topic) if peer.node_name != NAME]
+    def _heard(self) -> set[str]:
+        return {ear.entity.topic_name for ear in self._station.ears if ear.kind == "subscription"}
 
-    def _same_type(self, topic: str, message: type) -> bool:
-        package, kind = message.__module__.split(".")[:2]
-        return all(peer.topic_type == f"{package}/{kind}/{message.__name__}" for peer in self._peers(topic))
+    def _readers(self, topic: str) -> list[Any]:
+        return [peer for peer in self.node.get_subscriptions_info_by_topic(topic) if peer.node_name != NAME]
+
+    def _writers(self, topic: str) -> list[Any]:
+        return [peer for peer in self.node.get_publishers_info_by_topic(topic) if peer.node_name != NAME]
+
+    def _same_type(self, message: type, peers: list[Any]) -> bool:
+        return all(peer.topic_type == type_name(message) for peer in peers)
 
     def _receiver(self, topic: str) -> Callable[[Any], None]:
         received = self._received[topic]
@@ -223,38 +285,16 @@ class Lab(ABC):
         return bool(self.node.get_node_names().count(NAME) > 1)
 
     def _spin(self, timeout: float) -> None:
-        """Take what has arrived; wait for something at most `timeout` seconds.
+        """Take what has arrived; wait for something at most `timeout` seconds."""
+        self._station.spin(timeout)
 
-        rclpy's executors do the same, at several times the cost.
-        """
-        wait_set = rclpy_implementation.WaitSet(len(self._inbox), 1, 0, 0, 0, 0, self._context.handle)
-        wait_set.clear_entities()
-        wait_set.add_guard_condition(self._bell.handle)  # never rung: a wait set must not be empty
-        for subscription, _ in self._inbox:
-            wait_set.add_subscription(subscription.handle)
-        wait_set.wait(int(timeout * 1e9))
-        for subscription, receive in self._inbox:
-            while (taken := subscription.handle.take_message(subscription.msg_type, False)) is not None:
-                receive(taken[0])
+    def _lay_down_files(self) -> None:
+        """Write the lab's files where the programs can read them, and nobody else can write."""
+        if self._files:
+            self._folder = tempfile.mkdtemp(prefix=".lab-", dir=self._workspace.root)
+            for name, text in self._files.items():
+                Path(self._folder, name).write_text(text, encoding="utf-8")
+            self._sandbox = replace(self._sandbox, mounts=(*self._sandbox.mounts, Mount(Path(self._folder))))
 
-
-def _offered_qos(peers: list[Any]) -> QoSProfile:
-    """Return a publisher's profile that serves every subscription, however much it asks for."""
-    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
-        depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
-    )
-
-
-def _requested_qos(peers: list[Any]) -> QoSProfile:
-    """Return a subscription's profile that each publisher can serve, however little it offers."""
-    reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
-        depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.VOLATILE,
-    )
+    def _arguments(self, program: Program) -> tuple[str, ...]:
+        return tuple(argument.replace(FILES, self._folder) for argument in program.arguments)

@@ -1,11 +1,13 @@
-"""A lab in real time: the program runs as `ros2 run` would start it, and can be sent signals."""
+"""A lab in real time: the programs run as `ros2 run` would start them, and can be sent signals."""
 
 from __future__ import annotations
 
 import signal
 import sys
 import time
+from collections.abc import Callable
 from types import TracebackType
+from typing import Any
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
@@ -14,28 +16,32 @@ from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 
-START_SECONDS = 60.0  # real time from start until the node is seen, generous for a machine that is busy
+START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
 SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
 
 
 class RealtimeLab(Lab):
-    """A program in real time, for what cannot be stepped: signals, own threads, whole processes."""
+    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes."""
 
     def _start(self) -> None:
         self._began = time.monotonic()
-        self._process = launch([sys.executable, str(self._program), *self._arguments], self._sandbox)
-        if not self.wait_for(lambda: self._alive() and bool(self.nodes()), START_SECONDS):
-            raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self._process.output))
+        self._processes: list[Process] = []
+        for program, path in zip(self.programs, self._paths, strict=True):
+            command = [sys.executable, str(path), *self._arguments(program)]
+            self._processes.append(launch(command, self._sandbox))
+        if not self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self.programs), START_SECONDS):
+            raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self.output))
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._process.__exit__(kind, error, trace)
+        for process in self._processes:
+            process.__exit__(kind, error, trace)
         super().__exit__(kind, error, trace)
 
     @property
-    def process(self) -> Process:
-        return self._process
+    def processes(self) -> tuple[Process, ...]:
+        return tuple(self._processes)
 
     @property
     def now_ns(self) -> int:
@@ -52,21 +58,36 @@ class RealtimeLab(Lab):
             self._alive()
             self._spin(min(left, 0.05))
 
+    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        return self.wait_for(lambda: self._alive() and condition(), seconds)
+
     def stop(self, number: signal.Signals, seconds: float) -> int | None:
-        """Send a signal; return the exit status, or None if the program is still there after `seconds`."""
-        self._process.signal(number)
-        return self._process.returncode if self._process.wait(seconds) else None
+        """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""
+        for process in self._processes:
+            process.signal(number)
+        return self.process.returncode if self.process.wait(seconds) else None
 
     def _alive(self) -> bool:
-        if self._process.ending is not None:
-            raise StudentError(diagnose_output(self._process) or diagnose_ending(self._process))
+        for process in self._processes:
+            if process.ending is not None:
+                raise StudentError(diagnose_output(process) or diagnose_ending(process))
         return True
 
-    def _topics(self) -> set[str]:
-        wanted = {*self._offers, *self._listens}
-        self.wait_for(lambda: self._alive() and all(self._peers(topic) for topic in wanted), SETTLE_SECONDS)
-        return {topic for topic in wanted if self._peers(topic)}
+    def _topics(self) -> tuple[set[str], set[str]]:
+        def complete() -> bool:
+            return all(map(self._readers, self._offers)) and all(map(self._writers, self._listens))
 
-    def _connected(self, topics: set[str]) -> bool:
-        # The program's own view cannot be asked for; the grader's subscriptions are matched once they see a publisher.
-        return all(self.node.count_publishers(topic) for topic in topics & set(self._listens))
+        self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
+        return {topic for topic in self._offers if self._readers(topic)}, {
+            topic for topic in self._listens if self._writers(topic)
+        }
+
+    def _connected(self) -> bool:
+        # The programs' own view cannot be asked for; the grader's endpoints are matched once they see a peer.
+        ears = [ear.entity for ear in self._station.ears if ear.kind == "subscription"]
+        return all(publisher.get_subscription_count() for publisher in self._station.publishers.values()) and all(
+            self.node.count_publishers(ear.topic_name) for ear in ears
+        )
+
+    def _reach(self, client: Any, seconds: float) -> bool:
+        return self.until(client.service_is_ready, seconds)

@@ -1,12 +1,17 @@
 """What the stepper and the host tell each other: a JSON object a line, over two inherited pipes.
 
     stepper -> host   {"op": "describe"}
-                      {"op": "step", "t": NANOSECONDS, "sent": {TOPIC: MESSAGES SO FAR}}
+                      {"op": "meet", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
+                      {"op": "step", "instants": [NANOSECONDS, ...], "mail": {CHANNEL: NEW MESSAGES}}
                       {"op": "quit"}
     host -> stepper   {"event": "ready"}                  once, when the node first waits for work
                       {"event": "description", ...}
-                      {"event": "done", "published": {TOPIC: MESSAGES SO FAR}, "late": BOOL}
+                      {"event": "met"}
+                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "late": [CHANNEL, ...], "changed": BOOL}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
+
+Channels are named in `lockstep_host/channels.py`. "mail" is what the grader and other programs have sent on the
+channels that the program reads.
 
 The host shares a process with the student's code, which may forge any of it. So whatever comes from the host is
 bounded in size, parsed into these records and used only to wait less, or to explain; no point depends on it.
@@ -35,14 +40,29 @@ class Description:
     Attributes:
         nodes: fully qualified names.
         timers: periods in nanoseconds.
-        unmatched: topics of the student's own publishers and subscriptions that have no peer yet.
-        subscriptions: how many subscriptions there are, by topic.
+        writers: the channel of each publisher, and how many subscriptions it sees.
+        readers: the channels of each subscription, and how many publishers it sees (None: that cannot be told).
+        clients: the channel of each client's requests, and whether it sees a server.
+        servers: the channel of each service's requests.
+        early: messages that were sent before the first step, by channel.
+        kept: messages that latched publishers hold, by channel.
+        prefix: of the process's GUIDs.
     """
 
-    nodes: tuple[str, ...]
-    timers: tuple[int, ...]
-    unmatched: tuple[str, ...]
-    subscriptions: dict[str, int] = field(default_factory=dict)
+    nodes: tuple[str, ...] = ()
+    timers: tuple[int, ...] = ()
+    writers: tuple[tuple[str, int], ...] = ()
+    readers: tuple[tuple[tuple[str, ...], int | None], ...] = ()
+    clients: tuple[tuple[str, bool], ...] = ()
+    servers: tuple[str, ...] = ()
+    early: dict[str, int] = field(default_factory=dict)
+    kept: dict[str, int] = field(default_factory=dict)
+    prefix: str = ""
+
+    def reads(self) -> frozenset[str]:
+        """Return every channel that the program takes messages from."""
+        subscribed = {channel for channels, _ in self.readers for channel in channels}
+        return frozenset({*subscribed, *self.servers, *(answers(name, self.prefix) for name, _ in self.clients)})
 
 
 @dataclass(frozen=True)
@@ -50,12 +70,14 @@ class Reply:
     """A finished step.
 
     Attributes:
-        published: how many messages the nodes have published so far, by topic.
-        late: True when the nodes gave up waiting for messages that they were told of.
+        sent: how many messages the nodes have sent in it, by channel.
+        late: channels on which the nodes gave up waiting for messages that they were told of.
+        changed: whether there are endpoints or timers that the last description did not name.
     """
 
-    published: dict[str, int] = field(default_factory=dict)
-    late: bool = False
+    sent: dict[str, int] = field(default_factory=dict)
+    late: tuple[str, ...] = ()
+    changed: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,19 +107,35 @@ def parse(line: bytes) -> dict[str, Any]:
     return data
 
 
+def answers(request: str, prefix: str) -> str:
+    """Return the channel of the responses to requests on a channel, to the clients of one process."""
+    return f"{request.removesuffix('request')}response {prefix}"
+
+
 def description(data: dict[str, Any]) -> Description:
     """Read a `description` event, dropping what is not of the right type."""
     return Description(
         nodes=tuple(_texts(data.get("nodes"))),
         timers=tuple(p for p in _items(data.get("timers")) if type(p) is int and p > 0),
-        unmatched=tuple(_texts(data.get("unmatched"))),
-        subscriptions=_counts(data.get("subscriptions")),
+        writers=tuple((channel, n) for channel, n in _pairs(data.get("writers"), str) if type(n) is int),
+        readers=tuple(
+            (tuple(_texts(channels)), n)
+            for channels, n in _pairs(data.get("readers"), list)
+            if n is None or type(n) is int
+        ),
+        clients=tuple((channel, ready is True) for channel, ready in _pairs(data.get("clients"), str)),
+        servers=tuple(_texts(data.get("servers"))),
+        early=_counts(data.get("early")),
+        kept=_counts(data.get("kept")),
+        prefix=_text(data.get("prefix")),
     )
 
 
 def reply(data: dict[str, Any]) -> Reply:
     """Read a `done` event, dropping what is not of the right type."""
-    return Reply(published=_counts(data.get("published")), late=data.get("late") is True)
+    return Reply(
+        sent=_counts(data.get("sent")), late=tuple(_texts(data.get("late"))), changed=data.get("changed") is True
+    )
 
 
 def crash(data: dict[str, Any]) -> Crash:
@@ -113,6 +151,12 @@ def crash(data: dict[str, Any]) -> Crash:
 
 def _items(value: object) -> list[Any]:
     return value[:MAX_TOPICS] if isinstance(value, list) else []
+
+
+def _pairs(value: object, first: type) -> list[Any]:
+    """Return the pairs in a list whose first item has the type `first`."""
+    items = (item for item in _items(value) if isinstance(item, list) and len(item) == 2)
+    return [item for item in items if isinstance(item[0], first)]
 
 
 def _counts(value: object) -> dict[str, int]:

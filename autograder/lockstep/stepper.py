@@ -6,7 +6,7 @@ import json
 import os
 import selectors
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -20,7 +20,7 @@ from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.spec import Sandbox
 
-HOST = Path(__file__).with_name("host.py")
+HOST = Path(__file__).with_name("lockstep_host")
 START_SECONDS = 60.0  # real time from start to the first wait for work, generous for a machine that is busy
 STEP_SECONDS = 30.0  # real time for one step
 QUIT_SECONDS = 20.0
@@ -52,15 +52,19 @@ class Stepper:
         """Wait until the program waits for work for the first time."""
         self._expect("ready", START_SECONDS, Kind.NEVER_STARTED)
 
-    def describe(self) -> tuple[Description, Reply]:
-        """Ask what the program's nodes look like, and how much they have published."""
+    def describe(self) -> Description:
+        """Ask what the program's nodes look like."""
         self._send({"op": "describe"})
-        data = self._expect("description", STEP_SECONDS, Kind.STUCK)
-        return protocol.description(data), protocol.reply(data)
+        return protocol.description(self._expect("description", STEP_SECONDS, Kind.STUCK))
 
-    def step(self, time_ns: int, sent: Mapping[str, int]) -> Reply:
-        """Step ROS time to `time_ns`; `sent` is how many messages each topic has had so far."""
-        self._send({"op": "step", "t": time_ns, "sent": dict(sent)})
+    def meet(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
+        """Tell the program that its endpoints see their peers, and what these had sent before."""
+        self._send({"op": "meet", "kept": dict(kept), "early": dict(early)})
+        self._expect("met", STEP_SECONDS, Kind.STUCK)
+
+    def step(self, instants: Sequence[int], mail: Mapping[str, int]) -> Reply:
+        """Let the program live through instants of ROS time; `mail` is what was sent to it since the last step."""
+        self._send({"op": "step", "instants": list(instants), "mail": dict(mail)})
         return protocol.reply(self._expect("done", STEP_SECONDS, Kind.STUCK))
 
     def quit(self) -> int | None:

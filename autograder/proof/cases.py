@@ -28,6 +28,7 @@ class Case:
         write: writes it to a folder.
         judge: says what is not as claimed, an empty string if all is.
         reason: why it may survive, for a generated mutant.
+        only: the checks to run; all of them when empty.
     """
 
     kind: Kind
@@ -35,6 +36,7 @@ class Case:
     write: Callable[[Path], None]
     judge: Judge
     reason: str = ""
+    only: tuple[str, ...] = ()
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
@@ -42,7 +44,7 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
 
     Args:
         assignment: whose suite is to be proved.
-        quick: one mutant a check, no generated ones and no attacks.
+        quick: one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
     """
     sources = suites.load(assignment).sources
     found = [
@@ -50,32 +52,38 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
         Case(Kind.RELEASE, "release", partial(write_release, assignment), nothing),
         *_variants(assignment, sources),
     ]
-    chosen = one_a_check(assignment) if quick else mutants(assignment)
-    found += [Case(Kind.MUTANT, m.id, partial(lay_down, m, sources), partial(as_named, m)) for m in chosen]
-    if not quick:
+    if quick:
+        found += [_mutant(mutant, sources, only) for mutant, only in one_a_check(assignment)]
+    else:
+        found += [_mutant(mutant, sources) for mutant in mutants(assignment)]
         found += [_generated(made, sources) for made in generated(assignment)]
         found += [_attack(attack) for attack in attacks(assignment)]
     return tuple(found)
 
 
-def one_a_check(assignment: str) -> tuple[Mutant, ...]:
-    """Return few mutants that fail every check that any mutant fails, by itself where one does so.
+def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
+    """Return few mutants that fail every check, each with the checks that it stands for and those that these need.
 
-    A mutant fails a check by itself when the check is not merely skipped for want of one that it depends on.
+    Where a mutant fails a check by itself, and not merely for want of one that it depends on, such a one is taken.
     """
     depends = {check.id: frozenset(check.depends) for check in suites.manifest(assignment)}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
-    chosen: list[Mutant] = []
+    chosen: dict[str, set[str]] = {}
     uncovered = set(depends)
     for covers in (direct, {m.id: set(m.loses) for m in candidates}):
-        uncovered -= {name for m in chosen for name in covers[m.id]}
         while best := max(candidates, key=lambda m: (len(covers[m.id] & uncovered), not m.slow), default=None):
             if not covers[best.id] & uncovered:
                 break
-            chosen.append(best)
+            chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
             uncovered -= covers[best.id]
-    return tuple(chosen)
+    return [(m, tuple(sorted(_with_needed(chosen[m.id], depends)))) for m in candidates if m.id in chosen]
+
+
+def _with_needed(names: set[str], depends: dict[str, frozenset[str]]) -> set[str]:
+    """Return checks and all that they depend on."""
+    needed = names.union(*(depends[name] for name in names))
+    return needed if needed == names else _with_needed(needed, depends)
 
 
 def write_release(assignment: str, folder: Path) -> None:
@@ -88,6 +96,11 @@ def write_release(assignment: str, folder: Path) -> None:
     chapter = Chapter(layout.chapter(assignment))
     shutil.copytree(chapter.folder, folder, ignore=NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
+
+
+def _mutant(mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
+    judge = partial(as_named, mutant, only=frozenset(only))
+    return Case(Kind.MUTANT, mutant.id, partial(lay_down, mutant, sources), judge, only=only)
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:

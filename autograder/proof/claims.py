@@ -61,14 +61,19 @@ def nothing(result: Result) -> str:
     return "" if graded(result) and result.score == 0 else f"it scores {result.score:g}"
 
 
-def as_named(mutant: Mutant, result: Result) -> str:
-    """Say where a mutant's result differs from what the mutant names; an empty string if nowhere."""
+def as_named(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
+    """Say where a mutant's result differs from what the mutant names; an empty string if nowhere.
+
+    Where `only` some checks were run, these alone are looked at, and the diagnosis, which others may make, is not.
+    """
     if not graded(result):
         return result.diagnosis.sentence
-    missing = lost(result)
-    wrong = [f"also loses {', '.join(sorted(missing - mutant.loses))}"] if missing - mutant.loses else []
-    wrong += [f"keeps {', '.join(sorted(mutant.loses - missing))}"] if mutant.loses - missing else []
-    if result.diagnosis.kind is not mutant.diagnosis:
+    missing, named = lost(result), mutant.loses
+    if only:
+        missing, named = missing & only, named & only
+    wrong = [f"also loses {', '.join(sorted(missing - named))}"] if missing - named else []
+    wrong += [f"keeps {', '.join(sorted(named - missing))}"] if named - missing else []
+    if not only and result.diagnosis.kind is not mutant.diagnosis:
         wrong.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
     return "; ".join(wrong)
 

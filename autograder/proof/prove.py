@@ -37,7 +37,7 @@ def prove(
         on_result: called for each result as it comes.
     """
     with tempfile.TemporaryDirectory(prefix="proof-") as name:
-        entries = tuple(Entry(case.name, _written(case, Path(name) / case.name)) for case in cases)
+        entries = tuple(Entry(case.name, _written(case, Path(name) / case.name), case.only) for case in cases)
         results = grade_all(
             entries, assignment, seed=seed, out=out, jobs=jobs, isolation=isolation, on_result=on_result
         )

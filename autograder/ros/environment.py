@@ -6,7 +6,6 @@ import importlib.util
 import os
 import sys
 import sysconfig
-import sysconfig
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -121,7 +120,7 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
     """Switch ROS 2 on for this process and the children it starts. Safe to call twice.
 
-    Call it before the first `import rclpy`. `ros2` and `colcon` are found then. Workspaces that are sourced already stay sourced. `ros2` and `colcon` are
+    Call it before the first `import rclpy`. Workspaces that are sourced already stay sourced. `ros2` and `colcon` are
     found by their names, also where this Python's environment was not activated, as in a notebook's kernel.
 
     Raises:

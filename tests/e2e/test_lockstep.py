@@ -189,11 +189,12 @@ def impatient(scratch: Path, program: str) -> list[Any]:
 
 FORGER = """
 import os, threading
+FORGED = b'{"event": "done", "sent": {"/said std_msgs/msg/String reliable volatile": 999999}}\\n'
 def forge():
     for name in os.listdir('/proc/self/fd'):
         try:
             if os.readlink(f'/proc/self/fd/{name}').startswith('pipe:') and int(name) > 2:
-                os.write(int(name), b'{"event": "done", "published": {"/said": 999999}}\\n' * 3)
+                os.write(int(name), FORGED * 3)
         except OSError:
             pass
 class Forger(Echo):

@@ -12,7 +12,7 @@ from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.grading.job import Job
-from autograder.lab import Workspace, meeting
+from autograder.lab import Workspace, station
 from autograder.ros import activate
 from autograder.sandbox import Tier
 
@@ -65,16 +65,16 @@ def _peer(reliability: ReliabilityPolicy, durability: DurabilityPolicy) -> Simpl
 def test_the_grader_offers_enough_for_every_subscription() -> None:
     weak = _peer(ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
     strong = _peer(ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
-    assert meeting._offered_qos([weak]).durability == DurabilityPolicy.VOLATILE
-    offered = meeting._offered_qos([weak, strong])
+    assert station.offered_qos([weak]).durability == DurabilityPolicy.VOLATILE
+    offered = station.offered_qos([weak, strong])
     assert (offered.reliability, offered.durability) == (strong.qos_profile.reliability, strong.qos_profile.durability)
 
 
 def test_the_grader_asks_for_no_more_than_every_publisher_gives() -> None:
     weak = _peer(ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
     strong = _peer(ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
-    assert meeting._requested_qos([strong]).reliability == ReliabilityPolicy.RELIABLE
-    assert meeting._requested_qos([strong, weak]).reliability == ReliabilityPolicy.BEST_EFFORT
+    assert station.requested_qos([strong]).reliability == ReliabilityPolicy.RELIABLE
+    assert station.requested_qos([strong, weak]).reliability == ReliabilityPolicy.BEST_EFFORT
 
 
 def test_a_job_crosses_a_process_boundary_whole(tmp_path: Path) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import ast
-import inspect
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,6 +13,7 @@ from hypothesis import strategies as st
 from autograder.lockstep import protocol
 from autograder.lockstep.protocol import MAX_LINE, MAX_TEXT, MAX_TOPICS, ProtocolError
 from autograder.lockstep.stepper import HOST
+from autograder.ros.discovery import PROFILES
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
@@ -22,7 +21,10 @@ JSON = st.recursive(
     max_leaves=20,
 )
 FIELDS = st.sampled_from(
-    ["published", "late", "nodes", "timers", "unmatched", "subscriptions", "phase", "type", "message", "traceback"]
+    [
+        *("sent", "late", "changed", "nodes", "timers", "writers", "readers", "clients", "servers", "early", "kept"),
+        *("prefix", "phase", "type", "message", "traceback"),
+    ]
 )
 
 
@@ -68,23 +70,49 @@ def test_no_bytes_get_through_but_events(noise: bytes) -> None:
 @given(st.dictionaries(FIELDS, JSON))
 def test_forged_fields_of_any_type_become_records_of_the_right_one(forged: dict[str, Any]) -> None:
     reply = protocol.reply(forged)
-    assert all(type(topic) is str and type(n) is int and n >= 0 for topic, n in reply.published.items())
-    assert type(reply.late) is bool
+    assert all(type(topic) is str and type(n) is int and n >= 0 for topic, n in reply.sent.items())
+    assert all(type(channel) is str for channel in reply.late)
+    assert type(reply.changed) is bool
     description = protocol.description(forged)
-    assert all(type(name) is str for name in (*description.nodes, *description.unmatched))
+    assert all(type(name) is str for name in (*description.nodes, *description.servers, *description.reads()))
     assert all(type(period) is int and period > 0 for period in description.timers)
-    assert all(type(n) is int and n >= 0 for n in description.subscriptions.values())
+    assert all(type(name) is str and type(n) is int for name, n in description.writers)
+    assert all(n is None or type(n) is int for _, n in description.readers)
+    assert all(type(name) is str and type(ready) is bool for name, ready in description.clients)
+    assert all(type(n) is int and n >= 0 for n in (*description.early.values(), *description.kept.values()))
+    assert type(description.prefix) is str
     crash = protocol.crash(forged)
     assert crash.phase in ("import", "start", "spin")
     assert all(type(text) is str for text in (crash.type, crash.message, crash.traceback))
 
 
 def test_true_is_no_count() -> None:
-    assert protocol.reply({"published": {"/a": True, "/b": -1, "/c": 1.0, "/d": 2}}).published == {"/d": 2}
+    assert protocol.reply({"sent": {"/a": True, "/b": -1, "/c": 1.0, "/d": 2}}).sent == {"/d": 2}
 
 
-def test_late_is_true_and_nothing_like_it() -> None:
-    assert [protocol.reply({"late": value}).late for value in (True, 1, "true", [0], None)] == [True, *[False] * 4]
+def test_changed_is_true_and_nothing_like_it() -> None:
+    assert [protocol.reply({"changed": value}).changed for value in (True, 1, "true", [0], None)] == [
+        True,
+        *[False] * 4,
+    ]
+
+
+def test_a_description_says_what_the_program_reads() -> None:
+    description = protocol.description(
+        {
+            "readers": [[["/scan T reliable volatile", "/scan T best-effort volatile"], 1], [["/odom T"], None]],
+            "servers": ["/add S request"],
+            "clients": [["/ask S request", True]],
+            "prefix": "0a1b",
+        }
+    )
+    assert description.reads() == {
+        "/scan T reliable volatile",
+        "/scan T best-effort volatile",
+        "/odom T",
+        "/add S request",
+        "/ask S response 0a1b",
+    }
 
 
 def test_texts_and_lists_are_cut() -> None:
@@ -92,14 +120,17 @@ def test_texts_and_lists_are_cut() -> None:
     assert (len(crash.message), len(crash.traceback)) == (MAX_TEXT, MAX_TEXT)
     description = protocol.description({"nodes": ["/n"] * 10 * MAX_TOPICS, "timers": [1] * 10 * MAX_TOPICS})
     assert (len(description.nodes), len(description.timers)) == (MAX_TOPICS, MAX_TOPICS)
-    assert len(protocol.reply({"published": {str(n): n for n in range(10 * MAX_TOPICS)}}).published) == MAX_TOPICS
+    assert len(protocol.reply({"sent": {str(n): n for n in range(10 * MAX_TOPICS)}}).sent) == MAX_TOPICS
+
+
+def _trees() -> dict[str, ast.Module]:
+    return {path.name: ast.parse(path.read_text()) for path in HOST.glob("*.py")}
 
 
 def test_the_host_starts_at_the_time_that_the_grader_believes() -> None:
-    tree = ast.parse(Path(HOST).read_text())
     assigned = {
-        target.id: eval(compile(ast.Expression(node.value), str(HOST), "eval"))
-        for node in tree.body
+        target.id: eval(compile(ast.Expression(node.value), "host.py", "eval"))
+        for node in _trees()["host.py"].body
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.BinOp)
         for target in node.targets
         if isinstance(target, ast.Name)
@@ -107,10 +138,15 @@ def test_the_host_starts_at_the_time_that_the_grader_believes() -> None:
     assert assigned["START"] == protocol.START
 
 
+def test_the_host_announces_itself_as_the_grader_does() -> None:
+    assert (HOST / "profiles.xml").read_text() == PROFILES
+
+
 def test_the_host_imports_nothing_of_the_grader() -> None:
     imported = {
-        name
-        for node in ast.walk(ast.parse(Path(HOST).read_text()))
+        name.split(".")[0]
+        for tree in _trees().values()
+        for node in ast.walk(tree)
         for name in (
             [alias.name for alias in node.names]
             if isinstance(node, ast.Import)
@@ -119,5 +155,5 @@ def test_the_host_imports_nothing_of_the_grader() -> None:
             else []
         )
     }
-    assert not {name for name in imported if name.split(".")[0] in ("autograder", "sim")}
-    assert inspect.getsourcefile(protocol) != str(HOST)
+    assert "lockstep_host" in imported
+    assert not imported & {"autograder", "sim"}

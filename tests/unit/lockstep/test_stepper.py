@@ -44,12 +44,12 @@ def test_a_host_that_answers_is_stepped(host: Open) -> None:
     answers = r"""
 os.write(write, b'{"event": "ready"}\n')
 os.read(read, 999)
-os.write(write, b'{"event": "done", "published": {"/cmd_vel": 3}, "late": false}\n')
+os.write(write, b'{"event": "done", "sent": {"/cmd_vel": 3}, "late": []}\n')
 os.read(read, 999)
 """
     program = host(answers)
     program.wait_ready()
-    assert program.step(10**9, {"/scan": 1}).published == {"/cmd_vel": 3}
+    assert program.step([10**9], {"/scan": 1}).sent == {"/cmd_vel": 3}
     assert program.quit() == 0
 
 
@@ -75,7 +75,7 @@ def test_a_step_that_does_not_come_back_is_stuck(host: Open, monkeypatch: pytest
     monkeypatch.setattr(stepper, "STEP_SECONDS", 0.5)
     program = host('os.write(write, b\'{"event": "ready"}\\n\')\nsignal.pause()')
     program.wait_ready()
-    assert _kind(lambda: program.step(1, {})) is Kind.STUCK
+    assert _kind(lambda: program.step([1], {})) is Kind.STUCK
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ while True:
 
     def step_until_the_pipe_is_full() -> None:
         for step in range(10_000):
-            program.step(step, {"/scan": step})
+            program.step([step], {"/scan": step})
 
     assert _kind(step_until_the_pipe_is_full) is Kind.STUCK
 
