@@ -57,7 +57,7 @@ class LockstepLab(Lab):
         self._patience = DELIVERY_SECONDS
         self._players: list[Player] = []
         for program, path in zip(self.programs, self._paths, strict=True):
-            arguments = self._arguments(program)
+            arguments = program.words(self._folder)
             stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
             self._players.append(Player(program, stepper))
         for player in self._players:

@@ -5,41 +5,30 @@ from __future__ import annotations
 import itertools
 import math
 import shutil
-import tempfile
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from types import TracebackType
 from typing import Any, TypeVar
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.lab.goals import Actions, Goal, Stamped
+from autograder.lab.programs import Program, lay_down
 from autograder.lab.station import DEPTH, NAME, Handler, Station
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.lockstep_host.channels import type_name
-from autograder.sandbox import Mount, Process
+from autograder.sandbox import Process
 
 __all__ = ["DEPTH", "DOMAINS", "MEETING_SECONDS", "NAME", "Lab", "Program", "Stamped"]
 
 MEETING_SECONDS = 30.0  # real time for the two sides to find each other
 DOMAINS = 100  # beyond about that number, DDS ports reach into the ephemeral ones
-FILES = "{files}"  # stands in arguments for the folder of the lab's files
 
 _LABS = itertools.count()
 
 AnyLab = TypeVar("AnyLab", bound="Lab")
-
-
-@dataclass(frozen=True)
-class Program:
-    """An executable of a package, and its arguments."""
-
-    package: str
-    executable: str
-    arguments: tuple[str, ...] = ()
 
 
 class Lab(ABC):
@@ -140,7 +129,7 @@ class Lab(ABC):
         self.node = self._station.node
         self._inside = True
         try:
-            self._lay_down_files()
+            self._sandbox, self._folder = lay_down(self._files, self._workspace, self._sandbox)
             for name, (kind, handler) in self._services.items():
                 self._station.serve(kind, name, handler)
             self._start()
@@ -155,8 +144,7 @@ class Lab(ABC):
     ) -> None:
         self._inside = False
         self._station.close()
-        if self._folder:
-            shutil.rmtree(self._folder, ignore_errors=True)
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     @property
     def process(self) -> Process:
@@ -287,14 +275,3 @@ class Lab(ABC):
     def _spin(self, timeout: float) -> None:
         """Take what has arrived; wait for something at most `timeout` seconds."""
         self._station.spin(timeout)
-
-    def _lay_down_files(self) -> None:
-        """Write the lab's files where the programs can read them, and nobody else can write."""
-        if self._files:
-            self._folder = tempfile.mkdtemp(prefix=".lab-", dir=self._workspace.root)
-            for name, text in self._files.items():
-                Path(self._folder, name).write_text(text, encoding="utf-8")
-            self._sandbox = replace(self._sandbox, mounts=(*self._sandbox.mounts, Mount(Path(self._folder))))
-
-    def _arguments(self, program: Program) -> tuple[str, ...]:
-        return tuple(argument.replace(FILES, self._folder) for argument in program.arguments)

@@ -27,7 +27,7 @@ class RealtimeLab(Lab):
         self._began = time.monotonic()
         self._processes: list[Process] = []
         for program, path in zip(self.programs, self._paths, strict=True):
-            command = [sys.executable, str(path), *self._arguments(program)]
+            command = [sys.executable, str(path), *program.words(self._folder)]
             self._processes.append(launch(command, self._sandbox))
         if not self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self.programs), START_SECONDS):
             raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self.output))

@@ -31,7 +31,7 @@ for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json",
         open(_path, "w").write('{{"score": 51}}')
     except OSError:
         pass
-for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/host.py"):
+for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/lockstep_host/host.py"):
     try:
         # The file itself: below /tmp, a new one of its name can be made in the sandbox's own /tmp, and harms nobody.
         open(_path, "r+").write("raise SystemExit(0)")

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from autograder.lockstep import protocol
 from autograder.lockstep.protocol import MAX_LINE, MAX_TEXT, MAX_TOPICS, ProtocolError
 from autograder.lockstep.stepper import HOST
-from autograder.ros.discovery import PROFILES
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
@@ -136,10 +135,6 @@ def test_the_host_starts_at_the_time_that_the_grader_believes() -> None:
         if isinstance(target, ast.Name)
     }
     assert assigned["START"] == protocol.START
-
-
-def test_the_host_announces_itself_as_the_grader_does() -> None:
-    assert (HOST / "profiles.xml").read_text() == PROFILES
 
 
 def test_the_host_imports_nothing_of_the_grader() -> None:

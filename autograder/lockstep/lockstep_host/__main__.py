@@ -1,0 +1,38 @@
+"""Run the program that the command line names, in lockstep."""
+
+from __future__ import annotations
+
+import importlib
+import runpy
+import sys
+import traceback
+from pathlib import Path
+
+TEXT = 8000  # characters of an exception's texts that are reported
+
+
+def main() -> None:
+    """Run the program."""
+    here = Path(__file__).resolve().parent
+    sys.path.insert(0, str(here.parent))
+    host_module, link_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "link"))
+    read_fd, write_fd, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
+    sys.argv = sys.argv[3:]
+    sys.path[:2] = [str(Path(program).parent)]  # as Python sets it for a program that is started by its path
+    host = host_module.Host(link_module.Link(read_fd, write_fd))
+    host.install()
+    try:
+        runpy.run_path(program, run_name="__main__")
+    except Exception as error:
+        host.link.send(
+            event="crash",
+            phase=host.phase,
+            type=type(error).__name__,
+            message=str(error)[-TEXT:],
+            traceback="".join(traceback.format_exception(error))[-TEXT:],
+        )
+        raise
+
+
+if __name__ == "__main__":
+    main()

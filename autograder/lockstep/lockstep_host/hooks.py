@@ -1,0 +1,216 @@
+"""Hooks: where rclpy tells the ledger what was made, what was sent and what was taken.
+
+Sending and taking are caught at rclpy's C objects, below services, actions and executors, so nothing goes past.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.action import ActionClient, ActionServer
+from rclpy.client import Client
+from rclpy.impl.implementation_singleton import rclpy_implementation as c
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
+
+from . import channels
+from .ledger import NOT_COUNTED, Ledger, Reader
+
+_take_message = c.Subscription.take_message
+_is_ready = ActionClient.is_ready
+_PARTS = {
+    "goal": ("send_goal", "SendGoalService"),
+    "cancel": ("cancel_goal", "CancelGoalService"),
+    "result": ("get_result", "GetResultService"),
+}
+_FEEDBACK = QoSProfile(depth=10)
+
+
+class Hooks:
+    """The hooks of one ledger.
+
+    Attributes:
+        changed: True when there are endpoints or timers that the grader has not been told of.
+    """
+
+    def __init__(self, ledger: Ledger) -> None:
+        self.ledger = ledger
+        self.changed = True
+        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth if latched
+        self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
+
+    def install(self) -> None:
+        """Put the hooks into rclpy."""
+        _after(Publisher, "__init__", self._made_publisher)
+        _after(Subscription, "__init__", self._made_subscription)
+        _after(Client, "__init__", self._made_client)
+        _after(Service, "__init__", self._made_service)
+        _after(ActionServer, "__init__", self._made_action_server)
+        _after(ActionClient, "__init__", self._made_action_client)
+        _after(Timer, "__init__", self._made_timer)
+        for method in ("publish", "publish_raw"):
+            _after(c.Publisher, method, self._wrote(""))
+        _after(c.Client, "send_request", self._asked(""))
+        _after(c.Client, "take_response", self._took(""))
+        _after(c.Service, "service_take_request", self._took(""))
+        _after(c.Service, "service_send_response", self._answered("", 1))
+        for part in _PARTS:
+            _after(c.ActionClient, f"send_{part}_request", self._asked(part))
+            _after(c.ActionClient, f"take_{part}_response", self._took(part))
+            _after(c.ActionServer, f"take_{part}_request", self._took(part))
+            _after(c.ActionServer, f"send_{part}_response", self._answered(part, 0))
+        for part in ("feedback", "status"):
+            _after(c.ActionServer, f"publish_{part}", self._wrote(part))
+        _after(c.ActionClient, "take_feedback", self._took("feedback"))
+        c.Subscription.take_message = lambda handle, kind, raw: self._take_message(handle, kind, raw)
+        ActionClient.is_ready = _is_ready_but_for_status
+
+    # What was made.
+
+    def _made_publisher(self, publisher: Any, *_: Any, **__: Any) -> None:
+        if publisher.topic_name not in NOT_COUNTED:
+            channel = channels.written(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
+            depth = (publisher.qos_profile.depth or 1) if channels.is_latched(channel) else 0
+            self._written[(publisher.handle.pointer, "")] = channel, depth
+            self.changed = True
+
+    def _made_subscription(self, subscription: Any, *_: Any, **__: Any) -> None:
+        if subscription.topic_name not in NOT_COUNTED:
+            qos = subscription.qos_profile
+            read = channels.read(subscription.topic_name, subscription.msg_type, qos)
+            latched = qos.durability.name == "TRANSIENT_LOCAL"
+            self.ledger.add(subscription.handle, Reader(subscription, read, depth=qos.depth or 1, latched=latched))
+            self.changed = True
+
+    def _made_client(self, client: Any, *_: Any, **__: Any) -> None:
+        self._calls(client, client.handle, "", 0, client.service_name, client.srv_type)
+
+    def _made_service(self, service: Any, *_: Any, **__: Any) -> None:
+        self._serves(service, service.handle, "", 0, service.service_name, service.srv_type)
+
+    def _made_action_server(self, server: Any, node: Any, kind: Any, name: str, *_: Any, **options: Any) -> None:
+        for index, (part, (service, of)) in enumerate(_PARTS.items()):
+            resolved = node.resolve_service_name(f"{name}/_action/{service}")
+            self._serves(server, server._handle, part, index, resolved, getattr(kind.Impl, of))
+        for part, of, qos in (
+            ("feedback", kind.Impl.FeedbackMessage, options.get("feedback_pub_qos_profile", _FEEDBACK)),
+            (
+                "status",
+                kind.Impl.GoalStatusMessage,
+                options.get("status_pub_qos_profile", qos_profile_action_status_default),
+            ),
+        ):
+            topic = node.resolve_topic_name(f"{name}/_action/{part}")
+            self._written[(server._handle.pointer, part)] = channels.written(topic, of, qos), 0
+        server.lockstep_requests = self._requests(server._handle)
+        server.lockstep_feedback = self._written[(server._handle.pointer, "feedback")][0]
+
+    def _made_action_client(self, client: Any, node: Any, kind: Any, name: str, *_: Any, **options: Any) -> None:
+        for index, (part, (service, of)) in enumerate(_PARTS.items()):
+            resolved = node.resolve_service_name(f"{name}/_action/{service}")
+            self._calls(client, client._client_handle, part, 2 + index, resolved, getattr(kind.Impl, of))
+        topic = node.resolve_topic_name(f"{name}/_action/feedback")
+        qos = options.get("feedback_sub_qos_profile", _FEEDBACK)
+        read = channels.read(topic, kind.Impl.FeedbackMessage, qos)
+        self.ledger.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
+        client.lockstep_requests = self._requests(client._client_handle)
+        client.lockstep_feedback = read
+
+    def _made_timer(self, timer: Any, *_: Any, **__: Any) -> None:
+        self.changed = True
+
+    def _requests(self, handle: Any) -> list[str]:
+        return [channels.request(*self._served[(handle.pointer, part)]) for part in _PARTS]
+
+    def _calls(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
+        self._served[(handle.pointer, part)] = name, kind
+        self.ledger.add(handle, Reader(entity, (channels.response(name, kind, channels.OWN),), part=(part, index)))
+        self.changed = True
+
+    def _serves(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
+        self._served[(handle.pointer, part)] = name, kind
+        self.ledger.add(handle, Reader(entity, (channels.request(name, kind),), part=(part, index)))
+        self.changed = True
+
+    # What was sent.
+
+    def _wrote(self, part: str) -> Callable[..., None]:
+        def wrote(handle: Any, *_: Any, result: Any) -> None:
+            there = self._written.get((handle.pointer, part))
+            if there is not None:
+                self.ledger.sent(*there)
+
+        return wrote
+
+    def _asked(self, part: str) -> Callable[..., None]:
+        def asked(handle: Any, *_: Any, result: Any) -> None:
+            self.ledger.sent(channels.request(*self._served[(handle.pointer, part)]))
+
+        return asked
+
+    def _answered(self, part: str, index: int) -> Callable[..., None]:
+        def answered(handle: Any, *arguments: Any, result: Any) -> None:
+            name, kind = self._served[(handle.pointer, part)]
+            self.ledger.sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
+
+        return answered
+
+    # What was taken.
+
+    def _took(self, part: str) -> Callable[..., None]:
+        def took(handle: Any, *_: Any, result: Any) -> None:
+            if result is not None and not (isinstance(result, tuple) and None in map(_nothing, result)):
+                self.ledger.took(handle, part)
+
+        return took
+
+    def _take_message(self, handle: Any, kind: Any, raw: bool) -> Any:
+        taken = _take_message(handle, kind, raw)
+        if taken is None:
+            return None
+        reader = self.ledger.readers.get((handle.pointer, ""))
+        if reader is not None and reader.met and not reader.latched and taken[1]["source_timestamp"] < reader.met:
+            return None  # it was under way when the program met the grader; whether it comes is a matter of luck
+        self.ledger.took(handle, "")
+        return taken
+
+
+def _nothing(value: Any) -> Any:
+    return None if value is None else True
+
+
+def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
+    """Take a goal's new status in passing: its queue holds one message, so how many come is a matter of luck."""
+    ready = bool(_is_ready(client, wait_set))
+    answered = client._is_goal_response_ready or client._is_cancel_response_ready or client._is_result_response_ready
+    if ready and not answered and not client._is_feedback_ready:
+        taking = client.execute(client.take_data())
+        try:
+            taking.send(None)
+        except StopIteration:
+            return False
+    return ready
+
+
+def _after(kind: Any, method: str, then: Callable[..., None]) -> None:
+    """Let `then` run after each call of a method, with the call's arguments."""
+    original = getattr(kind, method)
+    if method == "__init__":
+
+        def init(self: Any, *arguments: Any, **options: Any) -> None:
+            original(self, *arguments, **options)
+            then(self, *arguments, **options)
+
+        kind.__init__ = init
+        return
+
+    def call(self: Any, *arguments: Any) -> Any:
+        result = original(self, *arguments)
+        then(self, *arguments, result=result)
+        return result
+
+    setattr(kind, method, call)
