@@ -51,7 +51,7 @@ class Wheels(Node):
 
     async def execute(self, handle):
         """Hand the goal to the timer, and await its end."""
-        self.handle, self.origin = handle, self.odometry
+        self.goal_handle, self.origin = handle, self.odometry
         self.best, self.ticks_without_progress = 0.0, 0
         self.under_way = Future()
         reason = await self.under_way
@@ -72,18 +72,18 @@ class Wheels(Node):
         """Drive on, or end the goal."""
         if self.under_way is None or self.under_way.done():
             return
-        goal, driven = self.handle.request, self.driven()
+        goal, driven = self.goal_handle.request, self.driven()
         self.ticks_without_progress += 1
         if driven >= self.best + 0.01:
             self.best, self.ticks_without_progress = driven, 0
         if driven >= goal.distance:
             self.under_way.set_result("")
-        elif self.handle.is_cancel_requested:
+        elif self.goal_handle.is_cancel_requested:
             self.under_way.set_result("asked to")
         elif self.ticks_without_progress * TICK > 1.0:
             self.under_way.set_result("stuck")
         else:
-            self.handle.publish_feedback(DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
+            self.goal_handle.publish_feedback(DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
             command = Twist()
             command.linear.x = goal.speed
             self.commands.publish(command)

@@ -27,7 +27,7 @@ def report(node, heard, name, publisher):
     status = RobotStatus(robot_name=name, battery_level=percent(battery), is_charging=bool(charging))
     status.header.frame_id = "base_link"
     status.header.stamp = node.get_clock().now().to_msg()
-    status.joint_positions.extend(joints.position if joints else [])
+    status.joint_positions = joints.position if joints else []
     publisher.publish(status)
 
 
