@@ -24,7 +24,7 @@ MARGIN = 0.15  # s beyond the time-out that a timer at 10 Hz may need
 )
 def test_stops_before_first_scan(fresh_robot: Robot) -> None:
     """It stands still, and says so on cmd_vel, until the first scan has come."""
-    expect_stop(fresh_robot.wait(1.5), "Before the first scan")
+    expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
 
 
 @check(
@@ -41,7 +41,7 @@ def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
     distance = draw.uniform(1.5, 3.0)
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
     began = robot.seconds
-    robot.wait(3.0)
+    robot.left_alone(3.0)
     late = robot.messages("/cmd_vel", since=began + contract.STALE_AFTER + MARGIN)
     expect_stop(late, f"More than {contract.STALE_AFTER} s after the last scan")
 
@@ -55,5 +55,5 @@ def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
 def test_recovers(robot: Robot, draw: random.Random) -> None:
     """It drives again when scans come again."""
     distance = draw.uniform(1.5, 3.0)
-    robot.wait(2.0)
+    robot.left_alone(2.0)
     expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")

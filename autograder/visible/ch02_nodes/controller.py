@@ -73,7 +73,7 @@ def test_qos(robot: Robot) -> None:
 )
 def test_waits(fresh_robot: Robot) -> None:
     """It stands still until the first scan has come."""
-    expect_stop(fresh_robot.wait(1.0), "Before the first scan")
+    expect_stop(fresh_robot.left_alone(1.0), "Before the first scan")
 
 
 @check(points=1, group=GROUP, visibility=SEEN, depends=("topics",), hints=(contract.RULE_FORWARD,))
@@ -124,7 +124,7 @@ def test_dead_lidar(robot: Robot) -> None:
     """It stands still one second after the last scan."""
     robot.see(scan(fill=2.0))
     began = robot.seconds
-    robot.wait(2.0)
+    robot.left_alone(2.0)
     expect_stop(robot.messages("/cmd_vel", since=began + 1.0), "A second after the last scan")
 
 

@@ -40,7 +40,7 @@ class Robot(LockstepLab):
         self.publish("/scan", scan)
         self.run(SCAN_SECONDS)
 
-    def wait(self, seconds: float) -> list[Stamped]:
+    def left_alone(self, seconds: float) -> list[Stamped]:
         """Show nothing for a while; return the commands of that time."""
         began = self.seconds
         self.run(seconds)

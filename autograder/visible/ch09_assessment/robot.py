@@ -49,11 +49,11 @@ class NodeLab(LockstepLab):
             workspace, PACKAGE, name, offers=offers, listens=listens, arguments=("--ros-args", *words) if words else ()
         )
         self._types, self._name = types, name
-        self._heard, self._told = next(iter(listens)), next(iter(offers), "")
+        self._out, self._in = next(iter(listens)), next(iter(offers), "")
 
     def heard(self, since: float = -1.0) -> list[Stamped]:
         """Return what it has published."""
-        return self.messages(self._heard, since=since)
+        return self.messages(self._out, since=since)
 
     def tell(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
         """Send temperatures, stamped with the seconds `first`, `first` + 1, ...; return the messages that came."""
@@ -61,7 +61,7 @@ class NodeLab(LockstepLab):
         for second, celsius in enumerate(temperatures, first):
             message = self._types.temperature(celsius=float(celsius))
             message.stamp.sec = second
-            self.publish(self._told, message)
+            self.publish(self._in, message)
             self.run(STEP)
         return [stamped.message for stamped in self.heard(began)]
 
