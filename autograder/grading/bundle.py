@@ -62,6 +62,7 @@ def bring_in(bundle: dict[str, Path], workspace: Workspace) -> str:
 
 def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
     alone = replace(workspace, root=workspace.scratch / "bundle")
+    shutil.rmtree(alone.root, ignore_errors=True)  # of a build that failed, and is tried again for another package
     for name, folder in bundle.items():
         shutil.copytree(folder, alone.root / "src" / name, symlinks=True)
     log = colcon_build(alone, "--packages-select", *bundle)
