@@ -30,12 +30,12 @@ test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile -m "not tour" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not tour" $(PYTEST_ARGS)
 
 check:          ## the fast part of the tests
 	@$(BOOTSTRAP) --dev
 	@$(MAKE) --no-print-directory lint
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile -m "not slow and not browser" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not slow and not browser" $(PYTEST_ARGS)
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
 LINTED := autograder sim tests assets nbgrader_config.py

@@ -35,6 +35,18 @@ _DOMAINS = itertools.count(int(hashlib.sha256(_RUN.encode()).hexdigest(), 16) % 
 activate(domain=next(_DOMAINS) % 101 + 1)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Keep a file's tests on one worker; the long ones that go through every chapter, a chapter's."""
+    for item in items:
+        group = str(item.path)
+        if item.get_closest_marker("slow") is not None:
+            given = item.callspec.params if hasattr(item, "callspec") else {}
+            chapter = given.get("assignment") or getattr(given.get("chapter"), "assignment", "")
+            group += f" {chapter}"
+        item.add_marker(pytest.mark.xdist_group(group))
+
+
 @pytest.fixture(autouse=True)
 def ros_domain(monkeypatch: pytest.MonkeyPatch) -> int:
     """Give the test, and the processes it starts, a ROS domain of its own; return its number."""
