@@ -24,6 +24,7 @@ from autograder.sandbox import Process
 DELIVERY_SECONDS = 15.0  # real time, over a whole run, for messages that were announced and have not come yet
 SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be seen
 FINEST_TICK_NS = 10_000_000
+SLACK_NS = 1_000_000  # what wants to wake so shortly before the end of a step wakes at its end
 ROUNDS = 1000  # in one step; programs that still answer each other then will go on for ever
 
 
@@ -36,6 +37,7 @@ class Player:
         self.description = Description()
         self.reads: frozenset[str] = frozenset()
         self.mail: Counter[str] = Counter()
+        self.wake: int | None = None
 
     def describe(self) -> Description:
         """Ask what the program's nodes look like now."""
@@ -50,10 +52,14 @@ class LockstepLab(Lab):
     They start at ROS time `START`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. A step is
     lived in rounds, the programs always in the order in which they were named: first all take what was sent before,
     then their timers fire, then they take what they sent each other, until nobody has anything left to take.
+
+    Attributes:
+        notes: why steps are not all that moves the programs, if so: thread, clock or sleep.
     """
 
     def _start(self) -> None:
         self._now_ns = START
+        self.notes: list[str] = []
         self._patience = DELIVERY_SECONDS
         self._players: list[Player] = []
         for program, path in zip(self.programs, self._paths, strict=True):
@@ -89,6 +95,19 @@ class LockstepLab(Lab):
         Raises:
             GraderError: messages were lost on the way, which loopback does not do by itself.
         """
+        end = self._now_ns + dt_ns
+        while True:
+            self._advance(self._next_wake(end) - self._now_ns)
+            if self._now_ns >= end:
+                return
+
+    def _next_wake(self, end: int) -> int:
+        """Return the instant before `end` at which the first program wants to go on, or `end`."""
+        earliest = self._now_ns + FINEST_TICK_NS
+        wakes = [max(player.wake, earliest) for player in self._players if player.wake is not None]
+        return min((wake for wake in wakes if wake < end - SLACK_NS), default=end)
+
+    def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
         if dt_ns and len(self._players) == 1:
             self._turn(self._players[0], [self._now_ns - 1, self._now_ns])
@@ -135,6 +154,10 @@ class LockstepLab(Lab):
         mail, player.mail = player.mail, Counter()
         with self._naming(player):
             reply = player.stepper.step(instants, mail)
+        player.wake = reply.wake
+        for reason in reply.notes:
+            if reason not in self.notes:
+                self.notes.append(reason)
         for channel in reply.late:
             if mail[channel] and not any(channel in dict(other.description.writers) for other in self._players):
                 raise GraderError(f"messages that were sent to the student's node did not arrive: {channel}")

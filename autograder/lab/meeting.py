@@ -185,7 +185,7 @@ class Lab(ABC):
         answers: list[Any] = []
         began = self.seconds
         client = self._station.client(service_type, name)
-        if not self._reach(client, seconds):
+        if client is None or not self._reach(client, seconds):
             return None
         self._station.ask(service_type, name, request, answers.append)
         return answers[0] if self.until(lambda: bool(answers), began + seconds - self.seconds) else None
@@ -206,7 +206,7 @@ class Lab(ABC):
         `seconds` of ROS time are given to a server that is not there yet; if it does not come, `accepted` stays None.
         """
         clients = self._actions.prepare(action_type, name, self._writers)
-        if not all([self._reach(client, seconds) for client in clients]):
+        if not all(client is not None and self._reach(client, seconds) for client in clients):
             return Goal()
         return self._actions.send(action_type, name, goal)
 

@@ -100,10 +100,16 @@ class Station:
         self.sent[self.written[topic]] += 1
 
     def client(self, kind: Any, name: str) -> Any:
-        """Return the client of a service, made when it is first asked for."""
+        """Return the client of a service, made when it is first asked for.
+
+        None if this process knows the service by another type: DDS allows one of each name in a process.
+        """
         channel = channels.request(name, kind)
         if (name, channel) not in self._clients:
-            client = self._clients[(name, channel)] = self.node.create_client(kind, name)
+            try:
+                client = self._clients[(name, channel)] = self.node.create_client(kind, name)
+            except rclpy_implementation.RCLError:
+                return None
 
             def take() -> bool:
                 taken = client.handle.take_response(kind.Response)

@@ -5,7 +5,8 @@
 it and has run every timer that is due, so a run is faster than real time and the same every time.
 """
 
+from autograder.lockstep.exceptions import UnsteppableError
 from autograder.lockstep.protocol import Crash, Description, Reply
 from autograder.lockstep.stepper import Stepper
 
-__all__ = ["Crash", "Description", "Reply", "Stepper"]
+__all__ = ["Crash", "Description", "Reply", "Stepper", "UnsteppableError"]

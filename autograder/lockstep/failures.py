@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.lockstep.protocol import Crash
+from autograder.lockstep.protocol import Crash, Deadlock
 from autograder.sandbox import Ending, Process
 
 _LINES = 25
@@ -93,6 +93,46 @@ def stuck(kind: Kind, seconds: float, output: str) -> Diagnosis:
             "Look for a loop that waits, a time.sleep or a blocking call."
         )
     return Diagnosis(kind, sentence, tail(output))
+
+
+_UNSTEPPABLE = {
+    "thread": "it uses rclpy in threads of its own",
+    "clock": "it has a timer on a clock that is not the ROS clock",
+    "sleep": "it sleeps in a loop instead of spinning",
+}
+
+
+def say_unsteppable(reason: str) -> str:
+    """Say in half a sentence why a program cannot be stepped."""
+    return _UNSTEPPABLE[reason]
+
+
+def unsteppable(reason: str, output: str) -> Diagnosis:
+    """Name a program whose time cannot be stepped."""
+    sentence = (
+        f"Your node's time cannot be stepped: {say_unsteppable(reason)}. Let a timer of the node do the work, and "
+        "rclpy.spin(node) run it."
+    )
+    return Diagnosis(Kind.NEVER_STARTED, sentence, tail(output))
+
+
+_DEADLOCKS = {
+    "thread": "the only thread that could run {it} is waiting itself. In a callback, use call_async() or "
+    "send_goal_async() and a done callback, or a timer for what happens again and again",
+    "group": "{it} is in a callback group that the waiting callback holds, so it can never run. Use a done callback, "
+    "or put the two into different callback groups",
+    "spin": "nothing spins yet, so {it} can never run. Use call_async() or send_goal_async() with "
+    "rclpy.spin_until_future_complete()",
+}
+
+
+def diagnose_deadlock(deadlock: Deadlock, output: str) -> Diagnosis:
+    """Name a call that will never return."""
+    asked = f" for an answer of {deadlock.name}" if deadlock.name else ""
+    it = "what takes the answer" if deadlock.name else "the callback that would end the wait"
+    why = _DEADLOCKS[deadlock.reason].format(it=it)
+    sentence = f"Your node waits for ever in {deadlock.what}{asked}, a deadlock: {why}."
+    return Diagnosis(Kind.STUCK, sentence, tail(output))
 
 
 def tail(text: str, lines: int = _LINES) -> str:

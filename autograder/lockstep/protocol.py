@@ -7,7 +7,10 @@
     host -> stepper   {"event": "ready"}                  once, when the node first waits for work
                       {"event": "description", ...}
                       {"event": "met"}
-                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "late": [CHANNEL, ...], "changed": BOOL}
+                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "late": [CHANNEL, ...], "changed": BOOL,
+                       "wake": NANOSECONDS, "notes": [REASON, ...]}
+                      {"event": "unsteppable", "reason": ...}
+                      {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
 
 Channels are named in `lockstep_host/channels.py`. "mail" is what the grader and other programs have sent on the
@@ -27,6 +30,7 @@ START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "t
 MAX_LINE = 64 * 1024
 MAX_TEXT = 8 * 1024
 MAX_TOPICS = 256
+REASONS = ("thread", "clock", "sleep")
 
 
 class ProtocolError(Exception):
@@ -73,11 +77,15 @@ class Reply:
         sent: how many messages the nodes have sent in it, by channel.
         late: channels on which the nodes gave up waiting for messages that they were told of.
         changed: whether there are endpoints or timers that the last description did not name.
+        wake: the next instant at which something in the program wants to go on, besides its timers.
+        notes: why steps are not all that moves the program; see `Unsteppable`.
     """
 
     sent: dict[str, int] = field(default_factory=dict)
     late: tuple[str, ...] = ()
     changed: bool = False
+    wake: int | None = None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -88,6 +96,22 @@ class Crash:
     type: str
     message: str
     traceback: str
+
+
+@dataclass(frozen=True)
+class Deadlock:
+    """A call that will never return.
+
+    Attributes:
+        what: the call.
+        name: the service or action that it asks, or an empty string.
+        reason: what keeps the answer from being taken: thread (the only one is in the call), group (the callback group)
+            or spin (nothing spins yet).
+    """
+
+    what: str
+    name: str
+    reason: str
 
 
 def parse(line: bytes) -> dict[str, Any]:
@@ -133,8 +157,27 @@ def description(data: dict[str, Any]) -> Description:
 
 def reply(data: dict[str, Any]) -> Reply:
     """Read a `done` event, dropping what is not of the right type."""
+    wake = data.get("wake")
     return Reply(
-        sent=_counts(data.get("sent")), late=tuple(_texts(data.get("late"))), changed=data.get("changed") is True
+        sent=_counts(data.get("sent")),
+        late=tuple(_texts(data.get("late"))),
+        changed=data.get("changed") is True,
+        wake=wake if type(wake) is int else None,
+        notes=tuple(reason for reason in _texts(data.get("notes")) if reason in REASONS),
+    )
+
+
+def reason(data: dict[str, Any]) -> str:
+    """Read why a program cannot be stepped."""
+    found = _text(data.get("reason"))
+    return found if found in REASONS else "thread"
+
+
+def deadlock(data: dict[str, Any]) -> Deadlock:
+    """Read a `deadlock` event; texts are shortened to `MAX_TEXT`."""
+    why = _text(data.get("reason"))
+    return Deadlock(
+        what=_text(data.get("what")), name=_text(data.get("name")), reason=why if why in ("group", "spin") else "thread"
     )
 
 

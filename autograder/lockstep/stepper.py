@@ -14,7 +14,8 @@ from typing import Any
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import protocol
-from autograder.lockstep.failures import diagnose_crash, diagnose_ending, stuck
+from autograder.lockstep.exceptions import UnsteppableError
+from autograder.lockstep.failures import diagnose_crash, diagnose_deadlock, diagnose_ending, stuck
 from autograder.lockstep.protocol import Description, ProtocolError, Reply
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
@@ -29,7 +30,8 @@ QUIT_SECONDS = 20.0
 class Stepper:
     """One student's program in lockstep; a context manager that leaves no process behind.
 
-    Every method raises `StudentError` when the program crashes, ends, hangs or goes over a limit.
+    Every method raises `StudentError` when the program crashes, ends, hangs or goes over a limit, and
+    `UnsteppableError` when it turns out that it cannot be stepped.
     """
 
     def __init__(self, spec: Sandbox, executable: Path, *, python: str, arguments: tuple[str, ...] = ()) -> None:
@@ -101,6 +103,10 @@ class Stepper:
         if data["event"] == "crash":
             self.process.wait(QUIT_SECONDS)
             raise StudentError(diagnose_crash(protocol.crash(data)))
+        if data["event"] == "unsteppable":
+            raise UnsteppableError(protocol.reason(data), self.process.output)
+        if data["event"] == "deadlock":
+            raise StudentError(diagnose_deadlock(protocol.deadlock(data), self.process.output))
         if data["event"] != event:
             raise StudentError(self._ending())
         return data

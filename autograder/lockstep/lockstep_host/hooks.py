@@ -5,11 +5,13 @@ Sending and taking are caught at rclpy's C objects, below services, actions and 
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.action import ActionClient, ActionServer
 from rclpy.client import Client
+from rclpy.clock import ClockType
 from rclpy.impl.implementation_singleton import rclpy_implementation as c
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
@@ -18,6 +20,7 @@ from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
 from . import channels
+from .crew import Worker
 from .ledger import NOT_COUNTED, Ledger, Reader
 
 _take_message = c.Subscription.take_message
@@ -37,8 +40,9 @@ class Hooks:
         changed: True when there are endpoints or timers that the grader has not been told of.
     """
 
-    def __init__(self, ledger: Ledger) -> None:
+    def __init__(self, ledger: Ledger, note: Callable[[str], None]) -> None:
         self.ledger = ledger
+        self._note = note
         self.changed = True
         self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth if latched
         self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
@@ -122,6 +126,8 @@ class Hooks:
 
     def _made_timer(self, timer: Any, *_: Any, **__: Any) -> None:
         self.changed = True
+        if timer.clock.clock_type != ClockType.ROS_TIME:
+            self._note("clock")
 
     def _requests(self, handle: Any) -> list[str]:
         return [channels.request(*self._served[(handle.pointer, part)]) for part in _PARTS]
@@ -142,22 +148,28 @@ class Hooks:
         def wrote(handle: Any, *_: Any, result: Any) -> None:
             there = self._written.get((handle.pointer, part))
             if there is not None:
-                self.ledger.sent(*there)
+                self._sent(*there)
 
         return wrote
 
     def _asked(self, part: str) -> Callable[..., None]:
         def asked(handle: Any, *_: Any, result: Any) -> None:
-            self.ledger.sent(channels.request(*self._served[(handle.pointer, part)]))
+            self._sent(channels.request(*self._served[(handle.pointer, part)]))
 
         return asked
 
     def _answered(self, part: str, index: int) -> Callable[..., None]:
         def answered(handle: Any, *arguments: Any, result: Any) -> None:
             name, kind = self._served[(handle.pointer, part)]
-            self.ledger.sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
+            self._sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
 
         return answered
+
+    def _sent(self, channel: str, depth: int = 0) -> None:
+        thread = threading.current_thread()
+        if thread is not threading.main_thread() and not isinstance(thread, Worker):
+            self._note("thread")
+        self.ledger.sent(channel, depth)
 
     # What was taken.
 

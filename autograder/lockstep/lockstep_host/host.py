@@ -8,22 +8,29 @@ names instants of ROS time: at each, the program takes all messages that it was 
 from __future__ import annotations
 
 import sys
+import threading
 import time
 import weakref
+from pathlib import Path
 from typing import Any
 
 import rclpy
 import rclpy.executors
 import rclpy.time_source
 from rclpy.clock import ClockType, ROSClock
-from rclpy.executors import ConditionReachedException, Executor, SingleThreadedExecutor, TimeoutException, TimeoutObject
+from rclpy.executors import ConditionReachedException, Executor, TimeoutException, TimeoutObject
 from rclpy.impl.rcutils_logger import Throttle
 from rclpy.time import Time
 
 from . import channels, ledger
+from .blocking import Blocking
+from .clocks import Clocks
+from .crew import Worker
+from .executors import CrewExecutor, spin_until_future_complete
 from .hooks import Hooks
 from .link import Link
 from .survey import survey
+from .tasks import where
 
 START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "time is not known yet"
 PATIENCE = 5.0  # s of real time without any progress, after which messages that were announced count as lost
@@ -40,6 +47,7 @@ class Host:
     Attributes:
         time: ROS time in nanoseconds.
         phase: how far the program has come: import, start or spin.
+        wakes: instants at which something wants to go on; None for what waits without a time-out.
     """
 
     def __init__(self, link: Link) -> None:
@@ -47,7 +55,10 @@ class Host:
         self.time = START
         self.phase = "import"
         self.ledger = ledger.Ledger()
-        self.hooks = Hooks(self.ledger)
+        self.wakes: list[int | None] = []
+        self.hooks = Hooks(self.ledger, self.note)
+        self.blocking = Blocking(self)
+        self.clocks = Clocks(lambda: self.time, self.blocking.sleep, str(Path(__file__).parent))
         self._nodes: list[weakref.ref[Any]] = []
         self._clocks: weakref.WeakSet[Any] = weakref.WeakSet()  # time sources
         self._log_clock = ROSClock()  # rclpy throttles logs by the wall clock, which steps leave far behind
@@ -56,20 +67,28 @@ class Host:
         self._instants: list[int] = []  # of the present step, still to come
         self._positions: dict[Any, int] = {}  # where coroutines stood when they were last resumed
         self._seen: weakref.WeakSet[Any] = weakref.WeakSet()  # tasks that have been resumed
-        self._worked = False
+        self._worked = self._stale = False
         self._stepping = False
         self._late: list[str] = []
+        self._notes: list[str] = []
+        self._main = threading.current_thread()
+        self._quit = False
         self._progress = 0.0
 
     def install(self) -> None:
         """Put the host between rclpy and the program of this process."""
         self.hooks.install()
+        self.blocking.install()
+        self.clocks.install()
         time_source = rclpy.time_source.TimeSource
         rclpy.init = self.init
         Executor.wait_for_ready_callbacks = lambda executor, *args, **kwargs: self.wait(executor, *args, **kwargs)
         time_source.__init__ = lambda source, *, node=None: self.init_time_source(source, node=node)
         time_source._subscribe_to_clock_topic = lambda source: None  # the grader steps the clock, nobody else
-        rclpy.executors.MultiThreadedExecutor = OneThreadExecutor
+        Executor.spin_until_future_complete = lambda executor, future, timeout_sec=None: spin_until_future_complete(
+            executor, future, timeout_sec, lambda: self.time
+        )
+        rclpy.executors.MultiThreadedExecutor = CrewExecutor
         Throttle.params["throttle_time_source_type"] = self._log_clock
 
     # What rclpy calls instead of its own functions.
@@ -93,30 +112,72 @@ class Host:
         """Return the next callback to run; when there is none left in this step, wait for the next step."""
         condition = condition or (lambda: False)
         timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
-        entered = self.time
+        if not self.ours():
+            self.note("thread")
+            self.stop(event="unsteppable", reason="thread") if self.phase != "spin" else threading.Event().wait()
+        end = None if timeout is None or timeout < 0 else self.time + max(1, round(timeout * 1e9))
+        crew = getattr(executor, "crew", None)
         while True:
             if condition():
                 raise ConditionReachedException
-            owing = self._owing(executor) if self.ledger.owing else []
+            if crew is not None and crew.resume():
+                self._progress = time.monotonic()
+                self._positions.clear()
+                continue
+            idle = crew is not None and crew.full
+            owing = self._owing(executor) if self.ledger.owing and not idle else []
             for reader, entity in owing:
                 # Callbacks run in the order of their creation once all that is owed is there; otherwise, they would
                 # run in the order in which messages happen to come in.
                 seconds = OVERFLOW if 0 < reader.depth < reader.owes else PATIENCE
                 ledger.wait_for(reader, entity, executor.context, self._progress + seconds - time.monotonic())
-            work = self._ready(executor, nodes, condition)
+            work = None if idle else self._ready(executor, nodes, condition)
             if work is not None:
                 return work
             if owing:
                 self._give_up(owing)
                 continue
-            if self._instants:
-                self._set_time(self._instants.pop(0))
-                continue
-            # Nothing is left in this step. A finite time-out is ROS time; one of 0 waits for the next step, too,
-            # since a polling loop would never let a step end.
-            waited = self.time - entered
-            if timeout is not None and 0 <= timeout * 1e9 <= waited and waited > 0:
+            # Nothing is left to do now. A finite time-out is ROS time; one of 0 waits for the next step, too, since a
+            # polling loop would never let a step end.
+            if end is not None and self.time >= end:
                 raise TimeoutException
+            self.blocking.check(executor, end)
+            wake = end if timeout else None
+            self.wakes.append(wake)
+            try:
+                self.pass_time()
+            finally:
+                self.wakes.remove(wake)
+            self._stale = False
+
+    def ours(self) -> bool:
+        """Return whether the present thread is stepped, and not one that the program has made."""
+        thread = threading.current_thread()
+        return thread is self._main or isinstance(thread, Worker)
+
+    def has_nodes(self) -> bool:
+        """Return whether there is a node."""
+        return bool(self._alive())
+
+    def note(self, reason: str) -> None:
+        """Remember to tell the grader why steps are not all that moves this program."""
+        if reason not in self._notes:
+            self._notes.append(reason)
+
+    def stop(self, **event: Any) -> None:
+        """Tell the grader that the program cannot go on in lockstep."""
+        self.link.send(**event)
+        while self.link.receive()["op"] != "quit":
+            pass
+        self._quit = True
+        raise KeyboardInterrupt
+
+    def pass_time(self) -> None:
+        """Go on to the next instant of the present step, or wait for the next step."""
+        self._stale = True
+        if self._instants:
+            self._set_time(self._instants.pop(0))
+        else:
             self._next_step()
 
     # The steps.
@@ -128,9 +189,10 @@ class Host:
             try:
                 work = _wait_for_work(executor, timeout_sec=0, nodes=nodes, condition=condition)
             except TimeoutException:
-                # What ran since rclpy last looked may have left tasks, which only its next look will find.
-                if self._worked and any(not task.done() for task, _, _ in executor._tasks):
-                    self._worked = False
+                # What ran since rclpy last looked may have left tasks, or taken time that makes timers due; only its
+                # next look will find them.
+                if self._stale or (self._worked and any(not task.done() for task, _, _ in executor._tasks)):
+                    self._worked = self._stale = False
                     continue
                 return None
             if self._moves(work[0]):
@@ -144,7 +206,7 @@ class Host:
         rclpy resumes coroutines that wait over and over. One that stands where it stood, while nothing else has
         happened, has nothing to do before the next step.
         """
-        position = _position(task)
+        position = where(task)
         if task not in self._seen or self._positions.get(task, position) != position:
             self._seen.add(task)
             self._positions.clear()  # this one moves, which may be what others wait for
@@ -182,10 +244,13 @@ class Host:
             self.link.send(event="ready")
         if self._stepping:
             self._stepping = False
-            self.link.send(event="done", sent=self.ledger.flush(), late=self._late, changed=self.hooks.changed)
+            wake = min((wake for wake in self.wakes if wake is not None), default=None)
+            state = {"late": self._late, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
+            self.link.send(event="done", sent=self.ledger.flush(), **state)
         while True:
-            order = self.link.receive()
+            order: dict[str, Any] = {"op": "quit"} if self._quit else self.link.receive()
             if order["op"] == "quit":
+                self._quit = True
                 raise KeyboardInterrupt
             if order["op"] == "describe":
                 self.link.send(event="description", **self._describe())
@@ -225,26 +290,9 @@ class Host:
                 clock.set_ros_time_override(now)
 
 
-class OneThreadExecutor(SingleThreadedExecutor):
-    """Stands for MultiThreadedExecutor in lockstep: one thread, so that the order of callbacks is always the same."""
-
-    def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
-        super().__init__(context=context)
-
-
 def _holds(node: Any, entity: Any) -> bool:
     kinds = (node.subscriptions, node.services, node.clients, node.waitables)
     return any(entity is one for kind in kinds for one in kind)
-
-
-def _position(task: Any) -> int:
-    """Return where the innermost coroutine of a task stands."""
-    place, inner = -1, task._handler
-    while inner is not None:
-        frame = getattr(inner, "cr_frame", None)
-        place = hash((place, frame.f_lasti)) if frame is not None else place
-        inner = getattr(inner, "cr_await", None)
-    return place
 
 
 def _ros_time(nanoseconds: int) -> Time:

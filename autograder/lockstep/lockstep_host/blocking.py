@@ -1,0 +1,118 @@
+"""Blocking: what waits inside a callback waits in ROS time, and what would wait for ever says so.
+
+`time.sleep` and `threading.Event.wait` are caught; the latter is what rclpy's own blocking calls are made of:
+`client.call()`, `rate.sleep()`, `action_client.send_goal()`. In a single-threaded executor nobody but the callback
+itself could run what it waits for, so without a time-out that is a deadlock, for certain.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.action import ActionClient
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.timer import Rate
+
+from .crew import Worker
+from .tasks import awaited
+
+PATIENT_NS = 3 * 10**9  # of sleep between the first node and the first spin; who sleeps longer does not spin at all
+_wait_for_event = threading.Event.wait
+
+
+class Blocking:
+    """The blocking calls of a host's program."""
+
+    def __init__(self, host: Any) -> None:
+        self._host = host
+        self._slept = 0
+
+    def install(self) -> None:
+        """Catch events that are waited for by anything but Python's own library."""
+
+        def wait(event: threading.Event, timeout: float | None = None) -> bool:
+            caller = sys._getframe(1)
+            module = str(caller.f_globals.get("__name__")).partition(".")[0]
+            if event.is_set() or module in sys.stdlib_module_names - {"__main__"} or not self._host.ours():
+                return _wait_for_event(event, timeout)
+            return self._wait(event, timeout, caller)
+
+        threading.Event.wait = wait  # type: ignore[assignment, method-assign]
+
+    def sleep(self, nanoseconds: int) -> bool:
+        """Let ROS time go by; return False where the machine's own time has to."""
+        host = self._host
+        if not host.ours():
+            return False
+        if host.phase == "spin":
+            end = host.time + nanoseconds
+            self._until(lambda: bool(host.time >= end), end)
+            return True
+        if host.has_nodes():
+            self._slept += nanoseconds
+            if self._slept > PATIENT_NS:
+                host.stop(event="unsteppable", reason="sleep")
+        return False
+
+    def check(self, executor: Executor, end: int | None) -> None:
+        """Tell the grader of a callback that waits for ever, for what its own callback group keeps from coming."""
+        for reader in self._host.ledger.owing:
+            client = reader.entity
+            if not isinstance(client, Client) or executor.can_execute(client):
+                continue
+            pending = [id(future) for future in client._pending_requests.values()]
+            if end is None and any(task.executing() for task, _, _ in executor._tasks):
+                what = "spin_until_future_complete()"
+            elif any(id(awaited(task)) in pending for task, _, _ in executor._tasks):
+                what = "await client.call_async()"
+            else:
+                continue
+            self._host.stop(event="deadlock", what=what, name=client.service_name, reason="group")
+
+    def _wait(self, event: threading.Event, timeout: float | None, caller: Any) -> bool:
+        host = self._host
+        if timeout is None:
+            self._expect_deadlock(caller)
+        elif host.phase != "spin":
+            return _wait_for_event(event, timeout)
+        end = None if timeout is None else host.time + round(timeout * 1e9)
+        self._until(lambda: event.is_set() or (end is not None and host.time >= end), end)
+        return event.is_set()
+
+    def _until(self, ready: Callable[[], bool], end: int | None) -> None:
+        thread = threading.current_thread()
+        self._host.wakes.append(end)
+        try:
+            if isinstance(thread, Worker):
+                thread.wait(ready)
+            else:
+                while not ready():
+                    self._host.pass_time()
+        finally:
+            self._host.wakes.remove(end)
+
+    def _expect_deadlock(self, caller: Any) -> None:
+        """Tell the grader if nobody is left who could bring what is waited for."""
+        what, name, entity = _waiting_for(caller)
+        if isinstance(threading.current_thread(), Worker):
+            if entity is not None and not entity.callback_group.can_execute(entity):
+                self._host.stop(event="deadlock", what=what, name=name, reason="group")
+        elif not any(thread is not threading.current_thread() for thread in threading.enumerate()):
+            reason = "thread" if self._host.phase == "spin" else "spin"
+            self._host.stop(event="deadlock", what=what, name=name, reason=reason)
+
+
+def _waiting_for(caller: Any) -> tuple[str, str, Any]:
+    """Return which call waits, for which service or action, and the entity whose callback would end it."""
+    owner = caller.f_locals.get("self")
+    if isinstance(owner, Client):
+        return "client.call()", owner.service_name, owner
+    if isinstance(owner, ActionClient):
+        return "send_goal()", owner._action_name, owner
+    if isinstance(owner, Rate):
+        return "rate.sleep()", "", owner._timer
+    return "wait()", "", None

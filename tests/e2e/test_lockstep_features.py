@@ -1,0 +1,344 @@
+"""Lockstep carries what rclpy offers: services, actions, several programs; the same run every time."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.sandbox import Limits, Process
+from tests.e2e import lockstep_programs as programs
+from tests.e2e.cell_support import in_cell
+
+INTERFACES = {
+    "action/Count.action": "int32 order\n---\nint32[] sequence\n---\nint32 last\n",
+    "msg/Word.msg": "string text\n",
+}
+
+
+@lru_cache(maxsize=1)
+def interfaces() -> Path:
+    """Build the message package of these tests."""
+    from autograder.interfaces import build
+
+    return build("lockstep_interfaces", INTERFACES)
+
+
+def lay_down(scratch: Path, **texts: str) -> Any:
+    """Lay down programs and the message package as a built workspace."""
+    from autograder.lab import Workspace
+    from autograder.ros import activate
+
+    folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
+    if not folder.is_dir():
+        folder.mkdir(parents=True)
+        (scratch / "home").mkdir()
+        shutil.copytree(interfaces(), scratch / "under" / "lockstep_interfaces")
+    for name, text in texts.items():
+        (folder / name).write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
+    return Workspace(scratch / "ws", activate(), scratch / "home", underlays=(scratch / "under",))
+
+
+def said(lab: Any, topic: str = "/said") -> list[Any]:
+    """Return what was said, when and in which words."""
+    return [[round(stamped.seconds, 3), stamped.message.data] for stamped in lab.messages(topic)]
+
+
+def twice(run: Any) -> Any:
+    """Run something twice; return what came of it, once it is the same."""
+    first, second = run(), run()
+    assert first == second, f"{first}\n{second}"
+    return first
+
+
+def open_lab(workspace: Any, *names: str, serves: Any = None, **options: Any) -> Any:
+    """Return a lab in lockstep with some of the programs, in which the grader hears /said."""
+    from std_msgs.msg import String
+    from std_srvs.srv import Trigger
+
+    from autograder.lab import LockstepLab, Program
+
+    listens = {"/said": String, **options.pop("listens", {})}
+    lab = LockstepLab(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
+    if serves is not None:
+        lab.serve(Trigger, "/ask", serves)
+    return lab
+
+
+def answering() -> Any:
+    """Return a handler that counts its calls."""
+    from std_srvs.srv import Trigger
+
+    calls: list[Any] = []
+
+    def answer(request: Any) -> Any:
+        calls.append(request)
+        return Trigger.Response(success=True, message=str(len(calls)))
+
+    return answer
+
+
+def server(scratch: Path) -> Any:
+    from rcl_interfaces.srv import GetParameters, SetParameters
+    from rclpy.parameter import Parameter
+    from std_srvs.srv import SetBool, Trigger
+
+    workspace = lay_down(scratch, node=programs.SERVER)
+
+    def run() -> Any:
+        with open_lab(workspace, "node") as lab:
+            answers = [lab.call(Trigger, "/ask", Trigger.Request()).message]
+            lab.run(0.3)
+            answers.append(lab.call(Trigger, "/ask", Trigger.Request()).message)
+            answers.append(lab.call(SetBool, "/ask", SetBool.Request(), seconds=0.2))
+            answers.append(lab.call(Trigger, "/nobody", Trigger.Request(), seconds=0.2))
+            for speed in (0.9, 9.0):
+                request = SetParameters.Request(parameters=[Parameter("speed", value=speed).to_parameter_msg()])
+                result = lab.call(SetParameters, "/server/set_parameters", request).results[0]
+                answers.append([result.successful, result.reason])
+            got = lab.call(GetParameters, "/server/get_parameters", GetParameters.Request(names=["speed"]))
+            return answers, got.values[0].double_value, round(lab.seconds, 3), said(lab)
+
+    return twice(run)
+
+
+def test_a_service_and_the_parameter_services_answer_without_time_going_by() -> None:
+    answers, speed, seconds, heard = in_cell(server)
+    assert answers == ["1", "2", None, None, [True, ""], [False, "too fast"]]
+    assert speed == 0.9
+    assert seconds == pytest.approx(0.5)
+    assert heard == [[0.0, "server asked 0.000"], [0.3, "server asked 0.300"]]
+
+
+def goals(scratch: Path, program: str) -> Any:
+    from autograder.interfaces import load
+
+    count = load(interfaces()).action.Count
+    workspace = lay_down(scratch, node=program)
+
+    def run() -> Any:
+        with open_lab(workspace, "node") as lab:
+            whole = lab.send_goal(count, "/count", count.Goal(order=3))
+            over = lab.wait(whole, 3.0)
+            refused = lab.send_goal(count, "/count", count.Goal(order=99))
+            lab.wait(refused, 1.0)
+            stopped = lab.send_goal(count, "/count", count.Goal(order=40))
+            lab.run(0.35)
+            stopped.cancel()
+            lab.wait(stopped, 20.0)
+            feedback = [[round(f.seconds, 3), f.message.last] for f in whole.feedback]
+            ends = [[goal.accepted, goal.status] for goal in (whole, refused, stopped)]
+            return [over, ends, list(whole.result.sequence), feedback, len(stopped.feedback), stopped.cancelled]
+
+    return twice(run)
+
+
+@pytest.mark.parametrize("name", programs.ACTION_SERVERS)
+def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
+    over, ends, sequence, feedback, stopped, cancelled = in_cell(goals, programs.ACTION_SERVERS[name])
+    assert over
+    assert sequence == [0, 1, 2]
+    assert [last for _, last in feedback] == [0, 1, 2]
+    assert ends[:2] == [[True, 4], [False, 0]]
+    times = [seconds - feedback[0][0] for seconds, _ in feedback]
+    if "rate" in name:
+        assert times == pytest.approx([0.0, 0.1, 0.2])
+        assert (ends[2], cancelled) == ([True, 5], True)
+        assert stopped == 3
+    elif "synchronous" in name and "asynchronous" not in name:
+        assert times == pytest.approx([0.0, 0.2, 0.4])
+        assert stopped == 40  # its one thread was busy, so nobody could take the request to cancel
+    else:
+        assert times == [0.0, 0.0, 0.0]
+
+
+def clients(scratch: Path) -> Any:
+    workspace = lay_down(scratch)
+
+    def run(name: str) -> Any:
+        with open_lab(workspace, "node", serves=answering()) as lab:
+            lab.run(1.6)
+            return said(lab)
+
+    found = {}
+    for name, text in programs.CLIENTS.items():
+        lay_down(scratch, node=text)
+        found[name] = twice(lambda name=name: run(name))
+    return found
+
+
+def test_a_client_gets_its_answers_at_once_however_it_waits_for_them() -> None:
+    found = in_cell(clients)
+    for name, heard in found.items():
+        times = [0.5, 0.5, 1.0, 1.0, 1.5, 1.5] if name == "await" else [0.5, 1.0, 1.5]
+        if name == "spin_until_future_complete":
+            times = [0.1, 0.6, 1.1, 1.6]
+            assert [text.split()[:3] for _, text in heard] == [["asking", "got", str(n + 1)] for n in range(4)], name
+            continue
+        assert heard == [[t, f"asking got {n} {t:.3f}"] for n, t in enumerate(times, 1)], name
+
+
+def unanswered(scratch: Path) -> Any:
+    workspace = lay_down(scratch, node=programs.GIVES_UP)
+
+    def run() -> Any:
+        with open_lab(workspace, "node", serves=lambda request: None) as lab:
+            lab.run(1.2)
+            return said(lab)
+
+    return twice(run)
+
+
+def test_a_time_out_is_one_of_ros_time_to_the_tick() -> None:
+    heard = in_cell(unanswered)
+    assert [text.split()[1:3] for _, text in heard] == [["no", "answer"]] * 3
+    assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.7, 1.05], abs=0.011)
+
+
+def alone(scratch: Path, text: str, seconds: float) -> Any:
+    from std_msgs.msg import String
+
+    workspace = lay_down(scratch, node=text)
+
+    def run() -> Any:
+        with open_lab(workspace, "node", listens={"/also": String, "/map": String}) as lab:
+            lab.run(seconds)
+            return [said(lab), said(lab, "/also"), said(lab, "/map"), lab.notes]
+
+    return twice(run)
+
+
+def test_timers_can_be_made_late_cancelled_and_reset() -> None:
+    heard, also, _, _ = in_cell(alone, programs.TIMERS, 1.3)
+    texts = [text.rsplit(" ", 1)[0].split()[1] for _, text in heard]
+    assert [s for (s, _), text in zip(heard, texts, strict=True) if text == "tick"] == [0.4, 0.8, 1.2]
+    assert [s for (s, _), text in zip(heard, texts, strict=True) if text == "shot"] == [0.3, 1.1]
+    late = [s for (s, _), text in zip(heard, texts, strict=True) if text == "late"]
+    assert late == [0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75]
+    assert also == [[0.8, "tick"], [1.2, "tick"]]
+
+
+def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
+    heard, _, _, notes = in_cell(alone, programs.WALL_CLOCK, 0.6)
+    assert not notes
+    assert heard[:4] == [
+        [0.1, "wall 0.10 0.10 0.100"],
+        [0.25, "wall slept 0.250"],
+        [0.25, "wall 0.25 0.25 0.250"],
+        [0.4, "wall slept 0.400"],
+    ]
+
+
+def test_nodes_of_one_program_talk_to_each_other_within_a_step() -> None:
+    heard, _, _, _ = in_cell(alone, programs.TALK_AT_HOME, 0.3)
+    texts = ["heard why 0", "got {n}", "heard why 1", "heard why 2"]
+    for n, seconds in enumerate((0.1, 0.2, 0.3), 1):
+        at = sorted(text.removeprefix("asker ").removesuffix(f" {seconds:.3f}") for s, text in heard if s == seconds)
+        assert at == sorted(text.format(n=n) for text in texts)
+
+
+def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
+    from std_msgs.msg import String
+
+    workspace = lay_down(scratch, **texts)
+
+    def run() -> Any:
+        with open_lab(workspace, *texts, listens={"/map": String, "/ping": String}) as lab:
+            lab.run(seconds)
+            return [said(lab), said(lab, "/map"), said(lab, "/ping")]
+
+    return twice(run)
+
+
+def test_a_latched_message_reaches_who_comes_late() -> None:
+    heard, maps, _ = in_cell(together, {"map": programs.MAP, "reader": programs.MAP_READER}, 0.2)
+    assert heard == [[0.1, "reader read map 0.100"]]
+    assert [text for _, text in maps] == ["map"]
+
+
+def pong(following: str, qos: str) -> dict[str, str]:
+    return {"pinger": programs.PINGER, "ponger": programs.PONGER.replace("{next}", following).replace("{qos}", qos)}
+
+
+def test_programs_answer_each_other_within_a_step_until_nobody_has_anything_left() -> None:
+    heard, _, pings = in_cell(together, pong("int(m.data) - 1", "10"), 0.3)
+    assert heard == [[s, f"pinger hit {n} {s:.3f}"] for s in (0.1, 0.2, 0.3) for n in (4, 3, 2, 1, 0)]
+    assert pings == [[s, str(n)] for s in (0.1, 0.2, 0.3) for n in (5, 4, 3, 2, 1)]
+
+
+def test_what_quality_of_service_keeps_apart_is_not_waited_for() -> None:
+    weak = "'ping', QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)"
+    pinger = programs.PINGER.replace("'ping', 10", weak)
+    heard, _, pings = in_cell(together, {"pinger": pinger, "ponger": pong("int(m.data) - 1", "10")["ponger"]}, 0.3)
+    assert heard == []
+    assert len(pings) == 3
+
+
+def test_messages_of_a_type_that_the_grader_does_not_know_flow_between_programs() -> None:
+    texts = {"listener": programs.OWN_TYPE_LISTENER, "talker": programs.OWN_TYPE_SPEAKER}
+    heard, _, _ = in_cell(together, texts, 0.3)
+    assert heard == [[s, f"listener hello {s:.3f}"] for s in (0.1, 0.2, 0.3)]
+
+
+def served(scratch: Path) -> Any:
+    texts = {"server": programs.SERVER, "first": programs.CLIENTS["await"]}
+    texts["second"] = programs.CLIENTS["call in many threads"].replace("'asking'", "'second'")
+    workspace = lay_down(scratch, **texts)
+    busy = [Process([sys.executable, "-I", "-c", "while True: pass"], Limits(wall_seconds=120)) for _ in range(2)]
+
+    def run() -> Any:
+        with open_lab(workspace, *texts) as lab:
+            lab.run(1.0)
+            return said(lab)
+
+    quiet = run()
+    try:
+        loaded = run()
+    finally:
+        for process in busy:
+            process.kill()
+    return [quiet, loaded]
+
+
+def test_clients_of_two_programs_share_a_service_and_a_busy_machine_changes_nothing() -> None:
+    quiet, loaded = in_cell(served)
+    assert quiet == loaded
+    got = sorted(int(text.split()[2]) for _, text in quiet if " got " in text)
+    assert got == [1, 2, 3, 4, 5, 6]
+
+
+def failing(scratch: Path, texts: dict[str, str], serves: bool) -> list[str]:
+    from autograder.exceptions import StudentError
+
+    workspace = lay_down(scratch, **texts)
+    try:
+        with open_lab(workspace, *texts, serves=answering() if serves else None) as lab:
+            lab.run(2.0)
+    except StudentError as error:
+        return [error.diagnosis.kind.value, error.diagnosis.sentence]
+    return ["ok", ""]
+
+
+@pytest.mark.parametrize("name", programs.DEADLOCKS)
+def test_a_deadlock_is_told_at_once_and_why(name: str) -> None:
+    text, words = programs.DEADLOCKS[name]
+    kind, sentence = in_cell(failing, {"node": text}, True)
+    assert kind == "stuck"
+    assert words in sentence
+
+
+def test_programs_that_answer_each_other_for_ever_are_stopped() -> None:
+    kind, sentence = in_cell(failing, pong("int(m.data)", "10"), False)
+    assert kind == "stuck"
+    assert "would go on for ever" in sentence
+
+
+def test_of_several_programs_the_one_that_crashes_is_named() -> None:
+    texts = {"server": programs.SERVER, "broken": "raise ValueError('no lidar')"}
+    kind, sentence = in_cell(failing, texts, False)
+    assert kind == "crashed_at_import"
+    assert sentence.startswith("broken: Your module could not be imported: ValueError: no lidar")
