@@ -12,8 +12,8 @@ from itertools import pairwise
 
 from autograder.course.exceptions import CourseError
 
-BEGIN = "### BEGIN SOLUTION"
-END = "### END SOLUTION"
+BEGIN = "# BEGIN SOLUTION"
+END = "# END SOLUTION"
 BEGIN_SCHEME = "### BEGIN MARK SCHEME"
 END_SCHEME = "### END MARK SCHEME"
 

@@ -145,7 +145,7 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
     source = nbformat.read(layout.source_notebook(ASSIGNMENT), as_version=4)
     solution = next(cell.source for cell in source.cells if cell.id == SOLUTION)
     taught = "\n".join(cell.source for cell in source.cells if cell.id != SOLUTION)  # the chapter's own idioms
-    hidden = [part.split("### END SOLUTION")[0] for part in solution.split("### BEGIN SOLUTION")[1:]]
+    hidden = [part.split("# END SOLUTION")[0] for part in solution.split("# BEGIN SOLUTION")[1:]]
     lines = {line.strip() for part in hidden for line in part.splitlines()}
     secret = sorted(line for line in lines if len(line) > 24 and line not in taught)
     assert len(secret) > 10

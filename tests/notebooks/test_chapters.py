@@ -42,7 +42,7 @@ def test_the_chapters_are_up_to_date_clean_and_worth_what_their_suites_say() -> 
 def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
     source, released = chapter.read(), in_form(chapter.read(), Form.RELEASED)
     for before, after in zip(source.cells, released.cells, strict=True):
-        for answer in re.findall(r"### BEGIN SOLUTION\n(.*?)### END SOLUTION", before.source, re.DOTALL):
+        for answer in re.findall(r"# BEGIN SOLUTION\n(.*?)# END SOLUTION", before.source, re.DOTALL):
             assert answer.rstrip() not in after.source
 
 

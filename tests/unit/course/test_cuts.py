@@ -26,18 +26,18 @@ def test_the_lines_between_two_lines_are_marked_with_their_indentation() -> None
     marked = with_cuts(MANIFEST, [("<package>", "<export>"), ("<export>", "</export>")])
     assert marked.splitlines()[:5] == [
         "<package>",
-        "  ### BEGIN SOLUTION",
+        "  # BEGIN SOLUTION",
         "  <name>a</name>",
         "  <version>1</version>",
-        "  ### END SOLUTION",
+        "  # END SOLUTION",
     ]
     assert marked.count("BEGIN SOLUTION") == 2
     assert without_marks(marked) == MANIFEST
 
 
 def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
-    assert with_cuts("a\nb\n", [("", "")]) == "### BEGIN SOLUTION\na\nb\n### END SOLUTION\n"
-    assert with_cuts("a\nb\n", [("a", "")]) == "a\n### BEGIN SOLUTION\nb\n### END SOLUTION\n"
+    assert with_cuts("a\nb\n", [("", "")]) == "# BEGIN SOLUTION\na\nb\n# END SOLUTION\n"
+    assert with_cuts("a\nb\n", [("a", "")]) == "a\n# BEGIN SOLUTION\nb\n# END SOLUTION\n"
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
         ("a\nb\n", [("a", "b")], "nothing to hide"),
         ("a\nb\nc\n", [("c", "a")], "nothing to hide"),
         ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "inside each other"),
-        ("### BEGIN SOLUTION\na\n", [("", "")], "already holds solution marks"),
+        ("# BEGIN SOLUTION\na\n", [("", "")], "already holds solution marks"),
     ],
 )
 def test_a_cut_that_does_not_fit_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:

@@ -10,7 +10,7 @@ from autograder.course import CourseError, Form, in_form, run_notebook
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
-SOLVED = "### BEGIN SOLUTION\nanswer = 42\n### END SOLUTION"
+SOLVED = "# BEGIN SOLUTION\nanswer = 42\n# END SOLUTION"
 
 
 def test_the_released_form_has_the_stub_in_the_answers_place() -> None:

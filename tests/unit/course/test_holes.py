@@ -48,12 +48,12 @@ class Robot:
 
 def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
     marked = with_holes(MODULE, ["half", "Robot.move"])
-    assert '    """Return half of x."""\n    ### BEGIN SOLUTION\n    # The answer.\n    return x / 2\n    ###' in marked
+    assert '    """Return half of x."""\n    # BEGIN SOLUTION\n    # The answer.\n    return x / 2\n    #' in marked
     assert (
-        '        """\n        ### BEGIN SOLUTION\n        for _ in range(2):\n            self.x = half(\n'
-        "                self.x\n            )\n        ### END SOLUTION\n\n    def look" in marked
+        '        """\n        # BEGIN SOLUTION\n        for _ in range(2):\n            self.x = half(\n'
+        "                self.x\n            )\n        # END SOLUTION\n\n    def look" in marked
     )
-    assert marked.count("### BEGIN SOLUTION") == marked.count("### END SOLUTION") == 2
+    assert marked.count("# BEGIN SOLUTION") == marked.count("# END SOLUTION") == 2
 
 
 def test_taking_the_marks_away_gives_the_source_back() -> None:
@@ -78,7 +78,7 @@ def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
         ("def f():\n    '''F.'''\n", ["f"], "nothing to hide"),
         ("def f(): '''F.'''; return 1\n", ["f"], "nothing to hide"),
         ("def f(:\n", ["f"], "does not parse"),
-        ("### BEGIN SOLUTION\n", [], "already holds solution marks"),
+        ("# BEGIN SOLUTION\n", [], "already holds solution marks"),
         (
             "def f():\n    '''F.'''\n    def g():\n        '''G.'''\n        return 1\n    return g\n",
             ["f", "f.g"],

@@ -20,13 +20,13 @@ def test_a_clean_notebook_has_no_findings() -> None:
     made = notebook(
         prose("# Title\n\n## Part\n\n### Step\n\n![a robot](robot.png)\n\n```\n# no heading\n```", "title"),
         prose("## Next\n\n<img src='x.svg' alt='a wall'>", "next"),
-        code("### BEGIN SOLUTION\n### END SOLUTION", "s", nbgrader=solution("s")),
+        code("# BEGIN SOLUTION\n# END SOLUTION", "s", nbgrader=solution("s")),
         code("grade()", "g", nbgrader=grade("g", 1), course={"group": "graph"}),
     )
     assert messages(made) == ""
 
 
-ANSWER = "### BEGIN SOLUTION\nSo.\n### END SOLUTION"
+ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
 SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
 
 
@@ -102,7 +102,7 @@ def old_format() -> NotebookNode:
             '"group" must name a group of checks, not be 3',
         ),
         (
-            notebook(prose("# T", "t"), code("### BEGIN SOLUTION", "s")),
+            notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),
             "cell 's': holds a solution but is not marked",
         ),
         (

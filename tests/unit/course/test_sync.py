@@ -34,7 +34,7 @@ def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: 
     assert [finding.cell for finding in sync(made, solutions)] == ["node"]
     assert made.read().cells[1].source == (
         "%%writefile ws/src/pkg/node.py\n"
-        'def main():\n    """Run."""\n    ### BEGIN SOLUTION\n    return 0\n    ### END SOLUTION'
+        'def main():\n    """Run."""\n    # BEGIN SOLUTION\n    return 0\n    # END SOLUTION'
     )
 
 

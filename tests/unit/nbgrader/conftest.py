@@ -43,7 +43,7 @@ def source_notebook() -> NotebookNode:
         cell.metadata.course = {"group": group}
         return cell
 
-    solution = "%%writefile x.py\ndef answer():\n    ### BEGIN SOLUTION\n    return 'SECRET'\n    ### END SOLUTION"
+    solution = "%%writefile x.py\ndef answer():\n    # BEGIN SOLUTION\n    return 'SECRET'\n    # END SOLUTION"
     return new_notebook(
         metadata={"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}},
         cells=[

@@ -37,7 +37,9 @@ def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
 def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]) -> None:
     seen: list[tuple[Any, ...]] = []
 
-    def grade(path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: str) -> Graded:
+    def grade(
+        path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: str, only: tuple[str, ...] = ()
+    ) -> Graded:
         seen.append((path, assignment, student, seed, out, isolation))
         return verdict()
 

@@ -21,7 +21,7 @@ from .conftest import ASSIGNMENT, ROOT, course_in, marked, source_notebook
 pytestmark = pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning")
 
 QUESTION = "## Explain\n\nWhy?\n\n### BEGIN MARK SCHEME\nOne point for BECAUSE.\n### END MARK SCHEME"
-ANSWER = "### BEGIN SOLUTION\nFor a SECRET reason.\n### END SOLUTION"
+ANSWER = "# BEGIN SOLUTION\nFor a SECRET reason.\n# END SOLUTION"
 TRUSTED = {"grade-graph": (3.0, 3.0, False), "grade-reaction": (1.0, 4.0, False)}
 
 
