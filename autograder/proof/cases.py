@@ -69,10 +69,12 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
     depends = {check.id: frozenset(check.depends) for check in suites.manifest(assignment)}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
+    lost = {m.id: set(m.loses) for m in candidates}
+    quick = [m for m in candidates if not m.slow]
     chosen: dict[str, set[str]] = {}
     uncovered = set(depends)
-    for covers in (direct, {m.id: set(m.loses) for m in candidates}):
-        while best := max(candidates, key=lambda m: (len(covers[m.id] & uncovered), not m.slow), default=None):
+    for covers, among in ((direct, quick), (lost, quick), (lost, candidates)):
+        while best := max(among, key=lambda m: len(covers[m.id] & uncovered), default=None):
             if not covers[best.id] & uncovered:
                 break
             chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
