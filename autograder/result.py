@@ -98,7 +98,10 @@ class Artifact:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that is known about one graded submission."""
+    """Everything that is known about one graded submission.
+
+    `time` is "real" when a program's time could not be stepped; `time_note` says which and why, in a sentence.
+    """
 
     assignment: str
     student: str
@@ -115,6 +118,8 @@ class Result:
     build: Build | None = None
     artifacts: tuple[Artifact, ...] = ()
     phases: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    time: str = "lockstep"
+    time_note: str = ""
 
     @property
     def score(self) -> float:

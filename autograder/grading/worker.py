@@ -57,6 +57,8 @@ class Grading:
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
+        from autograder.lab import either
+
         began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
         try:
@@ -67,7 +69,7 @@ class Grading:
             diagnosis = error.diagnosis
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
-        sentence = f"not checked: {diagnosis.sentence}"
+        sentence, note = f"not checked: {diagnosis.sentence}", either.explain()
         return Result(
             assignment=self._job.assignment,
             student=self._job.student,
@@ -86,6 +88,8 @@ class Grading:
             build=self._build,
             artifacts=tuple(self._gallery.artifacts),
             phases=self._phases,
+            time=either.REAL if note else either.LOCKSTEP,
+            time_note=note,
         )
 
     def _prepare(self) -> Diagnosis:

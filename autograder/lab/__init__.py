@@ -6,10 +6,22 @@ puts the program's robot into the simulator, in either of them.
 """
 
 from autograder.lab.drive import Drive, drive
+from autograder.lab.either import EitherLab
 from autograder.lab.goals import Goal
 from autograder.lab.lockstep import LockstepLab
 from autograder.lab.meeting import Lab, Program, Stamped
 from autograder.lab.realtime import RealtimeLab
 from autograder.lab.workspace import Workspace
 
-__all__ = ["Drive", "Goal", "Lab", "LockstepLab", "Program", "RealtimeLab", "Stamped", "Workspace", "drive"]
+__all__ = [
+    "Drive",
+    "EitherLab",
+    "Goal",
+    "Lab",
+    "LockstepLab",
+    "Program",
+    "RealtimeLab",
+    "Stamped",
+    "Workspace",
+    "drive",
+]

@@ -50,6 +50,14 @@ def test_the_page_says_the_score_each_check_and_the_reason(make_result: MakeResu
     assert page.all("aria-label") == ["passed", "passed", "failed", "not checked"]
 
 
+def test_a_program_that_was_met_in_real_time_is_named_and_no_word_is_lost_on_others(
+    make_result: MakeResult, tmp_path: Path
+) -> None:
+    note = "robot_controller was met in real time: it uses rclpy in threads of its own."
+    assert note in Page(feedback.write(make_result(time="real", time_note=note), tmp_path)).text
+    assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
+
+
 def test_the_first_failed_check_is_where_to_start(make_result: MakeResult, tmp_path: Path) -> None:
     page = Page(feedback.write(make_result(), tmp_path))
     assert "Start here The robot turns when something" in page.text

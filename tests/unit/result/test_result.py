@@ -49,7 +49,7 @@ def test_a_group_holds_the_checks_of_one_grade_cell(make_result: MakeResult) -> 
 def test_a_result_survives_the_way_to_json_and_back(make_result: MakeResult, broken_result: Result) -> None:
     artifact = Artifact("tracks/a.png", "track", "ab", "turns", "It hits a wall.")
     for result in (
-        make_result(artifacts=(artifact,), phases={"build": 1.5}),
+        make_result(artifacts=(artifact,), phases={"build": 1.5}, time="real", time_note="It has its own threads."),
         broken_result,
         make_result(checks=(), build=None, status=Status.NOT_GRADED),
     ):
@@ -71,7 +71,8 @@ def test_the_schema_names_every_outcome_and_visibility() -> None:
 
 def test_every_field_of_a_result_is_published(make_result: MakeResult, broken_result: Result) -> None:
     plain, properties = broken_result.to_json(), schema()["properties"]
-    assert set(plain) == set(properties) == set(schema()["required"])
+    added = {"time", "time_note"}  # results that were stored before have none of these
+    assert set(plain) == set(properties) == {*schema()["required"], *added}
     assert set(plain["checks"][0]) == set(properties["checks"]["items"]["properties"])
     assert set(plain["build"]) == set(properties["build"]["properties"])
     assert set(plain["diagnosis"]) == set(properties["diagnosis"]["properties"])

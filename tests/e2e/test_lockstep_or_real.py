@@ -1,0 +1,130 @@
+"""A program that cannot be stepped is met in real time: the same verdicts, and the result says so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.grading.pipeline import grade_submission
+from autograder.lab.either import TIME_VARIABLE
+from autograder.result import Result
+from autograder.suites.mutants import lay_down, lay_down_reference, mutants
+from tests.e2e import lockstep_programs as programs
+from tests.e2e.cell_support import in_cell
+
+CHECKS = (
+    *("starts", "subscribes_scan", "publishes_cmd_vel", "forward_when_clear", "turns_when_blocked"),
+    *("only_forward_counts", "ten_hertz"),
+)
+PACKAGE = "my_robot_package"
+NODE = f"src/{PACKAGE}/{PACKAGE}/nodes/robot_controller.py"
+
+
+def grade(folder: Path) -> Result:
+    """Grade a source tree by a few of the checks of 02_nodes."""
+    out = folder / "out"
+    return grade_submission(folder, "02_nodes", student="s", seed=11, out=out, only=CHECKS).result
+
+
+def outcomes(result: Result) -> dict[str, str]:
+    """Return what became of the checks that were run."""
+    return {check.id: check.outcome.value for check in result.checks if check.id in CHECKS}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["reference", "all_beams", "five_hertz"])
+def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if name == "reference":
+        lay_down_reference((PACKAGE,), tmp_path)
+    else:
+        lay_down(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), tmp_path)
+    stepped = grade(tmp_path)
+    monkeypatch.setenv(TIME_VARIABLE, "real")
+    real = grade(tmp_path)
+    assert outcomes(real) == outcomes(stepped)
+    assert ("failed" in outcomes(stepped).values()) is (name != "reference")
+    assert (stepped.time, stepped.time_note) == ("lockstep", "")
+    assert (real.time, real.time_note) == ("real", "robot_controller was met in real time: that was asked for.")
+
+
+def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_path: Path) -> None:
+    lay_down_reference((PACKAGE,), tmp_path)
+    text = (tmp_path / NODE).read_text()
+    assert "self.create_timer(CONTROL_PERIOD, self.control_loop)" in text
+    text = text.replace("self.control_loop)", "self.control_loop, clock=Clock(clock_type=ClockType.STEADY_TIME))")
+    text = text.replace(
+        "from rclpy.node import Node", "from rclpy.clock import Clock, ClockType\nfrom rclpy.node import Node"
+    )
+    (tmp_path / NODE).write_text(text)
+    result = grade(tmp_path)
+    assert set(outcomes(result).values()) == {"passed"}
+    assert result.time == "real"
+    assert result.time_note == (
+        "robot_controller was met in real time: it has a timer on a clock that is not the ROS clock."
+    )
+
+
+def met(scratch: Path, text: str) -> Any:
+    """Open a lab on a program twice; return how it was met, what it said, and the sentence about it."""
+    from std_msgs.msg import String
+
+    from autograder.lab import EitherLab, Workspace, either
+    from autograder.ros import activate
+
+    folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
+    folder.mkdir(parents=True)
+    (scratch / "home").mkdir()
+    (folder / "node").write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
+    workspace = Workspace(scratch / "ws", activate(), scratch / "home")
+    ways = []
+    for _ in range(2):
+        with EitherLab(workspace, "pkg", "node", listens={"/said": String}) as lab:
+            lab.run(1.0)
+            ways.append([lab.time, 8 <= len(lab.messages("/said")) <= 12])
+    return ways, either.explain()
+
+
+@pytest.mark.parametrize(
+    ("reason", "words"),
+    [
+        ("thread", "node was met in real time: it uses rclpy in threads of its own."),
+        ("sleep", "node was met in real time: it sleeps in a loop instead of spinning."),
+    ],
+)
+def test_a_program_that_cannot_be_stepped_is_found_and_met_in_real_time(reason: str, words: str) -> None:
+    ways, sentence = in_cell(met, programs.UNSTEPPABLE[reason])
+    assert ways == [["real", True]] * 2
+    assert sentence == words
+
+
+def test_a_program_that_can_be_stepped_is_stepped() -> None:
+    ticking = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
+    ticking += "        self.create_timer(0.1, lambda: self.say('tick'))\nspin(Tick)\n"
+    assert in_cell(met, ticking) == [[["lockstep", True]] * 2, ""]
+
+
+def refused(scratch: Path, text: str) -> list[str]:
+    """Step a program that cannot be stepped; return what the student is told."""
+    from autograder.exceptions import StudentError
+    from autograder.lab import LockstepLab, Workspace
+    from autograder.ros import activate
+
+    folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
+    folder.mkdir(parents=True)
+    (scratch / "home").mkdir()
+    (folder / "node").write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
+    try:
+        with LockstepLab(Workspace(scratch / "ws", activate(), scratch / "home"), "pkg", "node"):
+            return ["", ""]
+    except StudentError as error:
+        return [error.diagnosis.kind.value, error.diagnosis.sentence]
+
+
+def test_where_lockstep_is_asked_for_the_student_hears_why_it_cannot_be() -> None:
+    kind, sentence = in_cell(refused, programs.UNSTEPPABLE["thread"])
+    assert kind == "never_started"
+    assert "cannot be stepped: it uses rclpy in threads of its own. Let a timer of the node do the work" in sentence
