@@ -63,5 +63,5 @@ def test_what_is_not_there_is_named(tmp_path: Path) -> None:
         drive("a", "b", world="moon", workspace=tmp_path)
     with pytest.raises(UsageError, match=r"there is no fault 'fog'; there are: nan, dead, or a sim.Faults"):
         drive("a", "b", faults="fog", workspace=tmp_path)
-    with pytest.raises(UsageError, match="there are no visible checks for '77_none'; there are for: 02_nodes"):
+    with pytest.raises(UsageError, match="there are no visible checks for '77_none'; there are for: 00_welcome, "):
         check("77_none", tmp_path)

@@ -66,13 +66,16 @@ def test_an_edit_that_does_not_stand_exactly_once_is_refused(tmp_path: Path, fin
 
 @pytest.mark.parametrize("assignment", suites.graded())
 def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment: str, tmp_path: Path) -> None:
-    packages = suites.load(assignment).packages
-    lay_down_reference(packages, tmp_path / "reference")
+    sources = suites.load(assignment).sources
+    lay_down_reference(sources, tmp_path / "reference")
     for mutant in mutants(assignment):
-        lay_down(mutant, packages, tmp_path / mutant.id)
+        lay_down(mutant, sources, tmp_path / mutant.id)
         for edit in mutant.edits:
-            changed = (tmp_path / mutant.id / "src" / edit.file).read_text()
-            assert changed != (tmp_path / "reference" / "src" / edit.file).read_text()
+            before, after = (
+                path.read_bytes() if (path := tmp_path / name / "src" / edit.file).is_file() else None
+                for name in ("reference", mutant.id)
+            )
+            assert before != after
         assert mutant.loses
 
 
