@@ -1,3 +1,17 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The three nodes, put together by substitutions."""
 
 from launch import LaunchDescription
@@ -9,23 +23,23 @@ from launch_ros.substitutions import FindPackageShare
 
 def start(context):
     """Return the nodes, once the arguments are known."""
-    file = LaunchConfiguration("params_file").perform(context)
-    sim = LaunchConfiguration("use_sim_time").perform(context).lower() == "true"
-    common = {"package": "robot_navigation_tutorial", "output": "screen"}
-    parameters = [file, {"use_sim_time": sim}]
+    file = LaunchConfiguration('params_file').perform(context)
+    sim = LaunchConfiguration('use_sim_time').perform(context).lower() == 'true'
+    common = {'package': 'robot_navigation_tutorial', 'output': 'screen'}
+    parameters = [file, {'use_sim_time': sim}]
     return [
         Node(executable=name, name=name, parameters=parameters, **common)
-        for name in ("status_monitor", "navigation_controller", "sensor_processor")
+        for name in ('status_monitor', 'navigation_controller', 'sensor_processor')
     ]
 
 
 def generate_launch_description():
     """Declare two arguments, then start."""
-    default = [FindPackageShare("robot_navigation_tutorial"), "/config/navigation.yaml"]
+    default = [FindPackageShare('robot_navigation_tutorial'), '/config/navigation.yaml']
     return LaunchDescription(
         [
-            DeclareLaunchArgument("use_sim_time", default_value="false", description="use /clock"),
-            DeclareLaunchArgument("params_file", default_value=default, description="a YAML file"),
+            DeclareLaunchArgument('use_sim_time', default_value='false', description='use /clock'),
+            DeclareLaunchArgument('params_file', default_value=default, description='a YAML file'),
             OpaqueFunction(function=start),
         ]
     )

@@ -1,3 +1,17 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Clearances in, velocities out: a node as a part of a controller, and two threads."""
 
 import rclpy
@@ -10,10 +24,10 @@ from robot_navigation_tutorial.steering import Turn, decide
 from std_srvs.srv import SetBool
 
 PARAMETERS = {
-    "forward_speed": (0.3, 0.05, 0.5, "metres a second"),
-    "turn_speed": (0.8, 0.1, 1.5, "radians a second"),
-    "safety_distance": (0.6, 0.3, 2.0, "metres"),
-    "data_timeout": (0.5, 0.2, 2.0, "seconds"),
+    'forward_speed': (0.3, 0.05, 0.5, 'metres a second'),
+    'turn_speed': (0.8, 0.1, 1.5, 'radians a second'),
+    'safety_distance': (0.6, 0.3, 2.0, 'metres'),
+    'data_timeout': (0.5, 0.2, 2.0, 'seconds'),
 }
 
 
@@ -27,10 +41,14 @@ class Controller:
         self.held = False
         for name, (default, lowest, highest, unit) in PARAMETERS.items():
             limits = FloatingPointRange(from_value=lowest, to_value=highest)
-            node.declare_parameter(name, default, ParameterDescriptor(description=unit, floating_point_range=[limits]))
-        self.motor = node.create_publisher(Twist, "cmd_vel", 10)
-        node.create_subscription(Clearance, "clearance", self.see, 10, callback_group=ReentrantCallbackGroup())
-        node.create_service(SetBool, "enable", self.hold)
+            node.declare_parameter(
+                name, default, ParameterDescriptor(description=unit, floating_point_range=[limits])
+            )
+        self.motor = node.create_publisher(Twist, 'cmd_vel', 10)
+        node.create_subscription(
+            Clearance, 'clearance', self.see, 10, callback_group=ReentrantCallbackGroup()
+        )
+        node.create_service(SetBool, 'enable', self.hold)
         node.create_timer(0.1, self.tick, callback_group=MutuallyExclusiveCallbackGroup())
 
     def parameter(self, name):
@@ -45,7 +63,7 @@ class Controller:
     def hold(self, request, response):
         """Hold the robot, or let it go."""
         self.held = not request.data
-        response.success, response.message = True, "held" if self.held else "free"
+        response.success, response.message = True, 'held' if self.held else 'free'
         return response
 
     def tick(self):
@@ -59,17 +77,17 @@ class Controller:
             return stop
         then, clearance = self.seen
         now = self.node.get_clock().now().nanoseconds * 1e-9
-        if not clearance.valid or now - then > self.parameter("data_timeout"):
+        if not clearance.valid or now - then > self.parameter('data_timeout'):
             return stop
-        limit = self.parameter("safety_distance")
+        limit = self.parameter('safety_distance')
         self.turn = decide(clearance.front, clearance.left, clearance.right, limit, self.turn)
         go = Twist()
         if self.turn is Turn.NONE:
             # Slower in front of an obstacle: a robot may be more careful than it has to be.
             near = clearance.front < limit + 0.2
-            go.linear.x = self.parameter("forward_speed") * (0.5 if near else 1.0)
+            go.linear.x = self.parameter('forward_speed') * (0.5 if near else 1.0)
         else:
-            go.angular.z = float(self.turn) * self.parameter("turn_speed")
+            go.angular.z = float(self.turn) * self.parameter('turn_speed')
         return go
 
 
@@ -77,7 +95,7 @@ def main():
     """Run until told to stop."""
     rclpy.init()
     try:
-        node = rclpy.create_node("navigation_controller")
+        node = rclpy.create_node('navigation_controller')
         controller = Controller(node)
         executor = MultiThreadedExecutor(num_threads=2)
         executor.add_node(controller.node)

@@ -1,3 +1,17 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Scans in, clearances out, without a class."""
 
 import math
@@ -17,23 +31,25 @@ def process(half, scan):
     answer.front = nearest(scan, FRONT, half)
     answer.left = nearest(scan, LEFT, half)
     answer.right = nearest(scan, RIGHT, half)
-    answer.valid = not (math.isnan(answer.front) or math.isnan(answer.left) or math.isnan(answer.right))
+    answer.valid = not (
+        math.isnan(answer.front) or math.isnan(answer.left) or math.isnan(answer.right)
+    )
     return answer
 
 
 def make(**kwargs):
     """Return the node with its wires connected."""
-    node = rclpy.create_node("sensor_processor", **kwargs)
-    half = ParameterDescriptor(description="half of a sector in rad")
+    node = rclpy.create_node('sensor_processor', **kwargs)
+    half = ParameterDescriptor(description='half of a sector in rad')
     half.floating_point_range = [FloatingPointRange(from_value=0.1, to_value=0.78)]
-    node.declare_parameter("half_angle", 0.52, half)
-    out = node.create_publisher(Clearance, "clearance", 10)
+    node.declare_parameter('half_angle', 0.52, half)
+    out = node.create_publisher(Clearance, 'clearance', 10)
 
     def on_scan(scan):
-        out.publish(process(node.get_parameter("half_angle").value, scan))
+        out.publish(process(node.get_parameter('half_angle').value, scan))
 
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-    node.create_subscription(LaserScan, "scan", on_scan, best_effort)
+    node.create_subscription(LaserScan, 'scan', on_scan, best_effort)
     return node
 
 

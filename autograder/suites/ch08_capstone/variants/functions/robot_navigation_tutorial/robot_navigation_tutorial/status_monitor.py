@@ -1,3 +1,17 @@
+# Copyright 2026 The ROS 2 Python Course Authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """A watchdog that asks each topic when it last spoke."""
 
 from functools import partial
@@ -5,15 +19,21 @@ from functools import partial
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+)
 from robot_navigation_interfaces.msg import Clearance, Health
 from robot_navigation_tutorial.running import run
 from sensor_msgs.msg import LaserScan
 
 TOPICS = {
-    "scan": (LaserScan, qos_profile_sensor_data),
-    "clearance": (Clearance, 10),
-    "cmd_vel": (Twist, 10),
+    'scan': (LaserScan, qos_profile_sensor_data),
+    'clearance': (Clearance, 10),
+    'cmd_vel': (Twist, 10),
 }
 LATCHED = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -21,23 +41,25 @@ LATCHED = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
-NEVER = float("-inf")
+NEVER = float('-inf')
 
 
 class Watchdog(Node):
     """One subscription a topic, all with the same callback."""
 
     def __init__(self):
-        super().__init__("status_monitor")
+        super().__init__('status_monitor')
         limits = FloatingPointRange(from_value=0.2, to_value=1.4)
         self.declare_parameter(
-            "silence_timeout", 1.0, ParameterDescriptor(description="seconds of silence", floating_point_range=[limits])
+            'silence_timeout',
+            1.0,
+            ParameterDescriptor(description='seconds of silence', floating_point_range=[limits]),
         )
         self.heard_at = dict.fromkeys(TOPICS, NEVER)
         self.newest = {}
         for name, (kind, qos) in TOPICS.items():
             self.create_subscription(kind, name, partial(self.heard, name), qos)
-        self.out = self.create_publisher(Health, "health", LATCHED)
+        self.out = self.create_publisher(Health, 'health', LATCHED)
         self.timer = self.create_timer(0.5, self.speak)
 
     def heard(self, name, message):
@@ -51,11 +73,11 @@ class Watchdog(Node):
 
     def speak(self):
         """Publish the state."""
-        oldest = self.seconds() - self.get_parameter("silence_timeout").value
+        oldest = self.seconds() - self.get_parameter('silence_timeout').value
         report = Health(silent=sorted(n for n, then in self.heard_at.items() if then < oldest))
         report.header.stamp = self.get_clock().now().to_msg()
         report.level = Health.FAILED if report.silent else Health.OK
-        if not report.silent and not self.newest["clearance"].valid:
+        if not report.silent and not self.newest['clearance'].valid:
             report.level = Health.DEGRADED
         self.out.publish(report)
 
