@@ -1,6 +1,7 @@
-"""How many steps a second the grader makes with a 10 Hz node: the reference controller, a scan of 360 beams each step.
+"""How many steps a second the grader makes: with one node, and with three that talk to each other.
 
-The node runs in its sandbox, the grader's side in a cell, as in grading.
+The one is the reference controller at 10 Hz, shown a scan of 360 beams each step. The three pass each step's message
+on, from one to the next and to the grader. The nodes run in sandboxes, the grader's side in a cell, as in grading.
 """
 
 from __future__ import annotations
@@ -10,37 +11,64 @@ import statistics
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import run_in_cell
 
 STEPS = 2000
+CHAIN_STEPS = 500
 RUNS = 5
+CHAIN = ("first", "second", "third")
+RELAY = """#!/usr/bin/env python3
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+class Relay(Node):
+    def __init__(self):
+        super().__init__('{name}')
+        self.out = self.create_publisher(String, '{out}', 10)
+        self.create_subscription(String, '{heard}', self.out.publish, 10)
+        self.create_timer(0.1, lambda: None)
+rclpy.init()
+try:
+    rclpy.spin(Relay())
+except KeyboardInterrupt:
+    pass
+"""
 
 
 def figures() -> dict[str, float]:
-    """Return `lockstep.steps_per_s`, the median of several runs."""
+    """Return `lockstep.steps_per_s` and `lockstep.three_programs_steps_per_s`, each the median of several runs."""
     report = run_in_cell(
         lambda scratch: [sys.executable, "-m", "tests.benchmarks.bench_lockstep", str(scratch)], Tier.BUBBLEWRAP
     )
     if report.returncode != 0:
         raise RuntimeError(report.output)
-    return {"lockstep.steps_per_s": round(statistics.median(json.loads(report.output.splitlines()[-1])), 1)}
+    rates = json.loads(report.output.splitlines()[-1])
+    return {name: round(statistics.median(runs), 1) for name, runs in rates.items()}
 
 
-def measure(scratch: Path) -> list[float]:
-    """Build the reference in a cell's scratch folder and step its controller; steps a second, one figure a run."""
+def measure(scratch: Path) -> dict[str, list[float]]:
+    """Measure in a cell's scratch folder; steps a second, one figure a run."""
     from autograder.ros import activate
 
     ros = activate()
-    from autograder.grading.build import build
     from autograder.lab import Workspace
+
+    (scratch / "home").mkdir()
+    return {
+        "lockstep.steps_per_s": _one(Workspace(scratch / "one", ros, scratch / "home")),
+        "lockstep.three_programs_steps_per_s": _three(Workspace(scratch / "three", ros, scratch / "home")),
+    }
+
+
+def _one(workspace: Any) -> list[float]:
+    from autograder.grading.build import build
     from autograder.suites.mutants import lay_down_reference
     from autograder.visible.ch02_nodes.robot import Robot
     from autograder.visible.ch02_nodes.scans import scan
 
-    (scratch / "home").mkdir()
-    workspace = Workspace(scratch / "ws", ros, scratch / "home")
     lay_down_reference(("my_robot_package",), workspace.root)
     build(workspace, ("my_robot_package",))
     message = scan()
@@ -53,6 +81,30 @@ def measure(scratch: Path) -> list[float]:
             rates.append(STEPS / (time.perf_counter() - began))
             if len(robot.messages("/cmd_vel")) != STEPS:
                 raise RuntimeError("the node did not answer every step")
+    return rates
+
+
+def _three(workspace: Any) -> list[float]:
+    from std_msgs.msg import String
+
+    from autograder.lab import LockstepLab, Program
+
+    folder = workspace.install / "chain" / "lib" / "chain"
+    folder.mkdir(parents=True)
+    topics = ("in", *CHAIN)
+    for heard, name in zip(topics, CHAIN, strict=False):
+        (folder / name).write_text(RELAY.format(name=name, heard=heard, out=name))
+    programs = tuple(Program("chain", name) for name in CHAIN)
+    rates = []
+    for _ in range(RUNS):
+        with LockstepLab(workspace, programs=programs, offers={"/in": String}, listens={"/third": String}) as lab:
+            began = time.perf_counter()
+            for number in range(CHAIN_STEPS):
+                lab.publish("/in", String(data=str(number)))
+                lab.step(lab.tick_ns)
+            rates.append(CHAIN_STEPS / (time.perf_counter() - began))
+            if len(lab.messages("/third")) != CHAIN_STEPS:
+                raise RuntimeError("the chain did not pass every message on")
     return rates
 
 

@@ -179,6 +179,21 @@ run(program)
 """,
 }
 
+PATIENT = """
+class Patient(Speaker):
+    def __init__(self):
+        super().__init__('patient')
+        self.client = self.create_client(Trigger, 'ask')
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        if not self.client.service_is_ready():
+            return self.say('nobody')
+        self.client.call_async(Trigger.Request()).add_done_callback(lambda f: self.say('got', f.result().message))
+
+spin(Patient)
+"""
+
 GIVES_UP = """
 def program():
     node = Speaker('asking')

@@ -114,6 +114,28 @@ def test_a_service_and_the_parameter_services_answer_without_time_going_by() -> 
     assert heard == [[0.0, "server asked 0.000"], [0.3, "server asked 0.300"]]
 
 
+def given(scratch: Path) -> Any:
+    from rcl_interfaces.srv import GetParameters
+
+    from autograder.lab import LockstepLab, RealtimeLab
+
+    workspace = lay_down(scratch, node=programs.SERVER)
+    arguments = ("--ros-args", "-r", "__node:=driver", "--params-file", "{files}/speed.yaml")
+    files = {"speed.yaml": "driver:\n  ros__parameters:\n    speed: 0.25\n"}
+    found = []
+    for kind in (LockstepLab, RealtimeLab):
+        with kind(workspace, "pkg", "node", arguments=arguments, files=files) as lab:
+            got = lab.call(GetParameters, "/driver/get_parameters", GetParameters.Request(names=["speed"]))
+            found.append([lab.nodes(), got.values[0].double_value])
+    return found, [path.name for path in workspace.root.iterdir()]
+
+
+def test_a_program_reads_the_files_that_the_grader_gives_it_and_none_are_left() -> None:
+    found, left = in_cell(given)
+    assert found == [[["/driver"], 0.25]] * 2
+    assert left == ["install"]
+
+
 def goals(scratch: Path, program: str) -> Any:
     from autograder.interfaces import load
 
@@ -180,6 +202,30 @@ def test_a_client_gets_its_answers_at_once_however_it_waits_for_them() -> None:
             assert [text.split()[:3] for _, text in heard] == [["asking", "got", str(n + 1)] for n in range(4)], name
             continue
         assert heard == [[t, f"asking got {n} {t:.3f}"] for n, t in enumerate(times, 1)], name
+
+
+def late(scratch: Path) -> Any:
+    from std_srvs.srv import Trigger
+
+    workspace = lay_down(scratch, node=programs.PATIENT)
+
+    def run() -> Any:
+        with open_lab(workspace, "node") as lab:
+            lab.run(0.2)
+            lab.serve(Trigger, "/ask", answering())
+            lab.run(0.2)
+            return said(lab)
+
+    return twice(run)
+
+
+def test_a_service_that_comes_later_is_there_from_the_next_step_on() -> None:
+    assert [text for _, text in in_cell(late)] == [
+        "patient nobody 0.100",
+        "patient nobody 0.200",
+        "patient got 1 0.300",
+        "patient got 2 0.400",
+    ]
 
 
 def unanswered(scratch: Path) -> Any:

@@ -7,8 +7,16 @@ import sys
 import pytest
 
 from autograder.diagnosis import Kind
-from autograder.lockstep.failures import diagnose_crash, diagnose_ending, diagnose_output, stuck, tail
-from autograder.lockstep.protocol import Crash
+from autograder.lockstep.failures import (
+    diagnose_crash,
+    diagnose_deadlock,
+    diagnose_ending,
+    diagnose_output,
+    stuck,
+    tail,
+    unsteppable,
+)
+from autograder.lockstep.protocol import REASONS, Crash, Deadlock
 from autograder.sandbox import Limits, Process
 
 
@@ -108,3 +116,29 @@ def test_a_printed_traceback_names_the_crash() -> None:
 def test_only_the_end_of_a_long_output_is_kept() -> None:
     assert tail("\n".join(map(str, range(100))), 3) == "97\n98\n99"
     assert tail("") == ""
+
+
+@pytest.mark.parametrize(
+    ("reason", "words"),
+    [
+        ("thread", "the only thread that could run what takes the answer is waiting itself"),
+        ("group", "what takes the answer is in a callback group that the waiting callback holds"),
+        ("spin", "nothing spins yet, so what takes the answer can never run"),
+    ],
+)
+def test_a_deadlock_is_explained(reason: str, words: str) -> None:
+    diagnosis = diagnose_deadlock(Deadlock("client.call()", "/add", reason), "a\nb")
+    assert diagnosis.kind is Kind.STUCK
+    assert "Your node waits for ever in client.call() for an answer of /add, a deadlock: " in diagnosis.sentence
+    assert words in diagnosis.sentence
+    assert diagnosis.detail == "a\nb"
+    unnamed = diagnose_deadlock(Deadlock("rate.sleep()", "", reason), "").sentence
+    assert "in rate.sleep(), a deadlock: " in unnamed
+    assert "the callback that would end the wait" in unnamed
+
+
+@pytest.mark.parametrize("reason", REASONS)
+def test_a_program_that_cannot_be_stepped_hears_why(reason: str) -> None:
+    diagnosis = unsteppable(reason, "")
+    assert diagnosis.kind is Kind.NEVER_STARTED
+    assert "Your node's time cannot be stepped: it " in diagnosis.sentence

@@ -114,6 +114,19 @@ def test_a_description_says_what_the_program_reads() -> None:
     }
 
 
+@pytest.mark.parametrize(("wake", "found"), [(5, 5), (True, None), (5.0, None), ("5", None), (None, None)])
+def test_a_time_to_wake_is_a_whole_number(wake: object, found: int | None) -> None:
+    assert protocol.reply({"wake": wake}).wake == found
+
+
+def test_reasons_are_those_that_have_a_sentence() -> None:
+    assert protocol.reply({"notes": ["clock", "give me points", 7, "thread"]}).notes == ("clock", "thread")
+    assert protocol.reason({"reason": "sleep"}) == "sleep"
+    assert protocol.reason({"reason": ["sleep"]}) == "thread"
+    deadlock = protocol.deadlock({"what": "x" * 10 * MAX_TEXT, "name": 3, "reason": "luck"})
+    assert (len(deadlock.what), deadlock.name, deadlock.reason) == (MAX_TEXT, "", "thread")
+
+
 def test_texts_and_lists_are_cut() -> None:
     crash = protocol.crash({"type": "E", "message": "m" * 10 * MAX_TEXT, "traceback": "t" * 10 * MAX_TEXT})
     assert (len(crash.message), len(crash.traceback)) == (MAX_TEXT, MAX_TEXT)

@@ -11,7 +11,7 @@ import pytest
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.lockstep import Stepper, stepper
+from autograder.lockstep import Stepper, UnsteppableError, stepper
 from autograder.sandbox import Ending, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
@@ -95,6 +95,17 @@ def test_a_crash_event_is_told_in_its_own_words(host: Open) -> None:
     event = '{"event": "crash", "phase": "import", "type": "NameError", "message": "x", "traceback": "T"}'
     program = host(f"os.write(write, {event.encode()!r} + b'\\n')")
     assert _kind(program.wait_ready) is Kind.CRASHED_AT_IMPORT
+
+
+def test_a_program_that_cannot_be_stepped_is_told_apart(host: Open) -> None:
+    with pytest.raises(UnsteppableError) as caught:
+        host(r"""os.write(write, b'{"event": "unsteppable", "reason": "clock"}\n')""").wait_ready()
+    assert caught.value.reason == "clock"
+
+
+def test_a_deadlock_is_told_as_one(host: Open) -> None:
+    event = '{"event": "deadlock", "what": "client.call()", "name": "/add", "reason": "group"}'
+    assert _kind(host(f"os.write(write, {event.encode()!r} + b'\\n')").wait_ready) is Kind.STUCK
 
 
 def test_a_program_that_answers_without_listening_does_not_hold_up_the_grader(

@@ -1,0 +1,80 @@
+"""Channels are named alike on both sides, and join what DDS joins."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_check_compatible
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from autograder.lockstep.lockstep_host import channels
+from autograder.lockstep.protocol import answers
+
+SECONDS = 30.0
+PROFILES = [
+    QoSProfile(depth=1, reliability=reliability, durability=durability)
+    for reliability in (ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT)
+    for durability in (DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE)
+]
+
+
+@pytest.fixture
+def node(ros_domain: int) -> Iterator[Any]:
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=ros_domain)
+    made = Node("channels", namespace="/here", context=context)
+    yield made
+    made.destroy_node()
+    context.try_shutdown()
+
+
+@pytest.mark.parametrize("offered", PROFILES)
+@pytest.mark.parametrize("requested", PROFILES)
+def test_a_subscription_reads_what_a_publisher_writes_when_their_quality_fits(
+    offered: QoSProfile, requested: QoSProfile
+) -> None:
+    compatible = qos_check_compatible(offered, requested)[0].name != "ERROR"  # a warning names liveliness
+    written, read = channels.written("/scan", LaserScan, offered), channels.read("/scan", LaserScan, requested)
+    assert (written in read) is compatible
+
+
+def test_another_type_or_topic_is_another_channel() -> None:
+    written = channels.written("/scan", LaserScan, PROFILES[0])
+    assert written == "/scan sensor_msgs/msg/LaserScan reliable latched"
+    assert written not in channels.read("/scan", String, PROFILES[3])
+    assert written not in channels.read("/scans", LaserScan, PROFILES[3])
+    assert channels.topic_of(written) == "/scan"
+    assert channels.is_latched(written)
+    assert channels.is_topic(written)
+
+
+def test_requests_and_responses_are_named_alike_by_host_and_grader() -> None:
+    request = channels.request("/ask", Trigger)
+    assert not channels.is_topic(request)
+    assert answers(request, "0a") == channels.response("/ask", Trigger, "0a")
+    own = channels.response("/ask", Trigger, channels.OWN)
+    assert channels.of((own, request), "0a") == (channels.response("/ask", Trigger, "0a"), request)
+
+
+def test_the_sender_of_a_request_is_known_by_its_process(node: Any) -> None:
+    service = node.create_service(Trigger, "ask", lambda request, response: response)
+    client = node.create_client(Trigger, "ask")
+    deadline = time.monotonic() + SECONDS
+    while not (client.service_is_ready() and channels.own_prefix(node)):
+        assert time.monotonic() < deadline
+    client.call_async(Trigger.Request())
+    header = None
+    while header is None:
+        assert time.monotonic() < deadline
+        _, header = service.handle.service_take_request(Trigger.Request)
+    prefix = channels.client_prefix(header.request_id)
+    assert len(prefix) == 2 * channels.PREFIX
+    assert prefix == channels.own_prefix(node)
