@@ -59,7 +59,7 @@ class EitherLab(Base):
     def __enter__(self) -> Any:
         lab = self._make(LockstepLab)
         names = tuple((program.package, program.executable) for program in lab.programs)
-        key = (lab._workspace.root, names)
+        key = (names, *((path, path.stat().st_mtime_ns) for path in lab._paths))
         if os.environ.get(TIME_VARIABLE) == REAL:
             _reasons[key] = REAL
         if key not in _reasons:

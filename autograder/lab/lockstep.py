@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from types import TracebackType
@@ -16,7 +16,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.lab.matching import connected
 from autograder.lab.meeting import Lab, Program
-from autograder.lockstep import Description, Stepper
+from autograder.lockstep import Description, Stepper, UnsteppableError
 from autograder.lockstep.lockstep_host import channels
 from autograder.lockstep.protocol import START
 from autograder.sandbox import Process
@@ -57,15 +57,16 @@ class LockstepLab(Lab):
         notes: why steps are not all that moves the programs, if so: thread, clock or sleep.
     """
 
+    _players: Sequence[Player] = ()
+
     def _start(self) -> None:
         self._now_ns = START
         self.notes: list[str] = []
         self._patience = DELIVERY_SECONDS
-        self._players: list[Player] = []
         for program, path in zip(self.programs, self._paths, strict=True):
             arguments = program.words(self._folder)
             stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
-            self._players.append(Player(program, stepper))
+            self._players = [*self._players, Player(program, stepper)]
         for player in self._players:
             with self._naming(player):
                 player.stepper.wait_ready()
@@ -250,7 +251,7 @@ class LockstepLab(Lab):
         try:
             yield
         except StudentError as error:
-            if len(self._players) == 1:
+            if len(self._players) == 1 or isinstance(error, UnsteppableError):
                 raise
             sentence = f"{player.program.executable}: {error.diagnosis.sentence}"
             raise StudentError(replace(error.diagnosis, sentence=sentence)) from None

@@ -23,12 +23,13 @@ SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the no
 class RealtimeLab(Lab):
     """Programs in real time, for what cannot be stepped: signals, own threads, whole processes."""
 
+    _processes: tuple[Process, ...] = ()
+
     def _start(self) -> None:
         self._began = time.monotonic()
-        self._processes: list[Process] = []
         for program, path in zip(self.programs, self._paths, strict=True):
             command = [sys.executable, str(path), *program.words(self._folder)]
-            self._processes.append(launch(command, self._sandbox))
+            self._processes = (*self._processes, launch(command, self._sandbox))
         if not self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self.programs), START_SECONDS):
             raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self.output))
 
@@ -41,7 +42,7 @@ class RealtimeLab(Lab):
 
     @property
     def processes(self) -> tuple[Process, ...]:
-        return tuple(self._processes)
+        return self._processes
 
     @property
     def now_ns(self) -> int:

@@ -20,7 +20,10 @@ from rclpy.timer import Rate
 from .crew import Worker
 from .tasks import awaited
 
-PATIENT_NS = 3 * 10**9  # of sleep between the first node and the first spin; who sleeps longer does not spin at all
+# Who sleeps so often and so long between its first message and its first spin works in a loop, and never spins. Who has
+# sent nothing yet may just be slow to start.
+LOOPS, LOOPS_NS = 5, 10**9
+START_NS = 20 * 10**9
 _wait_for_event = threading.Event.wait
 
 
@@ -29,7 +32,7 @@ class Blocking:
 
     def __init__(self, host: Any) -> None:
         self._host = host
-        self._slept = 0
+        self._slept = self._looped = self._loops = 0
 
     def install(self) -> None:
         """Catch events that are waited for by anything but Python's own library."""
@@ -54,7 +57,9 @@ class Blocking:
             return True
         if host.has_nodes():
             self._slept += nanoseconds
-            if self._slept > PATIENT_NS:
+            if host.has_spoken():
+                self._looped, self._loops = self._looped + nanoseconds, self._loops + 1
+            if (self._loops >= LOOPS and self._looped >= LOOPS_NS) or self._slept >= START_NS:
                 host.stop(event="unsteppable", reason="sleep")
         return False
 

@@ -159,6 +159,10 @@ class Host:
         """Return whether there is a node."""
         return bool(self._alive())
 
+    def has_spoken(self) -> bool:
+        """Return whether a node has sent anything, but for news of its parameters."""
+        return any(not channel.startswith("/parameter_events ") for channel in self.ledger.fresh)
+
     def note(self, reason: str) -> None:
         """Remember to tell the grader why steps are not all that moves this program."""
         if reason not in self._notes:
@@ -228,7 +232,7 @@ class Host:
             entity = reader.entity
             if entity is None:
                 self.ledger.owing.discard(reader)
-            elif any(_holds(node, entity) for node in nodes) and executor.can_execute(entity):
+            elif any(ledger.holds(node, entity) for node in nodes) and executor.can_execute(entity):
                 owing.append((reader, entity))
         return owing
 
@@ -288,11 +292,6 @@ class Host:
             source._last_time_set = now
             for clock in source._associated_clocks:
                 clock.set_ros_time_override(now)
-
-
-def _holds(node: Any, entity: Any) -> bool:
-    kinds = (node.subscriptions, node.services, node.clients, node.waitables)
-    return any(entity is one for kind in kinds for one in kind)
 
 
 def _ros_time(nanoseconds: int) -> Time:

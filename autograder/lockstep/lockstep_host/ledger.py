@@ -184,6 +184,12 @@ def _empty(subscription: Any) -> None:
         pass
 
 
+def holds(node: Any, entity: Any) -> bool:
+    """Return whether an entity belongs to a node."""
+    kinds = (node.subscriptions, node.services, node.clients, node.waitables)
+    return any(entity is one for kind in kinds for one in kind)
+
+
 def is_alive(entity: Any) -> bool:
     """Return whether an rclpy object has not been destroyed."""
     try:
