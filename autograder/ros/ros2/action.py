@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import math
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from action_msgs.msg import GoalStatus
@@ -128,18 +132,32 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         if not handle.accepted:
             print("Goal was rejected.")
             return None
-        try:
+        with _held_back() as interrupts:
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
             finishing = handle.get_result_async()
-            session.spin_until(finishing)
-        except (KeyboardInterrupt, SystemExit):
-            _cancel(session, handle)
-            raise
+            session.wait_for(lambda: finishing.done() or bool(interrupts), math.inf)
+            if interrupts:
+                _cancel(session, handle)
+        for number in interrupts[:1]:
+            signal.raise_signal(number)
         answer = finishing.result()
         print(f"Result:\n    {message_to_yaml(answer.result)}")
         print(f"Goal finished with status: {_STATUS.get(answer.status, 'UNKNOWN')}")
         client.destroy()
     return None
+
+
+@contextmanager
+def _held_back() -> Iterator[list[int]]:
+    """Note SIGINT and SIGTERM in a list: raised in the middle of rclpy's own calls, they come out as other errors."""
+    noted: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, lambda number, _: noted.append(number)) for number in numbers}
+    try:
+        yield noted
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _cancel(session: Session, handle: Any) -> None:
