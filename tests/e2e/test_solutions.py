@@ -1,25 +1,34 @@
-"""The reference packages build with colcon, pass their own tests, and their nodes start and end as they should."""
+"""Each reference package builds, passes the linters and its own tests, and its programs start and end well."""
 
 from __future__ import annotations
 
 import ast
 import os
-import shutil
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from std_msgs.msg import String
 
+from autograder.lab import Workspace
+from autograder.lab.launching import LaunchLab
 from autograder.layout import SOLUTIONS
+from autograder.packages import find_packages
+from autograder.probes import launching
 from autograder.ros import environment
+from tests.e2e.conftest import Terminal
 
-PACKAGES = ("my_robot_interfaces", "my_robot_package", "motor_guard_interfaces", "motor_guard")
+PACKAGES, _ = find_packages(SOLUTIONS)
+PYTHON = [name for name, folder in PACKAGES.items() if (folder / "setup.py").is_file()]
+MESSAGES = [name for name in PACKAGES if name not in PYTHON]
+LINTERS = ("flake8", "pep257")
+NOT_PASSED = {"failure", "error", "skipped"}
+PATIENCE = 60.0  # seconds: a deadline, not an expectation
 FIRST_WORDS = {
     "basic_node": "Basic node initialised",
     "configured_node": "DefaultRobot is ready",
@@ -46,79 +55,92 @@ assert future.done()
 node.destroy_node()
 rclpy.try_shutdown()
 """
+LOAD = """
+import importlib, sys
+from rclpy.type_support import check_for_type_support
+for path in sys.argv[2:]:
+    kind, name = path.split("/")
+    check_for_type_support(getattr(importlib.import_module(f"{sys.argv[1]}.{kind}"), name))
+"""
 
 
-@dataclass(frozen=True)
-class Workspace:
-    """A colcon workspace with the reference, built."""
-
-    root: Path
-    variables: dict[str, str]
-
-    @property
-    def executables(self) -> Path:
-        return self.root / "install/my_robot_package/lib/my_robot_package"
-
-    def run(self, *command: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            command, cwd=self.root, env=self.variables, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-        )
-
-    @contextmanager
-    def node(self, name: str, *arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-        """Start a node and give it with its first line of output."""
-        with subprocess.Popen(
-            [self.executables / name, *arguments],
-            cwd=self.root,
-            env=self.variables,
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        ) as process:
-            assert process.stdout is not None
-            try:
-                yield process, process.stdout.readline()
-            finally:
-                process.kill()
+@pytest.fixture
+def terminal(reference: Terminal, ros_domain: int) -> Terminal:
+    """The sourced workspace, in a domain of this test's own."""
+    return Terminal(reference.root, {**reference.variables, "ROS_DOMAIN_ID": str(ros_domain)})
 
 
-@pytest.fixture(scope="session")
-def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
-    root = tmp_path_factory.mktemp("reference")
-    for package in PACKAGES:
-        shutil.copytree(SOLUTIONS / package, root / "src" / package)
-    ros = environment.find()
-    variables = {
-        **os.environ,
-        **ros.variables(domain=1 + os.getpid() % 100, log_dir=root / "log/ros"),
-        "MAKEFLAGS": "-j3",
-    }
-    variables["PATH"] = f"{ros.prefixes[0] / 'bin'}{os.pathsep}{variables['PATH']}"
-    built = Workspace(root, variables)
-    result = built.run("colcon", "build")
-    assert result.returncode == 0, result.stdout
-    sourced = built.run("bash", "-c", ". install/setup.bash && exec env -0").stdout
-    return Workspace(root, dict(entry.split("=", 1) for entry in sourced.split("\0") if "=" in entry))
+@contextmanager
+def node(terminal: Terminal, name: str, *arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Start a node of my_robot_package and give it with its first line of output."""
+    with subprocess.Popen(
+        [executable(terminal, name), *arguments],
+        cwd=terminal.root,
+        env=terminal.variables,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    ) as process:
+        assert process.stdout is not None
+        try:
+            yield process, process.stdout.readline()
+        finally:
+            process.kill()
 
 
-def test_colcon_test_runs_the_linters_and_the_unit_tests_and_all_pass(workspace: Workspace) -> None:
-    ran = workspace.run("colcon", "test", "--packages-select", *PACKAGES, "--event-handlers", "console_direct+")
-    result = workspace.run("colcon", "test-result", "--all", "--verbose")
-    assert result.returncode == 0, ran.stdout + result.stdout
-    report = ElementTree.parse(workspace.root / "build/my_robot_package/pytest.xml")
-    passed = {case.get("name", "") for case in report.iter("testcase") if len(case) == 0}
-    assert {"test_flake8", "test_pep257"} <= passed
-    assert len(passed) > 30
+def executable(terminal: Terminal, name: str) -> Path:
+    return terminal.root / "install/my_robot_package/lib/my_robot_package" / name
+
+
+@pytest.fixture(scope="module")
+def tested(reference: Terminal) -> str:
+    """What `colcon test` said about all packages. Those of messages have no test that calls the linters: we do."""
+    said = reference.run("colcon", "test", "--packages-select", *PYTHON).stdout
+    for package in MESSAGES:
+        for linter in LINTERS:
+            report = reference.root / "build" / package / f"{linter}.xunit.xml"
+            said += reference.run(f"ament_{linter}", "--xunit-file", report, f"src/{package}").stdout
+    return said
+
+
+def test_colcon_has_nothing_to_say_against_a_package(reference: Terminal) -> None:
+    said = (reference.root / "log/build.txt").read_text()
+    assert f"{len(PYTHON)} packages finished" in said
+    assert "stderr" not in said
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_linters_and_the_tests_of_a_package_pass(reference: Terminal, tested: str, package: str) -> None:
+    reports = list((reference.root / "build" / package).glob("*.xml"))
+    cases = [case for report in reports for case in ElementTree.parse(report).iter("testcase")]
+    not_passed = [case.get("name") for case in cases if {child.tag for child in case} & NOT_PASSED]
+    assert not_passed == [], tested
+    if package in MESSAGES:
+        assert {report.name for report in reports} >= {f"{linter}.xunit.xml" for linter in LINTERS}, tested
+    else:
+        ran = {case.get("name", "").partition("[")[0] for case in cases}
+        linters = {f"test_{linter}" for linter in LINTERS}
+        assert linters <= ran, tested
+        assert ran - linters - {"test_copyright", "test_each_source_file_starts_with_its_licence"}, tested
+
+
+@pytest.mark.parametrize("package", MESSAGES)
+def test_the_definitions_of_a_package_of_messages_can_be_used(terminal: Terminal, package: str) -> None:
+    folder = PACKAGES[package]
+    names = [
+        f"{path.parent.name}/{path.stem}" for kind in ("msg", "srv", "action") for path in folder.glob(f"{kind}/*")
+    ]
+    assert names
+    loaded = terminal.run(sys.executable, "-c", LOAD, package, *names)
+    assert loaded.returncode == 0, loaded.stdout
 
 
 @pytest.mark.parametrize("name", FIRST_WORDS)
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_each_installed_executable_starts_and_ends_cleanly(
-    workspace: Workspace, name: str, how: signal.Signals
-) -> None:
-    with workspace.node(name) as (process, first):
+def test_each_installed_executable_starts_and_ends_cleanly(terminal: Terminal, name: str, how: signal.Signals) -> None:
+    with node(terminal, name) as (process, first):
         assert FIRST_WORDS[name] in first
-        asked = workspace.run(sys.executable, "-c", ASK, name)
+        asked = terminal.run(sys.executable, "-c", ASK, name)
         assert asked.returncode == 0, asked.stdout
         process.send_signal(how)
         rest, _ = process.communicate()
@@ -126,23 +148,36 @@ def test_each_installed_executable_starts_and_ends_cleanly(
     assert "Traceback" not in rest
 
 
-def test_the_configuration_reaches_its_node(workspace: Workspace) -> None:
-    config = workspace.root / "install/my_robot_package/share/my_robot_package/config/robot_params.yaml"
-    renamed = workspace.root / "renamed.yaml"
+def test_the_configuration_reaches_its_node(terminal: Terminal, tmp_path: Path) -> None:
+    config = terminal.root / "install/my_robot_package/share/my_robot_package/config/robot_params.yaml"
+    renamed = tmp_path / "renamed.yaml"
     renamed.write_text(config.read_text().replace("MyRobot01", "Wall-hugger"))
-    with workspace.node("status_publisher", "--ros-args", "--params-file", str(renamed)) as (_, first):
+    with node(terminal, "status_publisher", "--ros-args", "--params-file", str(renamed)) as (_, first):
         assert "Status of Wall-hugger" in first
 
 
-def test_every_launched_executable_exists(workspace: Workspace) -> None:
-    launch = workspace.root / "install/my_robot_package/share/my_robot_package/launch/robot_system.launch.py"
+def test_every_launched_executable_exists(terminal: Terminal) -> None:
+    launch = terminal.root / "install/my_robot_package/share/my_robot_package/launch/robot_system.launch.py"
     launched = [
         ast.literal_eval(keyword.value)
-        for node in ast.walk(ast.parse(launch.read_text()))
-        if isinstance(node, ast.Call)
-        for keyword in node.keywords
+        for call in ast.walk(ast.parse(launch.read_text()))
+        if isinstance(call, ast.Call)
+        for keyword in call.keywords
         if keyword.arg == "executable"
     ]
     assert launched == ["robot_controller", "sensor_processor", "status_publisher"]
     for name in launched:
-        assert os.access(workspace.executables / name, os.X_OK)
+        assert os.access(executable(terminal, name), os.X_OK)
+
+
+def test_two_robots_come_up_in_their_namespaces_and_end_together(
+    reference: Terminal, ros_domain: int, tmp_path: Path
+) -> None:
+    workspace = Workspace(reference.root, environment.find(), tmp_path, domain=ros_domain)
+    with LaunchLab(workspace, "my_robot_bringup", "two_robots.launch.py", listens={"/fleet/status": String}) as lab:
+        names = [f"/{robot}/{node}" for robot in ("robot1", "robot2") for node in ("driver", "reporter")]
+        launching.expect_nodes(lab, names)
+        launching.expect_parameters(lab, "/robot2/driver", {"speed": 0.2, "turn_rate": 0.4})
+        wanted = {f"robot{number} drives at 0.20 m/s" for number in (1, 2)}
+        assert lab.wait_for(lambda: {message.data for message in lab.messages("/fleet/status")} >= wanted, PATIENCE)
+        launching.expect_clean_stop(lab)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from autograder.ros import environment
+from tests.e2e.conftest import Terminal
 
 Start = Callable[..., Any]
 SOLUTIONS = Path(__file__).parents[3] / "solutions"
@@ -21,23 +19,9 @@ NODES = ("robot_controller", "sensor_processor", "status_publisher")
 
 
 @pytest.fixture(scope="module")
-def install(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def install(reference: Terminal) -> Path:
     """The `install` folder of a workspace with the course's packages."""
-    workspace = tmp_path_factory.mktemp("reference")
-    # fmt: off
-    subprocess.run(
-        ["colcon", "--log-base", workspace / "log", "build", "--base-paths", SOLUTIONS,
-         "--build-base", workspace / "build", "--install-base", workspace / "install",
-         "--packages-select", "my_robot_interfaces", "my_robot_package"],
-        env={
-            "PATH": f"{Path(sys.executable).parent}:/usr/local/bin:/usr/bin:/bin",
-            "MAKEFLAGS": "-j3",
-            **environment.find().variables(log_dir=workspace / "ros_log"),
-        },
-        check=True, capture_output=True, timeout=600,
-    )
-    # fmt: on
-    return workspace / "install"
+    return reference.root / "install"
 
 
 @pytest.mark.slow

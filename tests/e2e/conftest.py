@@ -1,0 +1,61 @@
+"""What the long tests share: the reference packages, all of them in one workspace that is built once."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from autograder.grading.build import build
+from autograder.lab import Workspace
+from autograder.layout import SOLUTIONS
+from autograder.packages import find_packages
+from autograder.ros import environment
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """A terminal in a workspace: where it stands, and its environment variables."""
+
+    root: Path
+    variables: dict[str, str]
+
+    def run(self, *command: str | Path) -> subprocess.CompletedProcess[str]:
+        """Run a command; what it said on both streams is its `stdout`."""
+        return subprocess.run(
+            command, cwd=self.root, env=self.variables, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+
+    def source(self) -> Terminal:
+        """Return the terminal after `source install/setup.bash`."""
+        variables = self.run("bash", "-c", ". install/setup.bash && exec env -0").stdout
+        return Terminal(self.root, dict(entry.split("=", 1) for entry in variables.split("\0") if "=" in entry))
+
+
+@pytest.fixture(scope="session")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
+    """A sourced workspace with every package of `solutions/`, as colcon built them; `log/build.txt` has its words.
+
+    Packages of messages, which take by far the longest, are built as the grader builds them, and kept where it keeps
+    them. The others are built as a student does it.
+    """
+    root = tmp_path_factory.mktemp("reference")
+    found, broken = find_packages(SOLUTIONS)
+    assert not broken
+    for name, folder in found.items():
+        shutil.copytree(folder, root / "src" / name)
+    ros = environment.find()
+    messages = [name for name, folder in found.items() if (folder / "CMakeLists.txt").is_file()]
+    for name in messages:
+        build(Workspace(root, ros, tmp_path_factory.mktemp("scratch")), (name,))
+    variables = {**os.environ, **ros.variables(log_dir=root / "log/ros"), "PATH": environment.path_with_scripts()}
+    terminal = Terminal(root, variables)
+    variables.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns where it is set
+    built = terminal.run("colcon", "build", "--packages-skip", *messages)
+    assert built.returncode == 0, built.stdout
+    (root / "log/build.txt").write_text(built.stdout)
+    return terminal.source()
