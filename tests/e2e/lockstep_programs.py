@@ -8,6 +8,7 @@ import rclpy
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -109,6 +110,13 @@ ACTION_SERVERS = {
         group="ReentrantCallbackGroup",
         before="rate = self.create_rate(10)",
         pause="rate.sleep()",
+        executor=", MultiThreadedExecutor",
+    ),
+    "an action by its clock, in many threads": ACTION_SERVER.format(
+        keyword="def",
+        group="ReentrantCallbackGroup",
+        before="",
+        pause="self.get_clock().sleep_for(Duration(seconds=0.1))",
         executor=", MultiThreadedExecutor",
     ),
 }
@@ -246,6 +254,26 @@ class Wall(Speaker):
         self.say('slept')
 
 spin(Wall)
+"""
+
+SLEEPS_BY_CLOCKS = """
+class Sleeper(Speaker):
+    def __init__(self):
+        super().__init__('sleeper')
+        self.once = self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        self.once.cancel()
+        for kind in ClockType.ROS_TIME, ClockType.STEADY_TIME:
+            clock = self.get_clock() if kind == ClockType.ROS_TIME else Clock(clock_type=kind)
+            self.say(clock.sleep_for(Duration(seconds=0.25)))
+            self.say(clock.sleep_until(clock.now() + Duration(seconds=0.25)))
+        try:
+            self.get_clock().sleep_until(clock.now())
+        except ValueError as error:
+            self.say(error)
+
+spin(Sleeper)
 """
 
 TALK_AT_HOME = """

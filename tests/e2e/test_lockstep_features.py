@@ -167,7 +167,7 @@ def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
     assert [last for _, last in feedback] == [0, 1, 2]
     assert ends[:2] == [[True, 4], [False, 0]]
     times = [seconds - feedback[0][0] for seconds, _ in feedback]
-    if "rate" in name:
+    if "in many threads" in name:
         assert times == pytest.approx([0.0, 0.1, 0.2])
         assert (ends[2], cancelled) == ([True, 5], True)
         assert stopped == 3
@@ -276,6 +276,16 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
         [0.25, "wall slept 0.250"],
         [0.25, "wall 0.25 0.25 0.250"],
         [0.4, "wall slept 0.400"],
+    ]
+
+
+def test_sleeping_by_a_clock_lets_ros_time_go_by() -> None:
+    heard, _, _, notes = in_cell(alone, programs.SLEEPS_BY_CLOCKS, 1.5)
+    assert not notes
+    assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.6, 0.85, 1.1, 1.1], abs=0.011)
+    assert [text.split(maxsplit=1)[1].rsplit(" ", 1)[0] for _, text in heard] == [
+        *["True"] * 4,
+        "until's clock type does not match this clock's type",
     ]
 
 

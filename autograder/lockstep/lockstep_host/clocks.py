@@ -2,6 +2,7 @@
 
 The student's own code gets ROS time from Python's `time` module, too. Each reading takes 10 µs of it, so that a loop
 which waits for time to go by comes to an end. Other code, such as rclpy's or Python's own, keeps the machine's clocks.
+Sleeping, by `time` or by a clock of rclpy's, lets ROS time go by.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ from typing import Any
 
 from rclpy.clock import Clock, ClockType
 from rclpy.time import Time
+from rclpy.utilities import get_default_context
 
 READING = 10_000  # ns that one reading takes
 _OTHERS = tuple({sys.prefix, sys.base_prefix, "/usr", "/opt/ros", "<frozen"})
 _clock_now = Clock.now
+_clock_sleep_until = Clock.sleep_until
 
 
 class Clocks:
@@ -45,13 +48,30 @@ class Clocks:
             if not self._sleep(round(seconds * 1e9)):
                 machine_sleep(seconds)
 
+        def sleep_until(clock: Any, until: Time, context: Any = None) -> bool:
+            context = context or get_default_context()
+            if not context.ok() or until.clock_type != clock.clock_type:
+                return bool(_clock_sleep_until(clock, until, context))  # which raises
+            sleep(max(0, until.nanoseconds - self._shown(clock)) / 1e9)
+            return bool(context.ok())
+
+        def sleep_for(clock: Any, duration: Any, context: Any = None) -> bool:
+            end = self._shown(clock) + duration.nanoseconds
+            return sleep_until(clock, Time(nanoseconds=end, clock_type=clock.clock_type), context)
+
         setattr(time, "sleep", sleep)  # noqa: B010 - the name has a type that no stand-in has
         Clock.now = lambda clock: self._now(clock)
+        Clock.sleep_until = sleep_until
+        Clock.sleep_for = sleep_for
 
     def read(self) -> int:
         """Return ROS time in nanoseconds, a little later each time."""
         self._last = max(self._last + READING, self._ros_time())
         return self._last
+
+    def _shown(self, clock: Any) -> int:
+        """Return what a clock of the program's shows."""
+        return self._ros_time() if clock.clock_type == ClockType.ROS_TIME else self.read()
 
     def _replace(self, name: str, stepped: Callable[[], Any]) -> None:
         machine = getattr(time, name)
