@@ -33,8 +33,8 @@ def test_drive_cancels(ready: Driver, draw: random.Random) -> None:
     goal.cancel()
     commands = ready.roll(goal, 3.0)
     expect(goal.cancelled is True, "The cancel was not accepted within 3 s.")
-    expect(goal.status is not None, "The cancel was accepted, but 3 s later the goal had not ended.", fraction=0.2)
-    says = NAMES.get(goal.status or 0, goal.status)
+    expect(goal.result is not None, "The cancel was accepted, but 3 s later the goal had not ended.", fraction=0.2)
+    says = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_CANCELED, f"After a cancel the goal ended {says}.", fraction=0.2)
     expect(stopped(commands), "After the cancel, the last command was no stop.", fraction=0.3)
     further = math.dist(there, (ready.x, ready.y))
@@ -65,7 +65,7 @@ def test_drive_one_at_a_time(ready: Driver) -> None:
     second = ready.send(1.0, 0.5)
     commands = ready.roll(first, 0.4)
     expect(not second.accepted, "While a goal was driven, another one was accepted.")
-    expect(first.status is None, "The first goal ended when another one came.", fraction=0.3)
+    expect(first.result is None, "The first goal ended when another one came.", fraction=0.3)
     expect(
         bool(commands) and all(straight(command, 0.3) for command in commands),
         "The first goal was not driven on when another one came.",
@@ -94,7 +94,7 @@ def test_drive_stuck(ready: Driver) -> None:
     goal = ready.start(1.0, 0.4)
     commands = ready.finish(goal, 6.0, "With wheels that do not turn")
     seconds = ready.seconds - began
-    says = NAMES.get(goal.status or 0, goal.status)
+    says = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_ABORTED, f"With wheels that do not turn, the goal ended {says}.")
     expect(
         seconds >= PATIENCE * 0.8,
@@ -118,6 +118,6 @@ def test_drive_blind(ready: Driver) -> None:
     ready.roll(goal, 0.6)
     ready.deaf = True
     commands = ready.finish(goal, 6.0, "With odometry that fell silent")
-    says = NAMES.get(goal.status or 0, goal.status)
+    says = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_ABORTED, f"With odometry that fell silent, the goal ended {says}.")
     expect(stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.5)

@@ -8,9 +8,8 @@ from typing import Any
 
 from autograder.checks import check, expect
 from autograder.visible.ch03_interfaces import contract
-from autograder.visible.ch03_interfaces.adviser import Adviser
 from autograder.visible.ch03_interfaces.contract import METRES_PER_PERCENT, UNKNOWN
-from autograder.visible.ch03_interfaces.reporter import SERVICE
+from autograder.visible.ch03_interfaces.reporter import SERVICE, Reporter
 
 GROUP = "service"
 ANSWERS = ("trip_answers",)
@@ -28,22 +27,22 @@ RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and poss
     ),
     doc=contract.SERVICE,
 )
-def test_trip_answers(adviser: Adviser) -> None:
+def test_trip_answers(reporter: Reporter) -> None:
     """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
     there: dict[str, list[str]] = {}
 
     def is_served() -> bool:
-        there.update(adviser.node.get_service_names_and_types())
+        there.update(reporter.node.get_service_names_and_types())
         return SERVICE in there
 
-    adviser.wait_for(is_served, SEEN_SECONDS)
+    reporter.wait_for(is_served, SEEN_SECONDS)
     own = sorted(name for name, kinds in there.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
     expect(
         SERVICE in there, f"There is no service {SERVICE}; the node serves {', '.join(own) or 'nothing of its own'}."
     )
     wanted = f"{contract.INTERFACES}/srv/CheckTrip"
     expect(there[SERVICE] == [wanted], f"{SERVICE} has the type {', '.join(there[SERVICE])}, it should be {wanted}.")
-    adviser.ask([])
+    reporter.ask([])
 
 
 @check(
@@ -53,13 +52,13 @@ def test_trip_answers(adviser: Adviser) -> None:
     hints=("An unknown battery makes no trip possible; start with possible = False.",),
     doc=contract.SERVICE,
 )
-def test_trip_unknown_battery(fresh_adviser: Adviser) -> None:
+def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
-    _expect(fresh_adviser.ask([10.0], 0), UNKNOWN, "With an unknown battery")
+    _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
 
 
 @check(points=2, group=GROUP, depends=ANSWERS, hints=(RULE,), doc=contract.SERVICE)
-def test_trip_level(adviser: Adviser, draw: random.Random) -> None:
+def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
     for _ in range(4):
         level = draw.randrange(50, 101)
@@ -68,8 +67,8 @@ def test_trip_level(adviser: Adviser, draw: random.Random) -> None:
         if abs(math.remainder(used, 1.0)) < 0.01:  # too near to a whole percent to be told apart
             legs[0] += 0.1
             used = sum(legs) / METRES_PER_PERCENT
-        adviser.level(level)
-        answer = adviser.ask(legs, 0)
+        reporter.level(level)
+        answer = reporter.ask(legs, 0)
         left = math.floor(level - used)
         situation = f"At {level} % and {len(legs)} legs of {sum(legs):.1f} m in all"
         expect(answer.battery_at_end == left, f"{situation}, battery_at_end is {answer.battery_at_end}, not {left}.")
@@ -82,14 +81,14 @@ def test_trip_level(adviser: Adviser, draw: random.Random) -> None:
     hints=(RULE, "Exactly the reserve left is enough: at least means >=."),
     doc=contract.SERVICE,
 )
-def test_trip_possible(adviser: Adviser, draw: random.Random) -> None:
+def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
     for _ in range(2):
         level, reserve = draw.randrange(60, 101), draw.randrange(10, 40)
         longest = (level - reserve) * METRES_PER_PERCENT
-        adviser.level(level)
+        reporter.level(level)
         for legs, left in (([longest], reserve), ([longest / 2, longest / 2 + 2.5], reserve - 1), ([], level)):
-            answer = adviser.ask(legs, reserve)
+            answer = reporter.ask(legs, reserve)
             situation = f"At {level} %, with {left} % left of a reserve of {reserve} %"
             says = "possible" if answer.possible else "not possible"
             expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
@@ -102,10 +101,10 @@ def test_trip_possible(adviser: Adviser, draw: random.Random) -> None:
     hints=("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not."),
     doc=contract.SERVICE,
 )
-def test_trip_too_far(adviser: Adviser, draw: random.Random) -> None:
+def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less."""
-    adviser.level(draw.randrange(10, 40))
-    _expect(adviser.ask([draw.uniform(300.0, 900.0), 50.0], 5), 0, "After a trip far too long")
+    reporter.level(draw.randrange(10, 40))
+    _expect(reporter.ask([draw.uniform(300.0, 900.0), 50.0], 5), 0, "After a trip far too long")
 
 
 @check(
@@ -118,13 +117,13 @@ def test_trip_too_far(adviser: Adviser, draw: random.Random) -> None:
     ),
     doc=contract.SERVICE,
 )
-def test_trip_bad_legs(adviser: Adviser, draw: random.Random) -> None:
+def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
-    adviser.level(draw.randrange(60, 101))
+    reporter.level(draw.randrange(60, 101))
     for bad in (-draw.uniform(0.1, 5.0), math.nan, math.inf):
         legs = [draw.uniform(1.0, 9.0), bad]
         draw.shuffle(legs)
-        _expect(adviser.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
+        _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
 
 
 @check(
@@ -134,10 +133,10 @@ def test_trip_bad_legs(adviser: Adviser, draw: random.Random) -> None:
     hints=("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.",),
     doc=contract.SERVICE,
 )
-def test_trip_reason(adviser: Adviser) -> None:
+def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
-    adviser.level(50)
-    good, bad = adviser.ask([5.0]), adviser.ask([500.0])
+    reporter.level(50)
+    good, bad = reporter.ask([5.0]), reporter.ask([500.0])
     expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
     expect(len(bad.reason.strip()) >= 3, f"The trip is not possible, and the reason is {bad.reason!r}.")
 

@@ -8,11 +8,9 @@ import random
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from autograder.checks import check, expect
-from autograder.lab import Workspace
 from autograder.visible.ch03_interfaces import contract
 from autograder.visible.ch03_interfaces.contract import UNKNOWN
 from autograder.visible.ch03_interfaces.reporter import TOPIC, Reporter, same
-from autograder.visible.ch03_interfaces.types import Types
 
 GROUP = "status"
 NEEDS = ("publishes_status",)
@@ -78,15 +76,15 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
     depends=NEEDS,
     hints=("create_timer(period, self.publish_status), with the period that read_parameters() returns.",),
 )
-def test_status_rate(workspace: Workspace, types: Types, reporter: Reporter) -> None:
+def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     """It publishes once a second, and at another rate when status_period says so."""
     began = reporter.seconds
     reporter.run(4.0)
     count = len(reporter.messages(TOPIC, since=began))
     expect(3 <= count <= 5, f"In 4 s it published {count} messages, instead of 4.")
-    with Reporter(workspace, types, ("--ros-args", "-p", "status_period:=0.25")) as faster:
-        faster.run(2.0)
-        count = len(faster.messages(TOPIC))
+    began = tuned_reporter.seconds
+    tuned_reporter.run(2.0)
+    count = len(tuned_reporter.messages(TOPIC, since=began))
     expect(
         7 <= count <= 9, f"With status_period 0.25 s it published {count} messages in 2 s, instead of 8.", fraction=0.5
     )
@@ -115,9 +113,9 @@ def test_status_stamp(reporter: Reporter) -> None:
     hints=("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.",),
     doc=contract.BATTERY,
 )
-def test_status_unknown(fresh_reporter: Reporter) -> None:
+def test_status_unknown(silent_reporter: Reporter) -> None:
     """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
-    status = fresh_reporter.status()
+    status = silent_reporter.status()
     expect(status.battery_level == UNKNOWN, f"battery_level is {status.battery_level}, it should be {UNKNOWN}.")
     expect(not status.is_charging, "is_charging is true, and nothing has said so.")
     expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
@@ -129,12 +127,10 @@ def test_status_unknown(fresh_reporter: Reporter) -> None:
     depends=NEEDS,
     hints=("self.robot_name comes from read_parameters(); put it into each message.",),
 )
-def test_status_name(workspace: Workspace, types: Types, draw: random.Random) -> None:
+def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     """The status carries the name that the parameter robot_name holds."""
-    name = f"Rover{draw.randrange(100, 1000)}"
-    with Reporter(workspace, types, ("--ros-args", "-p", f"robot_name:={name}")) as named:
-        said = named.status().robot_name
-    expect(said == name, f"With robot_name {name!r} the status says {said!r}.")
+    said = tuned_reporter.status().robot_name
+    expect(said == tuned_name, f"With robot_name {tuned_name!r} the status says {said!r}.")
 
 
 @check(

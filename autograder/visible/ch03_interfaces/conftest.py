@@ -11,7 +11,6 @@ from typing import Generic, TypeVar
 import pytest
 
 from autograder.lab import Lab, Workspace
-from autograder.visible.ch03_interfaces.adviser import Adviser
 from autograder.visible.ch03_interfaces.driver import Driver
 from autograder.visible.ch03_interfaces.reporter import Reporter
 from autograder.visible.ch03_interfaces.types import Types, load_types
@@ -62,34 +61,20 @@ def reporters(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
 
 @pytest.fixture
 def reporter(reporters: Shared[Reporter]) -> Reporter:
-    """The status publisher, stepped; it has met the sensors of earlier checks."""
+    """The status publisher; it has met the sensors of earlier checks."""
     return reporters.lab()
 
 
-@pytest.fixture
-def fresh_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
-    """A status publisher that was started for this check."""
-    with Reporter(workspace, types) as reporter:
-        yield reporter
-
-
 @pytest.fixture(scope="session")
-def advisers(workspace: Workspace, types: Types) -> Iterator[Shared[Adviser]]:
-    """Where the shared adviser is kept."""
-    yield from _shared(lambda: Adviser(workspace, types))
+def silent_reporters(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
+    """Where the status publisher is kept that no sensor ever speaks to."""
+    yield from _shared(lambda: Reporter(workspace, types))
 
 
 @pytest.fixture
-def adviser(advisers: Shared[Adviser]) -> Adviser:
-    """The status publisher in real time, asked about trips."""
-    return advisers.lab()
-
-
-@pytest.fixture
-def fresh_adviser(workspace: Workspace, types: Types) -> Iterator[Adviser]:
-    """A status publisher that has not heard of any battery yet."""
-    with Adviser(workspace, types) as adviser:
-        yield adviser
+def silent_reporter(silent_reporters: Shared[Reporter]) -> Reporter:
+    """A status publisher that has not heard of any sensor."""
+    return silent_reporters.lab()
 
 
 @pytest.fixture(scope="session")
@@ -100,7 +85,7 @@ def drivers(workspace: Workspace, types: Types) -> Iterator[Shared[Driver]]:
 
 @pytest.fixture
 def driver(drivers: Shared[Driver]) -> Driver:
-    """The distance driver in real time, on wheels that the grader turns."""
+    """The distance driver, on wheels that the grader turns."""
     return drivers.lab()
 
 

@@ -9,16 +9,16 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
 from autograder.checks import expect
-from autograder.lab import Workspace
+from autograder.lab import EitherLab, Goal, Workspace
 from autograder.visible.ch03_interfaces.contract import DRIVER, PACKAGE, PERIOD
-from autograder.visible.ch03_interfaces.talk import Submission, TalkingLab
 from autograder.visible.ch03_interfaces.types import Types
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
-LOOK = 0.02  # s between two looks at the commands
+LOOK = 0.05  # s between two looks at the commands
+ANSWER_SECONDS = 10.0  # for a server to answer: no time at all in lockstep, generous where time is real
 
 
-class Driver(TalkingLab):
+class Driver(EitherLab):
     """A lab in which goals are sent, and a robot rolls.
 
     Attributes:
@@ -40,43 +40,44 @@ class Driver(TalkingLab):
             self._tell()
             self.run(LOOK)
 
-    def send(self, distance: float, speed: float | None = None) -> Submission:
+    def send(self, distance: float, speed: float | None = None) -> Goal:
         """Send a goal; fail the check if nobody answers."""
         goal = self.types.drive_distance.Goal(distance=distance)
         if speed is not None:
             goal.speed = speed
-        sent = self.submit(self.types.drive_distance, ACTION, goal)
+        sent: Goal = self.send_goal(self.types.drive_distance, ACTION, goal, ANSWER_SECONDS)
+        self.until(lambda: sent.accepted is not None, ANSWER_SECONDS)
         expect(sent.accepted is not None, "The action server drive_distance did not answer a goal.")
         return sent
 
-    def start(self, distance: float, speed: float | None = None) -> Submission:
+    def start(self, distance: float, speed: float | None = None) -> Goal:
         """Send a goal that must be accepted."""
         sent = self.send(distance, speed)
         expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
         return sent
 
-    def roll(self, goal: Submission, seconds: float, *, until: Any = None) -> list[Twist]:
+    def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
         """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.
 
         Each command moves the robot for as long as it lasts, a tenth of a second.
         """
         before = seen = len(self.messages(COMMANDS))
         end = self.seconds + seconds
-        while self.seconds < end and goal.status is None and not (until and until()):
+        while self.seconds < end and goal.result is None and not (until and until()):
             self.run(LOOK)
             seen = self._obey(seen)
             self._tell()
-        self.run(5 * LOOK)  # the last command may come with the result
+        self.run(2 * LOOK)  # the last command may come with the result
         self._obey(seen)
         return [stamped.message for stamped in self.messages(COMMANDS)[before:]]
 
-    def finish(self, goal: Submission, seconds: float, situation: str) -> list[Twist]:
+    def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
         """Let the wheels roll until the goal has ended; fail the check if it does not."""
         commands = self.roll(goal, seconds)
-        expect(goal.status is not None, f"{situation}, the goal had not ended after {seconds:.0f} s.")
+        expect(goal.result is not None, f"{situation}, the goal had not ended after {seconds:.0f} s.")
         return commands
 
-    def abandon(self, goal: Submission) -> None:
+    def abandon(self, goal: Goal) -> None:
         """Get rid of a goal that is of no further use, by a cancel or, if need be, by holding the wheels."""
         goal.cancel()
         self.stuck = True
@@ -96,7 +97,7 @@ class Driver(TalkingLab):
             return
         odometry = Odometry()
         odometry.header.frame_id, odometry.child_frame_id = "odom", "base_link"
-        odometry.header.stamp = self.node.get_clock().now().to_msg()
+        odometry.header.stamp.sec, odometry.header.stamp.nanosec = divmod(self.now_ns, 10**9)
         odometry.pose.pose.position.x, odometry.pose.pose.position.y = self.x, self.y
         odometry.pose.pose.orientation.z = math.sin(self.heading / 2.0)
         odometry.pose.pose.orientation.w = math.cos(self.heading / 2.0)

@@ -6,7 +6,6 @@ from action_msgs.msg import GoalStatus
 
 from autograder.checks import Visibility, check, expect
 from autograder.visible.ch03_interfaces import contract
-from autograder.visible.ch03_interfaces.adviser import Adviser
 from autograder.visible.ch03_interfaces.driver import Driver, stopped
 from autograder.visible.ch03_interfaces.reporter import Reporter
 
@@ -41,11 +40,11 @@ def test_status(reporter: Reporter) -> None:
     hints=("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.",),
     doc=contract.SERVICE,
 )
-def test_trip(adviser: Adviser) -> None:
+def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
-    adviser.level(40)
+    reporter.level(40)
     for legs, left in (([50.0, 50.0], 20), ([50.0, 51.0], 19)):
-        answer = adviser.ask(legs)
+        answer = reporter.ask(legs)
         expect(answer.battery_at_end == left, f"Legs of {legs} leave {answer.battery_at_end} %, instead of {left} %.")
         expect(
             answer.possible is (left == 20), f"Legs of {legs} are said to be {'' if answer.possible else 'im'}possible."

@@ -9,17 +9,19 @@ from typing import Any
 from sensor_msgs.msg import BatteryState, JointState
 
 from autograder.checks import expect
-from autograder.lab import LockstepLab, Workspace
-from autograder.visible.ch03_interfaces.contract import PACKAGE, STATUS
+from autograder.lab import EitherLab, Workspace
+from autograder.visible.ch03_interfaces.contract import PACKAGE, RESERVE, STATUS
 from autograder.visible.ch03_interfaces.types import Types
 
 BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
 OFFERS = {BATTERY: BatteryState, JOINTS: JointState}
 PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
+HEARD_SECONDS = 1.5  # until a battery that has spoken shows in the status; a status may be wrong, too
+ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, generous where time is real
 
 
-class Reporter(LockstepLab):
-    """A lab in which sensors speak, and the status is read."""
+class Reporter(EitherLab):
+    """A lab in which sensors speak, the status is read, and trips are asked about."""
 
     def __init__(self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = ()) -> None:
         listens = {TOPIC: types.robot_status}
@@ -43,6 +45,23 @@ class Reporter(LockstepLab):
         heard = self.messages(TOPIC, since=began)
         expect(bool(heard), "No message came on robot_status for more than a second.")
         return heard[-1].message
+
+    def level(self, percent: int) -> None:
+        """Set the battery's level; wait until the status shows that the program has heard of it."""
+        began = self.seconds
+        self.tell(min(1.0, (percent + 0.25) / 100.0))
+
+        def shown() -> bool:
+            return any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC, since=began)[-1:])
+
+        self.until(shown, HEARD_SECONDS)
+
+    def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
+        """Ask about a trip; return the response, fail the check if none comes."""
+        request = self.types.check_trip.Request(legs=list(legs), reserve=reserve)
+        answer = self.call(self.types.check_trip, SERVICE, request, ANSWER_SECONDS)
+        expect(answer is not None, "check_trip did not answer.")
+        return answer
 
 
 def same(one: float, other: float) -> bool:
