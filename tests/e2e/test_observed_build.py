@@ -52,6 +52,22 @@ def test_one_packages_failure_is_not_the_others(workspace: Workspace) -> None:
     assert seen.build.packages == ("bad", "good")
 
 
+def test_packages_that_build_are_built_by_one_run_of_colcon(workspace: Workspace) -> None:
+    marker = workspace.root / "src/bad/resource/bad"
+    marker.parent.mkdir()
+    marker.touch()
+    seen = bring(workspace, ("bad", "good"), may_fail=True)
+    assert (seen.build.ok, seen.diagnosis) == (True, OK)
+    assert "2 packages finished" in seen.build.log
+    assert all((workspace.install / name / "share" / name / "package.xml").is_file() for name in ("bad", "good"))
+
+
+def test_of_two_packages_that_are_there_the_one_that_fails_does_not_harm_the_other(workspace: Workspace) -> None:
+    seen = bring(workspace, ("bad", "good"), may_fail=True)
+    assert [found is OK for found in seen.diagnoses.values()] == [False, True]
+    assert (workspace.install / "good/share/good/package.xml").is_file()
+
+
 def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) -> None:
     workspace.install.mkdir()
     (workspace.install / "bad").symlink_to("/etc")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
+from dataclasses import dataclass
 
+import pytest
 import yaml
 
 from autograder.checks import check, expect
-from autograder.lab import Workspace
+from autograder.lab import LockstepLab, Workspace
 from autograder.probes.installed import Installed
 from autograder.visible.ch01_package_structure import contract, robots
 
@@ -18,20 +21,33 @@ HINTS = (
 )
 
 
+@dataclass(frozen=True)
+class Dance:
+    """A dancer in the lab, and how long the side of its square is, in metres."""
+
+    lab: LockstepLab
+    side: float
+
+
+@pytest.fixture(scope="module")
+def running(workspace: Workspace, seed: int) -> Iterator[Dance]:
+    """One dancer for the checks that it starts, and that it dances."""
+    side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
+    with robots.dancer(workspace, "-p", f"side:={side}") as lab:
+        yield Dance(lab, side)
+
+
 @check(points=2, group=GROUP, depends=("executable", "subpackages"), hints=HINTS, doc=contract.CREATE)
-def test_starts(workspace: Workspace) -> None:
+def test_starts(running: Dance) -> None:
     """`ros2 run square_dance dancer` starts a node called dancer."""
-    with robots.dancer(workspace) as lab:
-        names = lab.nodes()
+    names = running.lab.nodes()
     expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
 
 
 @check(points=1, group=GROUP, depends=("starts",), hints=HINTS, doc=contract.CREATE)
-def test_dances(workspace: Workspace, draw: random.Random) -> None:
+def test_dances(running: Dance) -> None:
     """It drives along a side of the square, and then turns to the left."""
-    side = round(draw.uniform(0.5, 1.5), 2)
-    with robots.dancer(workspace, "-p", f"side:={side}") as lab:
-        robots.expect_dance(lab, side)
+    robots.expect_dance(running.lab, running.side)
 
 
 @check(
