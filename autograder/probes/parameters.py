@@ -9,9 +9,8 @@ What a node answers is the student's to forge: it is shown shortened, and believ
 
 from __future__ import annotations
 
-import time
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Any
@@ -27,8 +26,7 @@ from autograder.lab import Lab
 Value = bool | int | float | str | list[object] | None
 
 OWN = frozenset({"use_sim_time", "start_type_description_service"})  # what rclpy declares on every node
-SECONDS = 10.0  # of real time for an answer
-PATIENCE_NS = 1_000_000  # of the node's time between two looks for it
+SECONDS = 5.0  # of the node's time for an answer
 SHOWN = 200  # characters of a node's own words
 ALIKE = 0.6
 MAX_FILE = 64 * 1024
@@ -65,7 +63,6 @@ class NodeParameters:
 
     lab: Lab
     node: str
-    _clients: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def names(self) -> frozenset[str]:
         """Return the names of all declared parameters, rclpy's own left out."""
@@ -95,25 +92,18 @@ class NodeParameters:
         return Answer(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
-        """Call one of the node's services; a node in lockstep answers while it is stepped.
+        """Call one of the node's services.
 
         Raises:
             CheckFailed: the node has no such service, or does not answer.
         """
-        if name not in self._clients:
-            self._clients[name] = self.lab.node.create_client(kind, f"{self.node}/{name}")
-        client = self._clients[name]
-        there = self.lab.wait_for(client.service_is_ready, SECONDS)
-        if not there:
-            raise CheckFailed(f"The node has no service {self.node}/{name}: leave its parameter services on.")
-        number = client.handle.send_request(request)
-        deadline = time.monotonic() + SECONDS
-        while time.monotonic() < deadline:
-            header, response = client.handle.take_response(kind.Response)
-            if header is not None and header.request_id.sequence_number == number:
-                return response
-            self.lab.step(PATIENCE_NS)
-        raise CheckFailed(f"The node did not answer a request to {self.node}/{name} within {SECONDS:.0f} s.")
+        service = f"{self.node}/{name}"
+        response = self.lab.call(kind, service, request, SECONDS)
+        if response is not None:
+            return response
+        if service not in dict(self.lab.node.get_service_names_and_types()):
+            raise CheckFailed(f"The node has no service {service}: leave its parameter services on.")
+        raise CheckFailed(f"The node did not answer a request to {service} within {SECONDS:.0f} s.")
 
 
 def shortened(text: str) -> str:

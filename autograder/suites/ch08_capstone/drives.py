@@ -70,7 +70,7 @@ class Drives:
         simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
         system = self._system()
         began = system.seconds
-        done = drive(system, simulation, seconds, tamper=tamper)  # type: ignore[arg-type]
+        done = drive(system.lab, simulation, seconds, tamper=tamper)
         return Driven(done.recording, seconds, began, tuple(system.said(began).commands))
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rclpy.node import Node
 
 from autograder.lab.meeting import NAME
-from autograder.visible.ch08_capstone.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
+from autograder.visible.ch08_capstone.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR, PROGRAMS
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
 _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"
@@ -38,22 +38,18 @@ ENDPOINTS = (
 )
 
 
-def say_missing(seen_from: Mapping[str, Node]) -> list[str]:
+def say_missing(node: Node) -> list[str]:
     """Say for each node and endpoint that is not there what is there instead; nothing when all are.
 
     Args:
-        seen_from: by program, the grader's node that sees it in the graph.
+        node: the grader's node, which sees the graph.
     """
-    missing = []
-    for program, node in seen_from.items():
-        there = [(name, space) for name, space in node.get_node_names_and_namespaces() if name != NAME]
-        if (program, "/") in there:
-            wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == program]
-            missing += [said for endpoint in wanted if (said := _say(node, endpoint))]
-        else:
-            others = ", ".join(f"{space.rstrip('/')}/{name}" for name, space in there) or "no node"
-            missing.append(f"The executable {program} starts {others}, instead of /{program}.")
-    return missing
+    there = [found for found in node.get_node_names_and_namespaces() if found[0] != NAME]
+    absent = [name for name in PROGRAMS if (name, "/") not in there]
+    others = ", ".join(f"{space.rstrip('/')}/{name}" for name, space in there) or "none"
+    missing = [f"No node is called /{name}; there is: {others}." for name in absent]
+    wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node not in absent]
+    return missing + [said for endpoint in wanted if (said := _say(node, endpoint))]
 
 
 def _say(node: Node, wanted: Endpoint) -> str:

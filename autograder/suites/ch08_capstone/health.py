@@ -60,7 +60,7 @@ def test_dead_sensor(system: System) -> None:
     expect(not hasty, "Health was FAILED less than 0.5 s after the last scan: that is no silence yet.", fraction=0.5)
     _expect_report(reports[-1:], FAILED, DEAD, "4 s after the last scan", fraction=0.5)
     system.see(OPEN, SAID_WITHIN)
-    back = system.messages("/health")[-1:]
+    back = system.lab.messages("/health")[-1:]
     _expect_report(back, OK, set(), f"{SAID_WITHIN:.0f} s after the lidar came back", fraction=0.75)
 
 

@@ -132,7 +132,7 @@ def _data_timeout(system: System) -> None:
 
 def _half_angle(system: System) -> None:
     _settled(system, Part(22.0, 26.0, 1.0))
-    front = system.messages("/clearance")[-1].message.front
+    front = system.lab.messages("/clearance")[-1].message.front
     expect(front > 2.0, "something at 24° was still ahead.")
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,24 +11,15 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
-from autograder.lab import LockstepLab, Stamped, Workspace
+from autograder.lab import LockstepLab, Program, Stamped, Workspace
 from autograder.probes.parameters import NodeParameters
 from autograder.visible.ch02_nodes.robot import say
-from autograder.visible.ch08_capstone.contract import (
-    CONTROLLER,
-    LEVELS,
-    MONITOR,
-    PACKAGE,
-    PROCESSOR,
-    TOLERANCE,
-    name_of,
-)
+from autograder.visible.ch08_capstone.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
 from autograder.visible.ch08_capstone.messages import Types
 
 SCAN_SECONDS = 0.1
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
-ANSWER_SECONDS = 10.0  # s of real time for a service
-PATIENCE_NS = 1_000_000  # of ROS time between two looks for its answer
+ANSWER_SECONDS = 5.0  # s of ROS time for a service
 ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
 
 
@@ -44,110 +33,57 @@ class Said:
 
 
 class System:
-    """The three programs, each in a lab of its own; what one says is passed on to those that listen to it.
-
-    It steps them in the order in which a scan goes through them, so that a scan, the clearance of it and the command
-    that follows belong to one step.
+    """The three programs, stepped together; a scan, its clearance and the command that follows belong to one step.
 
     Attributes:
+        lab: where they run.
         first: what they said before the first scan.
     """
 
-    tick_ns = round(SCAN_SECONDS * 1e9)
-
     def __init__(self, workspace: Workspace, types: Types) -> None:
-        scan, command = {"/scan": LaserScan}, {"/cmd_vel": Twist}
-        clearance, health = {"/clearance": types.clearance}, {"/health": types.health}
-        ends = {
-            PROCESSOR: (scan, clearance),
-            CONTROLLER: (clearance, command),
-            MONITOR: ({**scan, **clearance, **command}, health),
-        }
-        self.labs = {
-            program: LockstepLab(workspace, PACKAGE, program, offers=offers, listens=listens)
-            for program, (offers, listens) in ends.items()
-        }
-        self._speaker = {topic: program for program, (_, listens) in ends.items() for topic in listens}
-        self._stack = ExitStack()
+        self.lab = LockstepLab(
+            workspace,
+            programs=tuple(Program(PACKAGE, name) for name in PROGRAMS),
+            offers={"/scan": LaserScan},
+            listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
+        )
 
     def __enter__(self) -> System:
-        for lab in self.labs.values():
-            self._stack.enter_context(lab)
-        self.first = self.wait(ALONE_SECONDS)
+        self.lab.__enter__()
+        try:
+            self.first = self.wait(ALONE_SECONDS)
+        except BaseException:
+            self.lab.__exit__(None, None, None)
+            raise
         return self
 
     def __exit__(self, *ending: object) -> None:
-        self._stack.close()
+        self.lab.__exit__(None, None, None)
 
     @property
     def alive(self) -> bool:
         """Whether no program has ended."""
-        return all(lab.process.ending is None for lab in self.labs.values())
-
-    @property
-    def now_ns(self) -> int:
-        """ROS time in nanoseconds."""
-        return self.labs[PROCESSOR].now_ns
+        return all(process.ending is None for process in self.lab.processes)
 
     @property
     def seconds(self) -> float:
         """Seconds of ROS time since the programs started."""
-        return self.labs[PROCESSOR].seconds
-
-    @property
-    def output(self) -> str:
-        """What the programs have printed and logged so far."""
-        return "".join(lab.output for lab in self.labs.values())
-
-    def publish(self, topic: str, message: Any) -> None:
-        """Publish a message to every program that takes it."""
-        for lab in self.labs.values():
-            lab.publish(topic, message)
-
-    def step(self, dt_ns: int) -> None:
-        """Let the programs live through the next `dt_ns` nanoseconds of ROS time."""
-        for program, lab in self.labs.items():
-            before = {topic: len(lab.messages(topic)) for topic, name in self._speaker.items() if name == program}
-            lab.step(dt_ns)
-            for topic, count in before.items():
-                for said in lab.messages(topic)[count:]:
-                    self.publish(topic, said.message)
-
-    def run(self, seconds: float) -> None:
-        """Let the programs live through `seconds` of ROS time, tick by tick."""
-        for _ in range(round(seconds / SCAN_SECONDS)):
-            self.step(self.tick_ns)
-
-    def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
-        """Return what was published on `topic` after `since` and up to `until`, in seconds of ROS time."""
-        return self.labs[self._speaker[topic]].messages(topic, since=since, until=until)
+        return self.lab.seconds
 
     def call(self, kind: Any, service: str, request: Any) -> Any:
-        """Call a service of one of the programs and return its response, while time goes on for all of them.
+        """Call a service of one of the programs and return its response.
 
         Raises:
             CheckFailed: there is no such service, or it does not answer.
         """
-        lab = next((lab for lab in self.labs.values() if service in _services(lab)), None)
-        if lab is None:
-            raise CheckFailed(f"There is no service {service}.")
-        client = lab.node.create_client(kind, service)
-        try:
-            lab.wait_for(client.service_is_ready, ANSWER_SECONDS)
-            number = client.handle.send_request(request)
-            deadline = time.monotonic() + ANSWER_SECONDS
-            while time.monotonic() < deadline:
-                header, response = client.handle.take_response(kind.Response)
-                if header is not None and header.request_id.sequence_number == number:
-                    return response
-                self.step(PATIENCE_NS)
-        finally:
-            lab.node.destroy_client(client)
-        raise CheckFailed(f"The service {service} did not answer within {ANSWER_SECONDS:.0f} s.")
+        response = self.lab.call(kind, service, request, ANSWER_SECONDS)
+        if response is None:
+            raise CheckFailed(f"The service {service} did not answer within {ANSWER_SECONDS:.0f} s.")
+        return response
 
     def parameters(self, program: str) -> NodeParameters:
-        """Return the parameters of a program's node; time goes on for all programs while they are asked for."""
-        return NodeParameters(_Together(self, self.labs[program]), name_of(program))  # type: ignore[arg-type]
+        """Return the parameters of a program's node."""
+        return NodeParameters(self.lab, name_of(program))
 
     def see(self, scan: LaserScan, seconds: float = 1.0, *, age: float = 0.0) -> Said:
         """Show a scan ten times a second; return what is said once there was time to react.
@@ -164,46 +100,21 @@ class System:
 
     def show(self, scan: LaserScan, age: float = 0.0) -> None:
         """Show one scan and let 0.1 s pass."""
-        stamp = self.now_ns + round((SCAN_SECONDS - age) * 1e9) - 1
+        stamp = self.lab.now_ns + self.lab.tick_ns - 1 - round(age * 1e9)  # when the lab delivers it
         scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(stamp, 10**9)
-        self.publish("/scan", scan)
-        self.run(SCAN_SECONDS)
+        self.lab.publish("/scan", scan)
+        self.lab.run(SCAN_SECONDS)
 
     def wait(self, seconds: float) -> Said:
         """Show nothing for a while; return what was said in that time."""
         began = self.seconds
-        self.run(seconds)
+        self.lab.run(seconds)
         return self.said(began)
 
     def said(self, since: float, until: float = math.inf) -> Said:
         """Return what was said after `since`, in seconds of ROS time, and up to `until`."""
         topics = ("/clearance", "/cmd_vel", "/health")
-        return Said(*(tuple(self.messages(topic, since=since, until=until)) for topic in topics))
-
-
-@dataclass(frozen=True)
-class _Together:
-    """One program's lab, in which a step is a step of all programs."""
-
-    system: System
-    lab: LockstepLab
-
-    @property
-    def node(self) -> Any:
-        """The grader's node that meets the program."""
-        return self.lab.node
-
-    def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Listen until the condition holds."""
-        return self.lab.wait_for(condition, seconds)
-
-    def step(self, dt_ns: int) -> None:
-        """Let time go on for all."""
-        self.system.step(dt_ns)
-
-
-def _services(lab: LockstepLab) -> dict[str, list[str]]:
-    return dict(lab.node.get_service_names_and_types())
+        return Said(*(tuple(self.lab.messages(topic, since=since, until=until)) for topic in topics))
 
 
 def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
