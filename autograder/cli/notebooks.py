@@ -4,37 +4,53 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from autograder import layout
-from autograder.cli.options import json_option
+from autograder.cli.options import jobs_option, json_option
 from autograder.result import write_json
+
+if TYPE_CHECKING:
+    from autograder.course import Execution
 
 
 @click.command()
 @click.argument("assignments", nargs=-1, metavar="[ID]...")
-@click.option("--solved", "form", flag_value="solved", help="With the reference answers, as the grader sees them.")
-@click.option("--released", "form", flag_value="released", help="As students get them, exercises unsolved.")
-@click.option("--source", "form", flag_value="source", default="source", help="As they are in chapters/ (default).")
+@click.option("--source", is_flag=True, help="As they are in chapters/ (when no form is named).")
+@click.option("--solved", is_flag=True, help="With the reference answers, as the grader sees them.")
+@click.option("--released", is_flag=True, help="As students get them, exercises unsolved.")
+@jobs_option
 @json_option
-def notebooks(assignments: tuple[str, ...], form: str, json_file: Path | None) -> None:
-    """Execute notebooks (all of them by default), warnings as errors, one report each in .build/notebooks."""
-    from autograder.course import Form, run_notebook
+def notebooks(
+    assignments: tuple[str, ...], source: bool, solved: bool, released: bool, jobs: int, json_file: Path | None
+) -> None:
+    """Execute notebooks (all of them by default), warnings as errors, one report each in .build/notebooks.
+
+    Forms may be combined: --source --solved --released takes all three.
+    """
+    from autograder.course import Form, run_notebooks
     from autograder.ros import activate
 
     activate()
-    runs = []
-    for name in assignments or tuple(layout.assignments()):
-        report = layout.BUILD / "notebooks" / f"{name}-{form}.ipynb"
-        execution = run_notebook(layout.source_notebook(name), Form(form), report=report)
-        runs.append(execution)
-        click.echo(f"{name} ({form}): {'ok' if execution.ok else 'failed'} in {execution.seconds:.1f} s")
-        if execution.failure is not None:
-            click.echo(execution.failure)
+    named = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
+    forms = [form for form, chosen in named.items() if chosen] or [Form.SOURCE]
+    names = assignments or tuple(layout.assignments())
+    wanted = [(layout.source_notebook(name), form) for form in forms for name in names]
+    runs = run_notebooks(wanted, jobs=jobs, reports=layout.BUILD / "notebooks", on_end=_tell)
     if json_file is not None:
         write_json(
             json_file,
-            [{"assignment": r.chapter, "form": form, "seconds": r.seconds, "failure": r.failure} for r in runs],
+            [
+                {"assignment": run.chapter, "form": run.form.value, "seconds": run.seconds, "failure": run.failure}
+                for run in runs
+            ],
         )
-    sys.exit(0 if all(execution.ok for execution in runs) else 1)
+    sys.exit(0 if all(run.ok for run in runs) else 1)
+
+
+def _tell(run: Execution) -> None:
+    click.echo(f"{run.chapter} ({run.form.value}): {'ok' if run.ok else 'failed'} in {run.seconds:.1f} s")
+    if run.failure is not None:
+        click.echo(run.failure)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
 import re
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,8 +60,48 @@ class Execution:
         return self.failure is None
 
 
+def run_notebooks(
+    wanted: Sequence[tuple[Path, Form]],
+    *,
+    jobs: int,
+    reports: Path,
+    on_end: Callable[[Execution], None] = lambda execution: None,
+) -> list[Execution]:
+    """Execute notebooks, several at once, each in a ROS domain of its own.
+
+    Args:
+        wanted: each one's path and form.
+        jobs: how many run at once.
+        reports: the folder that gets the executed notebooks, `ID-FORM.ipynb`.
+        on_end: called for each as it ends, in any order.
+
+    Raises:
+        CourseError: as `run_notebook` does.
+    """
+
+    def run(index: int) -> Execution:
+        path, form = wanted[index]
+        report = reports / f"{path.stem}-{form.value}.ipynb"
+        return run_notebook(path, form, report=report, domain=1 + (os.getpid() + index) % 100)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        runs = [pool.submit(run, index) for index in range(len(wanted))]
+        try:
+            for ended in as_completed(runs):
+                on_end(ended.result())
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [each.result() for each in runs]
+
+
 def run_notebook(
-    path: Path, form: Form = Form.SOURCE, *, timeout: float = 120.0, report: Path | None = None
+    path: Path,
+    form: Form = Form.SOURCE,
+    *,
+    timeout: float = 120.0,
+    report: Path | None = None,
+    domain: int | None = None,
 ) -> Execution:
     """Execute a notebook in the given form; the chapter's folder is left as it is.
 
@@ -67,6 +110,7 @@ def run_notebook(
         form: `source`, `solved` or `released`.
         timeout: seconds that one cell may take.
         report: where to keep the executed notebook.
+        domain: its `ROS_DOMAIN_ID`; when not given, this process's, or else one that the kernel chooses.
 
     Raises:
         CourseError: the notebook is missing or is not one.
@@ -77,7 +121,8 @@ def run_notebook(
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
     with _copy_of(chapter.folder) as folder:
-        failure = _execute(notebook, folder, timeout)
+        own = {} if domain is None else {"ROS_DOMAIN_ID": str(domain)}
+        failure = _execute(notebook, folder, timeout, {**os.environ, **own})
     seconds = time.monotonic() - started
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
@@ -93,7 +138,7 @@ def _copy_of(folder: Path) -> Iterator[Path]:
         yield copy
 
 
-def _execute(notebook: NotebookNode, folder: Path, timeout: float) -> str | None:
+def _execute(notebook: NotebookNode, folder: Path, timeout: float, environment: dict[str, str]) -> str | None:
     """Execute in place; return what went wrong, or None."""
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
@@ -104,7 +149,8 @@ def _execute(notebook: NotebookNode, folder: Path, timeout: float) -> str | None
     manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
     notebook.cells.insert(0, new_code_cell(STRICT))
     try:
-        client.execute()
+        # A loop that is closed at its end; nbclient's own call leaves one in each thread.
+        asyncio.run(client.async_execute(env=environment))
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
         return f"cell {_failed(notebook)}: {_COLOUR.sub('', str(error))}"
     finally:
