@@ -2,7 +2,8 @@
 
 A suite's package says in `PACKAGES` which ROS 2 packages a submission must bring, and in `MODULES` which of its modules
 hold checks, in the order in which they are run. `FOLDERS`, if it is there, names what a submission brings in `src`
-besides: folders that are no packages.
+besides: folders that are no packages. `READS`, if it is there, names files and folders of the course, by their paths
+below its root, that the checks read besides what lies in their own packages.
 
 A suite that looks at the sources, too, says `BUILD_MAY_FAIL = True`: then a package that is missing or does not build
 does not end the grading. It is something that the checks see, by the fixture `builds`, and those that need a built
@@ -11,12 +12,13 @@ package depend on one that asks for it.
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import inspect
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
+from autograder import fingerprint
 from autograder.checks import Check, declared
 from autograder.exceptions import GraderError, UsageError
 
@@ -30,18 +32,23 @@ class Suite:
         packages: ROS 2 packages that a submission must bring.
         files: its modules, in the order in which they are run.
         checks: every check in that order.
-        version: changes whenever a file of the suite does.
         build_may_fail: whether its checks are run even if a package is missing or does not build.
         folders: what a submission brings in `src` besides its packages.
+        reads: files and folders of the course that its checks read besides their own packages, by their paths.
     """
 
     assignment: str
     packages: tuple[str, ...]
     files: tuple[Path, ...]
     checks: tuple[Check, ...]
-    version: str
     build_may_fail: bool = False
     folders: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ()
+
+    @cached_property
+    def version(self) -> str:
+        """A digest of every file that a grading with the suite reads."""
+        return fingerprint.digest(self.assignment, self.reads)
 
     @property
     def sources(self) -> tuple[str, ...]:
@@ -80,17 +87,14 @@ def read(home: str, assignment: str) -> Suite:
     files = tuple(Path(inspect.getfile(module)) for module in modules)
     checks = [found for module in modules for value in vars(module).values() if (found := declared(value))]
     _require_order(assignment, checks)
-    digest = hashlib.sha256()
-    for path in sorted(Path(inspect.getfile(described)).parent.glob("*.py")):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return Suite(
         assignment,
         tuple(described.PACKAGES),
         files,
         tuple(checks),
-        digest.hexdigest()[:12],
         getattr(described, "BUILD_MAY_FAIL", False),
         tuple(getattr(described, "FOLDERS", ())),
+        tuple(getattr(described, "READS", ())),
     )
 
 

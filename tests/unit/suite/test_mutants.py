@@ -22,7 +22,7 @@ def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The path of a mutants.yaml that belongs to the real suite's checks."""
     real = suites.load("02_nodes")
     files = tuple(tmp_path / path.name for path in real.files)
-    twin = Suite(real.assignment, real.packages, files, real.checks, real.version)
+    twin = Suite(real.assignment, real.packages, files, real.checks)
     monkeypatch.setattr(module, "load", lambda assignment: twin)
     return tmp_path / "mutants.yaml"
 

@@ -52,14 +52,6 @@ def test_checks_stand_in_the_order_of_modules_and_of_lines(home: Home) -> None:
     assert suite.names(name) == ["01_tiny"]
 
 
-def test_the_version_changes_with_any_file_of_the_suite(home: Home) -> None:
-    texts = {"first": _check("a"), "second": _check("b")}
-    plain = suite.read(home(**texts), "01_tiny").version
-    assert suite.read(home(**texts), "01_tiny").version == plain
-    assert suite.read(home(**texts, helper="X = 1"), "01_tiny").version != plain
-    assert len(plain) == 12
-
-
 def test_an_unknown_assignment_is_a_wrong_call_that_names_the_known_ones(home: Home) -> None:
     with pytest.raises(UsageError, match="no checks for '09_none'; there are for: 01_tiny"):
         suite.read(home(modules="()"), "09_none")
