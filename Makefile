@@ -14,7 +14,7 @@ PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
 
-.PHONY: help setup demo test check lint lab tour bench verify real-launch lock clean
+.PHONY: help setup demo test check lint lab tour classes bench verify real-launch lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -30,7 +30,7 @@ test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not tour" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not tour and not classes" $(PYTEST_ARGS)
 
 check:          ## the fast part of the tests
 	@$(BOOTSTRAP) --dev
@@ -54,6 +54,10 @@ lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_AR
 tour:           ## solve each chapter's release in JupyterLab, keep screenshots in .build/screenshots
 	@$(BOOTSTRAP) --dev --browser
 	$(BIN)/python -m pytest tests/browser/test_tour.py $(PYTEST_ARGS)
+
+classes:        ## a class of five hands in each chapter, graded through nbgrader and without
+	@$(BOOTSTRAP) --dev
+	$(BIN)/python -m pytest tests/e2e/test_classes.py -n $(WORKERS) --dist loadgroup $(PYTEST_ARGS)
 
 bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev

@@ -1,0 +1,126 @@
+"""A class in a place of its own: an instructor's course directory, and students who hand their work in."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell
+from nbgrader.api import Gradebook
+
+from autograder import layout, suites
+from autograder.course import Chapter, Form, in_form, is_solution
+
+Grades = dict[str, tuple[float, float, bool]]
+MADE = shutil.ignore_patterns("build", "install", "log", ".ipynb_checkpoints")
+
+
+class Classroom:
+    """A course directory, an exchange and the students' folders, all below one place.
+
+    Args:
+        place: a folder for all of it.
+        assignment: the one that the class works on.
+    """
+
+    def __init__(self, place: Path, assignment: str) -> None:
+        self.place, self.assignment = place, assignment
+        self.course, self.exchange = place / "course", place / "exchange"
+        self.exchange.mkdir(parents=True)
+        shutil.copytree(layout.chapter(assignment), self.course / "chapters" / assignment, ignore=MADE)
+        shutil.copy(layout.ROOT / "nbgrader_config.py", self.course)
+
+    def run(self, folder: Path, *command: str) -> str:
+        """Run a command that must succeed; return what it said."""
+        # Each person has settings and a cache of their own.
+        own = {name: str(folder / ".jupyter") for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")}
+        environment = {**os.environ, **own, "NBGRADER_EXCHANGE": str(self.exchange)}
+        done = subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, text=True, timeout=1800, check=False
+        )
+        assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+        return done.stdout + done.stderr
+
+    def nbgrader(self, verb: str, *arguments: str, folder: Path | None = None) -> str:
+        """Run a verb of nbgrader on the assignment, in the course directory or in a student's folder."""
+        command = (sys.executable, "-m", "nbgrader", verb, self.assignment, *arguments)
+        return self.run(folder or self.course, *command)
+
+    def grade(self, *options: str) -> Path:
+        """Grade all that was handed in by `autograder grade`; return the folder of the results."""
+        out = self.place / "results" / self.assignment
+        verb = (sys.executable, "-c", "from autograder.cli import main; main()", "grade")
+        self.run(self.course, *verb, "submitted", "--assignment", self.assignment, "--out", str(out), *options)
+        return out
+
+    def grades(self, student: str) -> Grades:
+        """Return each grade cell's points, the most that there are, and whether a person is to grade it, as booked."""
+        with Gradebook(f"sqlite:///{self.course}/gradebook.db") as gradebook:
+            submission = gradebook.find_submission_notebook(self.assignment, self.assignment, student)
+            return {
+                grade.name: (grade.auto_score, grade.max_score, grade.needs_manual_grade) for grade in submission.grades
+            }
+
+    def hand_in(self, student: str, answer: Path | None = None) -> None:
+        """Put a student's released assignment where nbgrader collects them.
+
+        Args:
+            student: whose it is.
+            answer: a source tree whose `src` the notebook is to write, or None for a notebook that nobody touched.
+        """
+        folder = self.course / "submitted" / student / self.assignment
+        shutil.copytree(self.course / "release" / self.assignment, folder)
+        if answer is None:
+            return
+        path = folder / f"{self.assignment}.ipynb"
+        notebook = nbformat.read(path, as_version=4)
+        fill_in(notebook, self.assignment)
+        write_down(notebook, self.assignment, answer / "src")
+        nbformat.write(notebook, path)
+
+
+def fill_in(released: NotebookNode, assignment: str) -> None:
+    """Give a released notebook the reference's answers."""
+    solved = in_form(Chapter(layout.chapter(assignment)).read(), Form.SOLVED)
+    answers = {cell.id: cell.source for cell in solved.cells if is_solution(cell)}
+    for cell in released.cells:
+        cell.source = answers.get(cell.id, cell.source)
+
+
+def write_down(notebook: NotebookNode, assignment: str, src: Path) -> None:
+    """Let a solved notebook write what differs from the reference in `src`: in the cell for the file, or in its own."""
+    cells = {cell.source.partition("\n")[0]: cell for cell in notebook.cells if cell.cell_type == "code"}
+    for name, text in changes(assignment, src):
+        head = f"%%writefile ws/src/{name}"
+        if text is None:
+            notebook.cells.append(new_code_cell(f"!rm ws/src/{name}"))
+        elif not text:  # %%writefile does not write nothing
+            notebook.cells.append(new_code_cell(f"!: > ws/src/{name}"))
+        elif head in cells:
+            cells[head].source = f"{head}\n{text}"
+        else:
+            notebook.cells.append(new_code_cell(f"!mkdir -p {Path('ws/src', name).parent}"))
+            notebook.cells.append(new_code_cell(f"{head}\n{text}"))
+
+
+def changes(assignment: str, src: Path) -> Iterator[tuple[str, str | None]]:
+    """Yield the files that differ from the reference's, by name, with their text; None for one that is gone."""
+    sources = suites.load(assignment).sources
+    reference = {name: (layout.SOLUTIONS / name).read_text() for name in files(layout.SOLUTIONS, sources)}
+    there = {name: (src / name).read_text() for name in files(src, sources)}
+    for name in sorted(reference.keys() | there.keys()):
+        if reference.get(name) != there.get(name):
+            text = there.get(name)
+            yield name, None if text is None else text.removesuffix("\n")
+
+
+def files(root: Path, folders: tuple[str, ...]) -> list[str]:
+    """Return the files below some folders of a root, without what Python leaves."""
+    found = (path for folder in folders for path in (root / folder).rglob("*") if path.is_file())
+    return [str(path.relative_to(root)) for path in found if "__pycache__" not in path.parts]

@@ -1,0 +1,134 @@
+"""A class of five hands in each chapter: nbgrader's gradebook and `autograder grade`, by one and by two, agree.
+
+Right answers, flawed ones and none are files; a student hands them in as a notebook that writes them. `make classes`
+takes every chapter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from autograder import suites
+from autograder.course import Chapter
+from autograder.export import load
+from autograder.layout import chapter
+from autograder.proof.cases import cases
+from autograder.proof.claims import Kind, as_named, nothing
+from autograder.result import Result
+from autograder.suites.mutants import Mutant, lay_down, mutants
+from tests.e2e.classroom import Classroom
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.classes,
+    pytest.mark.timeout(3600),  # a quarter of an hour on a busy machine; the bound is for a stuck grader
+    # What nbgrader does with SQLAlchemy.
+    pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
+]
+
+Judge = Callable[[Result], str]
+
+
+@dataclass(frozen=True)
+class Pupil:
+    """One of the class: what is written into the notebook (None: nothing), and what is claimed of the result."""
+
+    name: str
+    write: Callable[[Path], None] | None
+    judge: Judge
+
+
+@dataclass(frozen=True)
+class Graded:
+    """A class after grading: its room, who is in it, and the results graded by one and by two at a time."""
+
+    room: Classroom
+    pupils: tuple[Pupil, ...]
+    serial: dict[str, Result]
+    parallel: dict[str, Result]
+
+
+def pupils(assignment: str) -> Iterator[Pupil]:
+    """Yield the class: the reference, the right answers of another style, two mutants, and an untouched notebook."""
+    for case in cases(assignment, quick=True):
+        if case.kind in (Kind.REFERENCE, Kind.VARIANT):
+            yield Pupil(case.name, case.write, case.judge)
+    for mutant in two_mutants(assignment):
+        write = partial(lay_down, mutant, suites.load(assignment).sources)
+        yield Pupil(mutant.id, write, partial(as_named, mutant))
+    yield Pupil("untouched", None, nothing)
+
+
+def two_mutants(assignment: str) -> list[Mutant]:
+    """Return one whose files the notebook has cells for and one with others, where there are such."""
+    heads = {cell.source.partition("\n")[0] for cell in Chapter(chapter(assignment)).read().cells}
+    quick = [mutant for mutant in mutants(assignment) if not mutant.slow]
+    inside = [m for m in quick if all(edit.replace and f"%%writefile ws/src/{edit.file}" in heads for edit in m.edits)]
+    outside = [mutant for mutant in quick if mutant not in inside]
+    return [*inside[:1], *outside[:1], *inside[1:], *outside[1:]][:2]
+
+
+@pytest.fixture(scope="module", params=suites.graded())
+def assignment(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
+    """The class of an assignment after both ways to grade it."""
+    place = tmp_path_factory.mktemp(assignment)
+    room, everybody = Classroom(place / "class", assignment), tuple(pupils(assignment))
+    room.nbgrader("generate_assignment")
+    for pupil in everybody:
+        if pupil.write is None:
+            room.hand_in(pupil.name)
+        else:
+            pupil.write(place / "answers" / pupil.name)
+            room.hand_in(pupil.name, place / "answers" / pupil.name)
+    room.nbgrader("autograde")
+    parallel = room.grade("-j", "2")
+    return Graded(
+        room,
+        everybody,
+        {item.result.student: item.result for item in load(room.course / ".build" / "nbgrader" / assignment)},
+        {item.result.student: item.result for item in load(parallel)},
+    )
+
+
+def test_each_answer_gets_the_mark_that_is_claimed_of_it(graded: Graded) -> None:
+    assert len(graded.pupils) >= 4
+    wrong = {pupil.name: pupil.judge(graded.serial[pupil.name]) for pupil in graded.pupils}
+    assert set(wrong.values()) == {""}, wrong
+
+
+def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: str) -> None:
+    groups = suites.load(assignment).groups
+    for pupil in graded.pupils:
+        result = graded.parallel[pupil.name]
+        grades = graded.room.grades(pupil.name)
+        booked = {name: (score, worth) for name, (score, worth, by_hand) in grades.items() if not by_hand}
+        expected = {
+            f"grade-{name.replace('_', '-')}": (
+                pytest.approx(sum(check.points for check in result.group(name))),
+                pytest.approx(worth),
+            )
+            for name, worth in groups.items()
+        }
+        assert booked == expected, pupil.name
+        assert sum(worth for _, worth in booked.values()) == pytest.approx(result.max_score)
+
+
+def test_two_at_once_give_what_one_after_the_other_gives(graded: Graded) -> None:
+    def marks(results: dict[str, Result]) -> dict[str, list[tuple[str, str, float]]]:
+        return {
+            student: [(check.id, check.outcome.value, check.points) for check in result.checks]
+            for student, result in results.items()
+        }
+
+    assert set(graded.serial) == {pupil.name for pupil in graded.pupils}
+    assert marks(graded.parallel) == marks(graded.serial)
