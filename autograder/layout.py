@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 from autograder.exceptions import UsageError
@@ -12,6 +13,8 @@ SOLUTIONS = ROOT / "solutions"
 SUITES = ROOT / "autograder" / "suites"
 WORLDS = ROOT / "assets" / "worlds"
 BUILD = ROOT / ".build"
+# What tools leave behind in a folder that is worked in, for `shutil.copytree`.
+NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
 
 
 def chapter(assignment: str) -> Path:

@@ -12,7 +12,6 @@ from pathlib import Path
 import nbformat
 
 from autograder import layout
-from autograder.course.execute import NOT_COPIED
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
@@ -53,7 +52,7 @@ def _copy_parts(made: Path) -> None:
     for part in PARTS:
         source, target = layout.ROOT / part, made / part
         if source.is_dir():
-            shutil.copytree(source, target, ignore=NOT_COPIED)
+            shutil.copytree(source, target, ignore=layout.NOT_COPIED)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
@@ -67,5 +66,5 @@ def _copy_parts(made: Path) -> None:
 
 
 def _release(chapter: Chapter, folder: Path) -> None:
-    shutil.copytree(chapter.folder, folder, ignore=NOT_COPIED)
+    shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)

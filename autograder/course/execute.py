@@ -19,11 +19,10 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
+from autograder import layout
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, write_notebook
-
-NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
 
 # Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
 # (colcon, CMake) are not the notebook's to answer for.
@@ -134,7 +133,7 @@ def run_notebook(
 def _copy_of(folder: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
         copy = Path(scratch) / folder.name
-        shutil.copytree(folder, copy, ignore=NOT_COPIED)
+        shutil.copytree(folder, copy, ignore=layout.NOT_COPIED)
         yield copy
 
 

@@ -23,8 +23,8 @@ from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import tail
 from autograder.sandbox import Mount, Sandbox
 from autograder.sandbox.limits import KERNEL
+from sim.grading import GRADING_VARIABLE
 
-GRADING_VARIABLE = "AUTOGRADER_GRADING"
 CELL_SECONDS = 60
 MAX_OUTPUT = 4 * 1024 * 1024
 WRITEFILE = "%%writefile "

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from autograder import layout
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import grading
 from autograder.notebook.errors import Notice
+from sim.grading import grading
 
 if TYPE_CHECKING:
     from sim import Recording

@@ -10,8 +10,9 @@ from typing import Any
 from autograder import suite
 from autograder.checks import Outcome
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import grading, send
+from autograder.notebook.desk import send
 from autograder.notebook.errors import INFO, STYLE, TROUBLE, Notice
+from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
 WORDS = {Outcome.PASSED: "passed", Outcome.FAILED: "failed", Outcome.NOT_CHECKED: "not checked"}

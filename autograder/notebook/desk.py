@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -17,7 +16,6 @@ from autograder.sandbox import Limits, best_tier
 from autograder.sandbox.cell import run_in_cell
 from autograder.sandbox.limits import GIB, MIB
 
-GRADING_VARIABLE = "AUTOGRADER_GRADING"
 ANSWER = "answer.json"
 RECORDING = "recording.npz"
 LIMITS = Limits(wall_seconds=300.0, memory=6 * GIB, threads=2048, output=4 * MIB)
@@ -66,8 +64,3 @@ def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[st
         if report.returncode != 0 or not answer.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")
         yield json.loads(answer.read_text()), Path(folder)
-
-
-def grading() -> bool:
-    """Return whether the notebook runs under the grader, where only its files matter."""
-    return GRADING_VARIABLE in os.environ

@@ -12,7 +12,7 @@ import yaml
 from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import RECORDING, grading, send
+from autograder.notebook.desk import RECORDING, send
 from autograder.notebook.errors import TROUBLE, Notice
 from sim import (
     DeadSector,
@@ -27,6 +27,7 @@ from sim import (
     load_world,
 )
 from sim.codec import to_json
+from sim.grading import grading
 
 if TYPE_CHECKING:
     from sim.view import Picture

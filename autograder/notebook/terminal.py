@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import grading
+from sim.grading import grading
 
 GRADED = "Commands are not run while the notebook is graded."
 STOP_SECONDS = 30.0  # real time for what Ctrl-C ends; `ros2 launch` itself gives its nodes 10

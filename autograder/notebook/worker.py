@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from autograder import layout
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.desk import ANSWER, RECORDING
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     Errand = tuple[tuple[str, ...], bool, Run]  # the packages, whether their build may fail, what to do then
 
 SEED = 1  # of the visible checks' inputs
-NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
 
 
 def main() -> None:
@@ -46,7 +46,7 @@ def main() -> None:
     home.mkdir(parents=True)
     domain = 0 if current_tier() is Tier.BUBBLEWRAP else 1 + hash(str(scratch)) % 100
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
-    shutil.copytree(errand["source"], workspace.root / "src", ignore=NOT_COPIED)
+    shutil.copytree(errand["source"], workspace.root / "src", ignore=layout.NOT_COPIED)
     packages, may_fail, run = {"drive": _for_drive, "check": _for_check}[errand["verb"]](errand["arguments"])
     answer: dict[str, Any] = {"diagnosis": _plain(OK)}
     try:

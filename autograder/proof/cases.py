@@ -93,10 +93,9 @@ def write_release(assignment: str, folder: Path) -> None:
     import nbformat
 
     from autograder.course import Chapter, Form, in_form
-    from autograder.course.execute import NOT_COPIED
 
     chapter = Chapter(layout.chapter(assignment))
-    shutil.copytree(chapter.folder, folder, ignore=NOT_COPIED)
+    shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
 
 

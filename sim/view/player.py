@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from sim.grading import grading
 from sim.pose import Command
 from sim.recording import Recording
 from sim.simulation import Simulation, start
@@ -33,7 +34,6 @@ from sim.world import World
 if TYPE_CHECKING:
     from sim.bridge.background import Bridge
 
-GRADING = "AUTOGRADER_GRADING"
 """The environment variable whose presence says that nobody is looking."""
 
 FPS = 40.0
@@ -64,7 +64,7 @@ def live(
     if not 0.0 < speed <= 100.0:
         raise ValueError(f"a speed of {speed} makes no sense: give a factor above 0 and up to 100, 1 is real time")
     colours = theme_named(theme)
-    if GRADING in os.environ:
+    if grading():
         return _still(source, colours)
     view = LiveView(_playable(source, controller), colours, speed=speed, names=names)
     if play:

@@ -16,8 +16,8 @@ from rclpy.node import Node
 from autograder.exceptions import UsageError
 from autograder.notebook import Notice, simulator
 from autograder.notebook.arena import Arena
-from autograder.notebook.desk import GRADING_VARIABLE
 from sim import Recording
+from sim.grading import GRADING_VARIABLE
 
 
 def test_a_world_that_is_not_there_is_named() -> None:

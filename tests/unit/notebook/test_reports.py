@@ -10,7 +10,7 @@ from autograder.checks import Outcome
 from autograder.exceptions import UsageError
 from autograder.notebook import CheckReport, Notice, check, drive, grade
 from autograder.notebook.checking import Line
-from autograder.notebook.desk import GRADING_VARIABLE
+from sim.grading import GRADING_VARIABLE
 
 LINES = (
     Line("It starts.", Outcome.PASSED, "", (), "https://docs.ros.org"),

@@ -9,8 +9,8 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.notebook import terminal
-from autograder.notebook.desk import GRADING_VARIABLE
 from autograder.notebook.terminal import running, shell
+from sim.grading import GRADING_VARIABLE
 
 STUBBORN = f"""{sys.executable} -c "
 import signal
