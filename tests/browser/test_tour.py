@@ -6,6 +6,8 @@ chapter's pictures and of its check stay in `.build/screenshots`.
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import re
 import shutil
@@ -13,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Page
 
 from autograder.course import Chapter, Form, chapters, in_form, is_solution
@@ -55,6 +58,19 @@ FINISHED = """() => {
     const idle = panel.sessionContext.session.kernel.status === "idle";
     return idle && (failed || code.every(model => model.executionCount));
 }"""
+SCROLL = """async id => {
+    const notebook = window.jupyterapp.shell.currentWidget.content;
+    await notebook.scrollToItem(notebook.widgets.findIndex(cell => cell.model.id === id), "start");
+}"""
+LOADED = """id => {
+    const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
+    return [...cell.node.querySelectorAll("img")].every(image => image.complete && image.naturalWidth > 0);
+}"""
+FITS = """id => {
+    const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
+    const edge = cell.node.getBoundingClientRect().right + 1;
+    return [...cell.node.querySelectorAll("img")].every(image => image.getBoundingClientRect().right <= edge);
+}"""
 OUTPUTS = """() => JSON.stringify(window.jupyterapp.shell.currentWidget.content.widgets
     .filter(cell => cell.model.type === "code")
     .map(cell => [cell.model.id, cell.model.outputs.toJSON()]))"""
@@ -74,15 +90,17 @@ def outputs(page: Page) -> dict[str, list[dict[str, Any]]]:
 
 
 def photograph(page: Page, cell: str, path: Path) -> None:
-    """Keep what a cell shows."""
-    page.evaluate(
-        """async id => {
-            const notebook = window.jupyterapp.shell.currentWidget.content;
-            await notebook.scrollToItem(notebook.widgets.findIndex(cell => cell.model.id === id), "center");
-        }""",
-        cell,
-    )
+    """Keep what a cell shows; all its pictures are there, and none is wider than the page."""
+    page.evaluate(SCROLL, cell)
+    page.wait_for_function(LOADED, arg=cell)
     page.screenshot(path=path)
+    assert page.evaluate(FITS, cell)
+
+
+def is_blank(picture: str) -> bool:
+    """Say whether a picture, given as Base64, is of hardly more than one colour."""
+    with Image.open(io.BytesIO(base64.b64decode(picture))) as image:
+        return len(image.convert("RGB").resize((64, 64)).getcolors(64 * 64) or ()) < 8
 
 
 @pytest.mark.slow
@@ -107,8 +125,14 @@ def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screen
     counts = re.findall(r"(\d+) of (\d+) visible checks passed", said)
     assert counts
     assert all(passed == every for passed, every in counts), counts
-    pictures = [cell for cell, made in shown.items() if any("image/png" in out.get("data", {}) for out in made)]
+    drawn = {
+        cell: [out["data"]["image/png"] for out in made if "image/png" in out.get("data", {})]
+        for cell, made in shown.items()
+    }
+    assert not any(is_blank(picture) for pictures in drawn.values() for picture in pictures)
+    figures = [cell.id for cell in chapter.read().cells if cell.cell_type == "markdown" and "](figures/" in cell.source]
     checks = [cell for cell, made in shown.items() if "visible checks passed" in json.dumps(made)]
-    for cell in (*pictures[:3], checks[-1]):
+    page.set_viewport_size({"width": 1100, "height": 1100})
+    for cell in (*figures[:1], *[cell for cell, pictures in drawn.items() if pictures][:3], checks[-1]):
         photograph(page, cell, screenshots / f"tour-{name}-{cell}.png")
     page.close()
