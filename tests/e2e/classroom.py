@@ -18,7 +18,6 @@ from autograder import layout, suites
 from autograder.course import Chapter, Form, in_form, is_solution
 
 Grades = dict[str, tuple[float, float, bool]]
-MADE = shutil.ignore_patterns("build", "install", "log", ".ipynb_checkpoints")
 
 
 class Classroom:
@@ -33,7 +32,7 @@ class Classroom:
         self.place, self.assignment = place, assignment
         self.course, self.exchange = place / "course", place / "exchange"
         self.exchange.mkdir(parents=True)
-        shutil.copytree(layout.chapter(assignment), self.course / "chapters" / assignment, ignore=MADE)
+        shutil.copytree(layout.chapter(assignment), self.course / "chapters" / assignment, ignore=layout.NOT_COPIED)
         shutil.copy(layout.ROOT / "nbgrader_config.py", self.course)
 
     def run(self, folder: Path, *command: str) -> str:

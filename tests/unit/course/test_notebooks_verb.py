@@ -1,0 +1,52 @@
+"""`autograder notebooks` says of each notebook and form how it ran, and its status is that of the worst."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from autograder import cli, layout
+
+from .notebooks import chapter, code, notebook, solution
+
+
+@pytest.fixture
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A course of one chapter whose notebook runs when it is solved, and not when it is released."""
+    answer = code("# BEGIN SOLUTION\nanswer = 42\n# END SOLUTION", "answer", nbgrader=solution("answer"))
+    made = chapter(tmp_path, notebook(answer, code("print(answer)", "use")))
+    monkeypatch.setattr(layout, "CHAPTERS", made.folder.parent)
+    monkeypatch.setattr(layout, "BUILD", tmp_path / "build")
+    return tmp_path
+
+
+def _run(*arguments: str) -> Result:
+    return CliRunner().invoke(cli.group, ["notebooks", *arguments])
+
+
+def test_the_forms_that_are_named_run_and_the_failed_one_is_told_by_its_cell(course: Path) -> None:
+    said = _run("--solved", "--released", "-j", "2", "--json", str(course / "runs.json"))
+    assert said.exit_code == 1
+    assert "01_small (solved): ok in " in said.output
+    assert "01_small (released): failed in " in said.output
+    assert "cell 'answer': " in said.output
+    runs = json.loads((course / "runs.json").read_text())
+    assert [(run["assignment"], run["form"], run["failure"] is None) for run in runs] == [
+        ("01_small", "solved", True),
+        ("01_small", "released", False),
+    ]
+    reports = {path.name for path in (course / "build" / "notebooks").iterdir()}
+    assert reports == {"01_small-solved.ipynb", "01_small-released.ipynb"}
+
+
+def test_without_a_form_the_source_runs(course: Path) -> None:
+    said = _run("01_small")
+    assert said.exit_code == 0, said.output
+    assert said.output.startswith("01_small (source): ok in ")
+
+
+def test_a_name_that_is_no_assignment_is_told_which_there_are(course: Path) -> None:
+    assert "there are: 01_small" in str(_run("1_small").exception)
