@@ -58,8 +58,9 @@ class Import:
     @property
     def keys(self) -> tuple[str, ...]:
         """The names in package.xml that would declare it, the likeliest first."""
-        hyphened = f"python3-{self.module.lower().replace('_', '-')}"
-        return tuple(dict.fromkeys((KEYS.get(self.module, self.module), self.module, hyphened)))
+        if self.module in KEYS:
+            return (KEYS[self.module],)
+        return self.module, f"python3-{self.module.lower().replace('_', '-')}"
 
 
 def imported(package: Path, *, within: Collection[str] = (), without: Collection[str] = ()) -> tuple[Import, ...]:

@@ -54,10 +54,16 @@ def test_an_import_knows_where_it_stands_and_what_would_declare_it(package: Path
     assert imports.say([numpy]) == "lamp/nodes/lamp_node.py imports numpy (python3-numpy)"
 
 
-@pytest.mark.parametrize("declared", ["python3-numpy", "numpy"])
-def test_either_name_declares_a_module(package: Path, declared: str) -> None:
-    found = imports.undeclared(imports.imported(package), {declared, "rclpy", "launch", "python3-yaml"})
-    assert _names(found) == ["pytest"]
+@pytest.mark.parametrize(
+    "module,declared", [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
+)
+def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str, declared: str) -> None:
+    assert not imports.undeclared([imports.Import(module, ())], {declared})
+
+
+def test_the_name_that_pip_knows_is_no_rosdep_key(package: Path) -> None:
+    found = imports.undeclared(imports.imported(package), {"numpy", "rclpy", "launch", "python3-yaml"})
+    assert _names(found) == ["numpy", "pytest"]
 
 
 def test_what_runs_is_declared_for_the_run_and_what_tests_need_for_the_tests(package: Path) -> None:
