@@ -55,7 +55,7 @@ def test_an_import_knows_where_it_stands_and_what_would_declare_it(package: Path
 
 
 @pytest.mark.parametrize(
-    "module,declared", [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
+    ("module", "declared"), [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
 )
 def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str, declared: str) -> None:
     assert not imports.undeclared([imports.Import(module, ())], {declared})
