@@ -14,7 +14,7 @@ SUITES = ROOT / "autograder" / "suites"
 WORLDS = ROOT / "assets" / "worlds"
 BUILD = ROOT / ".build"
 # What tools leave behind in a folder that is worked in, for `shutil.copytree`.
-NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints")
+NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
 
 
 def chapter(assignment: str) -> Path:

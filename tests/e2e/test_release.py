@@ -39,6 +39,13 @@ def test_every_chapter_is_in_it_as_nbgrader_releases_it(bundle: Path) -> None:
         assert "BEGIN MARK SCHEME" not in text
 
 
+def test_what_tools_left_behind_is_not_in_it(bundle: Path) -> None:
+    left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in bundle.rglob(name)]
+    assert left == []
+    names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
+    assert layout.NOT_COPIED(str(bundle), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
+
+
 def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
     shown = text_of(bundle)
     hidden = {
