@@ -8,7 +8,8 @@ Tests are programs of the student's. A run is in their power: what it reports is
 version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
 times and environment, and nothing that it can write to but a /tmp that dies with it. It sees its version and nothing of
 the others, the suites or earlier runs. See `versions` for how versions are kept alike. What remains is written there,
-too.
+too. Only a run that is overheard shares the grader's loopback, where nobody else is; it can tell, so its version is one
+that it knows to be right.
 """
 
 from __future__ import annotations
@@ -19,33 +20,29 @@ import queue
 import selectors
 import shutil
 import sys
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.exceptions import GraderError, StudentError
+from autograder.exceptions import StudentError
 from autograder.grading.intake import take_source
 from autograder.lab.workspace import Workspace
 from autograder.probes import junit
 from autograder.probes.junit import Claims, Verdict
+from autograder.probes.overhearing import Ear
 from autograder.probes.versions import Version, lay_down
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
 from autograder.sandbox.launcher import current_tier, launch
 from autograder.sandbox.limits import MIB
 
 HOST = Path(__file__).with_name("pytest_host.py")
-INTRUDER = Path(__file__).with_name("intruder.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
 # Five at a time have to fit into the limits of a cell.
 LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB)
 LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
-DISTURBED_DOMAIN = 97  # where a test meets the intruder, unless it has a domain of its own
-READY_SECONDS = 30.0
 HOME = Path("/tmp")  # the sandbox's own
 HEADER = 32  # bytes of an answer's first line, at most
 
@@ -59,19 +56,19 @@ class Order:
         version: the package under test; None for the student's own, as it was built.
         backwards: whether the tests run in the opposite order.
         first_failure: whether the run ends with the first test that fails.
-        intruder: topics, with their types, on which another robot publishes in the default domain.
+        overheard: whether somebody listens in the default domain.
     """
 
     files: tuple[str, ...]
     version: Version | None = None
     backwards: bool = False
     first_failure: bool = False
-    intruder: Mapping[str, str] = field(default_factory=dict)
+    overheard: bool = False
 
 
 @dataclass(frozen=True)
 class Report:
-    """What became of a run; all of it but `ending` and `left` is the run's own claim.
+    """What became of a run; all of it but `ending`, `left` and `heard` is the run's own claim.
 
     Attributes:
         ending: how its process ended; None when the grader ended it after pytest was done.
@@ -79,6 +76,7 @@ class Report:
         claims: what it says of its tests.
         left: UDP sockets that were still open after the last test: each ROS context that is not ended holds some.
         output: what it printed.
+        heard: whether it was overheard, and has joined the default domain.
     """
 
     ending: Ending | None
@@ -86,6 +84,7 @@ class Report:
     claims: Claims
     left: int
     output: str
+    heard: bool = False
 
     @property
     def passed(self) -> bool:
@@ -148,7 +147,7 @@ def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: in
 
     Raises:
         StudentError: there is no room left on the disk.
-        GraderError: an intruder did not start.
+        GraderError: there is no domain left to listen in.
     """
     free: queue.SimpleQueue[int] = queue.SimpleQueue()
     for lane in range(lanes):
@@ -182,7 +181,7 @@ def _run(workspace: Workspace, source: Source, order: Order, lane: int) -> Repor
     place = workspace.root.with_name(f"{workspace.root.name}-tests") / f"lane{lane}"
     shutil.rmtree(place, ignore_errors=True)
     apart = workspace.domain if current_tier() is Tier.BUBBLEWRAP else (workspace.domain + 1 + lane) % 100
-    there = replace(workspace, domain=DISTURBED_DOMAIN if order.intruder else apart)
+    there = replace(workspace, domain=apart)
     if order.version is not None:
         there = replace(there, root=place / "ws")
         folder = lay_down(order.version, source.package, source.tests, there.root)
@@ -191,14 +190,17 @@ def _run(workspace: Workspace, source: Source, order: Order, lane: int) -> Repor
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
-    with _disturbed(there, order.intruder) if order.intruder else nullcontext():
+    if not order.overheard:
         return _host(_confined(there, folder, order, place / "home"), order)
+    with Ear() as ear:
+        report = _host(_confined(replace(there, domain=ear.domain), folder, order, place / "home"), order)
+        return replace(report, heard=ear.heard())
 
 
 def _confined(workspace: Workspace, folder: Path, order: Order, home: Path) -> Sandbox:
     """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
     if current_tier() is Tier.BUBBLEWRAP:
-        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=bool(order.intruder))
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=order.overheard)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
     home.mkdir(parents=True)
     return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
@@ -275,16 +277,3 @@ def open_sockets(pid: int) -> int:
     except OSError:
         return 0
     return sum(row.split()[9] in inodes for row in rows)
-
-
-@contextmanager
-def _disturbed(workspace: Workspace, topics: Mapping[str, str]) -> Iterator[None]:
-    spec = sandboxed(workspace, INTRUDER, network=True)
-    words = [f"{topic}={kind}" for topic, kind in topics.items()]
-    with launch([sys.executable, str(INTRUDER), *words], spec) as process:
-        deadline = time.monotonic() + READY_SECONDS
-        while "ready" not in process.output and time.monotonic() < deadline and not process.wait(0.05):
-            pass
-        if "ready" not in process.output:
-            raise GraderError(f"the other robot did not start: {process.output[-500:]}")
-        yield

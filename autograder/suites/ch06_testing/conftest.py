@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.checks import declared
 from autograder.lab import Workspace
 from autograder.suites.ch06_testing.examination import Examination
 
 
 @pytest.fixture(scope="session")
-def examination(workspace: Workspace, seed: int) -> Examination:
-    """The runs of the student's tests."""
-    return Examination(workspace, seed)
+def examination(request: pytest.FixtureRequest, workspace: Workspace, seed: int) -> Examination:
+    """The runs of the student's tests, as far as this session's checks ask for them."""
+    checks = (declared(getattr(item, "function", None)) for item in request.session.items)
+    return Examination(workspace, seed, frozenset(check.id for check in checks if check is not None))

@@ -10,7 +10,6 @@ import random
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
-from typing import Any
 
 from autograder.checks import CheckFailed, expect
 from autograder.lab import Workspace
@@ -22,28 +21,34 @@ from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults,
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE
 from autograder.visible.ch06_testing.verdicts import fit, trouble
 
+RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
 FILES = {
-    **dict.fromkeys(("stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS),
-    **dict.fromkeys(("name", "first_distance", "newest", "turn", "one_answer"), GUARD),
-    **dict.fromkeys(("parameters", "sensor_qos", "stale", "watchdog"), GUARD),
-    **dict.fromkeys(("configuration", "runs"), LAUNCH),
+    **{check: name for name, check in RIGHT.items()},
+    **dict.fromkeys(
+        ("limits_pass", "stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS
+    ),
+    **dict.fromkeys(("guard_pass", "alone", "nothing_left", "name", "first_distance", "newest", "turn"), GUARD),
+    **dict.fromkeys(("one_answer", "parameters", "sensor_qos", "stale", "watchdog"), GUARD),
+    **dict.fromkeys(("launch_pass", "configuration", "runs"), LAUNCH),
 }
-INTRUDER = {
-    "cmd_vel": "geometry_msgs/msg/Twist",
-    "cmd_vel_raw": "geometry_msgs/msg/Twist",
-    "distance": "sensor_msgs/msg/Range",
-}
-SECOND, HARD, BACKWARDS, DISTURBED = "second", "hard", "backwards", "disturbed"
-# All at once that good tests bear. Such a run has a right version for sure; the one in other words is not told apart.
-HARDER: dict[str, dict[str, Any]] = {LIMITS: {"backwards": True}, GUARD: {"backwards": True, "intruder": INTRUDER}}
+COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
+SECOND, BACKWARDS = "second", "backwards"
+ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
 
 
 class Examination:
-    """The runs of a submission's tests; each is made when it is first asked for, once."""
+    """The runs of a submission's tests; each is made when it is first asked for, once.
 
-    def __init__(self, workspace: Workspace, seed: int) -> None:
+    Args:
+        workspace: the student's.
+        seed: styles, disguises and the order of the runs are drawn from it.
+        checks: those that will ask; what only others would ask for is not run.
+    """
+
+    def __init__(self, workspace: Workspace, seed: int, checks: frozenset[str]) -> None:
         self._workspace = workspace
-        self._draw = random.Random(f"{seed}:versions")
+        self._seed = seed
+        self._checks = checks
 
     @cached_property
     def source(self) -> Source:
@@ -52,30 +57,29 @@ class Examination:
 
     @cached_property
     def trial(self) -> dict[str, Report]:
-        """What the tests of each file say of a right version."""
-        there = [name for name in LEAST if name in self.source.tests]
-        return dict(zip(there, self._run([self._right(name, STYLES[0]) for name in there]), strict=True))
+        """What the tests of each file say of a right version; those of the node are overheard."""
+        asked = {FILES[check] for check in self._checks if check in FILES}
+        orders = {
+            name: Order((name,), right(STYLES[0], self._draw(name)), overheard=name == GUARD)
+            for name in LEAST
+            if name in asked and name in self.source.tests
+        }
+        return dict(zip(orders, self._run(list(orders.values())), strict=True))
 
     @cached_property
     def runs(self) -> dict[tuple[str, str], Report]:
         """The other runs: by file, and what is special about the version or the run."""
-        keys: list[tuple[str, str]] = []
         orders: dict[tuple[str, str], Order] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
         for name in (name for name in reversed(LEAST) if fit(name, self.trial.get(name))):
-            orders[name, SECOND] = self._right(name, STYLES[1])
-            if name in HARDER:
-                orders[name, HARD] = self._right(name, STYLES[0], **HARDER[name])
-            for fault in faults():
-                if FILES[fault.check] == name:
-                    version = broken(fault, self._draw.choice(STYLES), self._draw)
-                    orders[name, fault.id] = Order((name,), version, first_failure=True)
-            mine = [key for key in orders if key[0] == name]
-            self._draw.shuffle(mine)
-            keys += mine
+            mine = self._orders(name)
+            whats = sorted(mine)
+            self._draw(name, "order").shuffle(whats)
+            orders |= {(name, what): mine[what] for what in whats}
         with ThreadPoolExecutor(1) as beside:  # colcon waits most of its time, too
-            beside.submit(lambda: self.colcon)
-            return dict(zip(keys, self._run([orders[key] for key in keys]), strict=True))
+            if self._checks & COLCON:
+                beside.submit(lambda: self.colcon)
+            return dict(zip(orders, self._run(list(orders.values())), strict=True))
 
     @cached_property
     def colcon(self) -> Report:
@@ -83,14 +87,10 @@ class Examination:
         return colcon_test(self._workspace, PACKAGE)
 
     def expect_right(self, name: str, *whats: str) -> None:
-        """Fail the check unless a file's tests pass on the right version in other words, backwards, or disturbed."""
+        """Fail the check unless a file's tests pass on the right version in other words, or backwards."""
         for what in whats:
-            hard = self.runs.get((name, HARD))
-            if what != SECOND and (hard is None or hard.passed):
-                continue
-            report = self.runs[name, SECOND] if what == SECOND else self._alone[name, what]
-            if not report.passed:
-                raise CheckFailed(trouble(name, report, _WHERE[what]))
+            if not self.runs[name, what].passed:
+                raise CheckFailed(trouble(name, self.runs[name, what], _WHERE[what]))
 
     def expect_objection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests of its file object to every fault that belongs to it.
@@ -116,17 +116,23 @@ class Examination:
         report = self.runs[name, fault.id]
         return report.ending is Ending.WALL_TIME or report.objects(self.trial[name])
 
-    @cached_property
-    def _alone(self) -> dict[tuple[str, str], Report]:
-        """Each difficulty by itself, for the files that did not bear all at once."""
-        orders: dict[tuple[str, str], Order] = {}
-        for name in (name for name, what in self.runs if what == HARD and not self.runs[name, what].passed):
-            orders[name, BACKWARDS] = self._right(name, STYLES[0], backwards=True)
-            orders[name, DISTURBED] = self._right(name, STYLES[0], intruder=INTRUDER)
-        return dict(zip(orders, self._run(list(orders.values())), strict=True))
+    def _orders(self, name: str) -> dict[str, Order]:
+        """Return the runs of a file that are asked for, by what is special about each."""
+        orders: dict[str, Order] = {}
+        if RIGHT[name] in self._checks:
+            orders[SECOND] = Order((name,), right(STYLES[1], self._draw(name, SECOND)), first_failure=True)
+            if name in ORDERED:
+                version = right(STYLES[0], self._draw(name, BACKWARDS))
+                orders[BACKWARDS] = Order((name,), version, backwards=True, first_failure=True)
+        for fault in faults():
+            if FILES[fault.check] == name and self._checks & {fault.check, ENDS}:
+                draw = self._draw(name, fault.id)
+                orders[fault.id] = Order((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
+        return orders
 
-    def _right(self, name: str, style: str, **more: Any) -> Order:
-        return Order((name,), right(style, self._draw), first_failure=True, **more)
+    def _draw(self, *what: str) -> random.Random:
+        """Return what is drawn from for one purpose: the same, whatever else is run."""
+        return random.Random(":".join((str(self._seed), *what)))
 
     def _run(self, orders: Sequence[Order]) -> list[Report]:
         return testing.run(self._workspace, self.source, orders)
@@ -136,5 +142,4 @@ class Examination:
 _WHERE = {
     SECOND: "on a right speed_guard that is written differently: test the contract, no attributes and no inner names",
     BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
-    DISTURBED: "while another robot publishes the same topics in the default domain: give the context a domain_id",
 }
