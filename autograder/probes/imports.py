@@ -121,7 +121,11 @@ def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...
 
 def say(imports: Collection[Import]) -> str:
     """Name imports with where they stand and what would declare them."""
-    return "; ".join(f"{each.files[0]} imports {each.module} ({each.keys[0]})" for each in imports)
+    return "; ".join(f"{each.files[0]} imports {each.module}{_called(each)}" for each in imports)
+
+
+def _called(one: Import) -> str:
+    return f" ({one.keys[0]})" if one.keys[0] != one.module else ""
 
 
 def _sources(package: Path) -> Iterator[Path]:

@@ -41,7 +41,7 @@ READERS = {
 
 # What setup.py and setup.cfg send where.
 MOVES = (
-    ("square_dance/nodes/dancer.py", "packages=find_packages(...)", "lib/python3.12/site-packages/square_dance/..."),
+    ("square_dance/nodes/dancer.py", "packages=find_packages(...)", "lib/python3.X/site-packages/square_dance/..."),
     ("dancer = square_dance.nodes.dancer:main", "entry_points, and setup.cfg", "lib/square_dance/dancer"),
     ("resource/square_dance", "data_files", "share/ament_index/resource_index/packages/..."),
     ("package.xml", "data_files", "share/square_dance/package.xml"),

@@ -68,8 +68,8 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     visibility=SEEN,
     depends=("builds",),
     hints=(
-        "setup.cfg says where programs go, console_scripts in setup.py says which there are.",
-        "find_packages finds folders that have an __init__.py.",
+        "Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.",
+        "find_packages finds folders that have an __init__.py; setup.cfg says where programs go.",
     ),
     doc=contract.DEVELOP,
 )

@@ -52,6 +52,7 @@ def test_an_import_knows_where_it_stands_and_what_would_declare_it(package: Path
     assert imports.Import("cv2", ()).keys[0] == "python3-opencv"
     assert imports.Import("sensor_msgs", ()).keys[0] == "sensor_msgs"
     assert imports.say([numpy]) == "lamp/nodes/lamp_node.py imports numpy (python3-numpy)"
+    assert imports.say([imports.Import("launch", ("a.py",))]) == "a.py imports launch"
 
 
 @pytest.mark.parametrize(
