@@ -33,8 +33,15 @@ class Drive:
     output: str
 
 
-def drive(lab: Lab, simulation: Simulation, seconds: float, *, tamper: Tamper | None = None) -> Drive:
-    """Let the program in `lab` steer the simulation's one robot for `seconds` of ROS time.
+def drive(
+    lab: Lab,
+    simulation: Simulation,
+    seconds: float,
+    *,
+    tamper: Tamper | None = None,
+    until: Callable[[State], bool] = lambda state: False,
+) -> Drive:
+    """Let the program in `lab` steer the simulation's one robot for `seconds` of ROS time, or until a state is reached.
 
     The lab must offer `OFFERS` and listen to `LISTENS`. Scans come at 10 Hz, as from an LDS-01; odometry with them.
     Simulated time starts with the program: a scan's stamp is the program's own ROS time.
@@ -44,7 +51,7 @@ def drive(lab: Lab, simulation: Simulation, seconds: float, *, tamper: Tamper | 
     origin = lab.now_ns
     command: Command | None = None
     end = round(seconds * 1e9)
-    while state.time_ns < end:
+    while state.time_ns < end and not until(state):
         target = min(state.time_ns + lab.tick_ns, end)
         state = _move(simulation, state, command, target, recorder)
         if target % SCAN_NS == 0:

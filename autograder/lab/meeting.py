@@ -7,6 +7,7 @@ import math
 import shutil
 import time
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import TracebackType
@@ -174,7 +175,9 @@ class Lab(ABC):
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
         """Return what was published on `topic` after `since` and up to `until`, in seconds of ROS time."""
-        return [stamped for stamped in self._received[topic] if since < stamped.seconds <= until]
+        received = self._received[topic]
+        first = bisect_right(received, since, key=_seconds)
+        return received[first : bisect_right(received, until, first, key=_seconds)]
 
     def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
         """Call a service of the student's; the programs live on, at most `seconds` of ROS time.
@@ -275,3 +278,7 @@ class Lab(ABC):
     def _spin(self, timeout: float) -> None:
         """Take what has arrived; wait for something at most `timeout` seconds."""
         self._station.spin(timeout)
+
+
+def _seconds(stamped: Stamped) -> float:
+    return stamped.seconds

@@ -6,20 +6,20 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from autograder.lab import Stamped, drive
-from autograder.lab.drive import Tamper
 from autograder.suites.ch02_nodes import terrain
-from autograder.suites.ch08_capstone.tracks import Trouble, blocked
+from autograder.suites.ch08_capstone.tracks import Floats, Trouble, blocked
 from autograder.visible.ch08_capstone.system import System
-from sim import Pose, Recording, RobotSpec, Scan, Simulation, World, box
+from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
 RADIUS = 0.18  # m
-ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 30.0, 36.0, 20.0
-DARK = Trouble("dead", 4.0, 8.0)
-BLOCKED = Trouble("blocked", 12.0, 15.0)
+ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
+DARK = Trouble("dead", 3.0, 7.0)
+BLOCKED = Trouble("blocked", 9.5, 11.5)
 
 
 @dataclass(frozen=True)
@@ -40,15 +40,20 @@ class Drives:
 
     @cached_property
     def room(self) -> Driven:
-        """Half a minute in a furnished room."""
+        """Twenty seconds in a furnished room."""
         draw = random.Random(f"{self._seed}:room")
         return self._drive(terrain.furnished_room(draw), ROOM_SECONDS, draw)
 
     @cached_property
     def corridor(self) -> Driven:
-        """A short corridor with one bend to the left or to the right."""
+        """A short corridor with one bend to the left or to the right, until the robot is round it."""
         draw = random.Random(f"{self._seed}:corridor")
-        return self._drive(self._bend.world, CORRIDOR_SECONDS, draw)
+
+        def arrived(state: State) -> bool:
+            pose = state.robots[0].pose
+            return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
+
+        return self._drive(self._bend.world, CORRIDOR_SECONDS, draw, until=arrived)
 
     @cached_property
     def faulty(self) -> Driven:
@@ -56,22 +61,22 @@ class Drives:
         draw = random.Random(f"{self._seed}:faulty")
         start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
         hall = World.from_segments(box(13.0, 5.0).tolist(), name="an empty hall", starts=[start])
-        return self._drive(hall, FAULTY_SECONDS, draw, _tamper)
+        return self._drive(hall, FAULTY_SECONDS, draw, tamper=_tamper)
 
     def share_of_corridor(self, recording: Recording) -> float:
         """Return how much of the way to the end of the corridor the robot has made, at most 1."""
-        return self._bend.share(recording)
+        return float(self._bend.share(recording.poses[:, 0, 0], recording.poses[:, 0, 1]).max())
 
     @cached_property
     def _bend(self) -> Bend:
         return draw_bend(random.Random(f"{self._seed}:bend"))
 
-    def _drive(self, world: World, seconds: float, draw: random.Random, tamper: Tamper | None = None) -> Driven:
+    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> Driven:
         simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
         system = self._system()
         began = system.seconds
-        done = drive(system.lab, simulation, seconds, tamper=tamper)
-        return Driven(done.recording, seconds, began, tuple(system.said(began).commands))
+        done = drive(system.lab, simulation, seconds, **options)
+        return Driven(done.recording, system.seconds - began, began, tuple(system.said(began).commands))
 
 
 @dataclass(frozen=True)
@@ -86,14 +91,13 @@ class Bend:
     side: float
     world: World
 
-    def share(self, recording: Recording) -> float:
-        """Return the greatest share of the way that the robot has made: to the bend, and on towards the far end."""
-        start = recording.simulation.world.starts[0]
-        x, y = recording.poses[:, 0, 0], self.side * recording.poses[:, 0, 1]
+    def share(self, x: Floats, y: Floats) -> Floats:
+        """Return the share of the way that a robot at (x, y), metres, has made: to the bend, and on to the far end."""
+        start = self.world.starts[0]
         along = np.clip(x - start.x, 0.0, self.first - start.x)
-        up = np.where(x > self.first - 0.9, np.clip(y, 0.0, self.second), 0.0)
+        up = np.where(x > self.first - 0.9, np.clip(self.side * y, 0.0, self.second), 0.0)
         enough = self.first - start.x + self.second - 1.5  # it turns round before the end
-        return float(min(1.0, ((along + up) / enough).max()))
+        return np.minimum(1.0, (along + up) / enough)
 
 
 def draw_bend(draw: random.Random) -> Bend:

@@ -102,9 +102,9 @@ def test_sectors(system: System, draw: random.Random) -> None:
             fraction=0.5,
         )
     began = system.seconds
-    system.see(OPEN, 2.0)
+    system.see(OPEN, 1.0)
     count = len(system.said(began).clearances)
-    expect(18 <= count <= 22, f"20 scans became {count} clearances.", fraction=0.5)
+    expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
 
 
 @check(

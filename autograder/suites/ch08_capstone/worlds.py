@@ -24,7 +24,7 @@ PICTURE = ("Look at the picture: what did the lidar see at the marked instant, a
 
 @check(points=3, group=GROUP, depends=DRIVES, hints=PICTURE)
 def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
-    """It drives through a furnished room for half a minute and touches nothing."""
+    """It drives through a furnished room for twenty seconds and touches nothing."""
     driven = drives.room
     recording = driven.recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})

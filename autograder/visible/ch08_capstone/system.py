@@ -85,7 +85,7 @@ class System:
         """Return the parameters of a program's node."""
         return NodeParameters(self.lab, name_of(program))
 
-    def see(self, scan: LaserScan, seconds: float = 1.0, *, age: float = 0.0) -> Said:
+    def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Said:
         """Show a scan ten times a second; return what is said once there was time to react.
 
         Args:
