@@ -82,8 +82,9 @@ def _expect(workspace: Workspace, seconds: float, linear: float, angular: float)
     got = value(outcome, shown)
     pair = isinstance(got, list) and len(got) == 2 and all(isinstance(x, int | float) for x in got)
     expect(pair, f"{shown} returned {got} instead of two numbers.")
-    wanted = f"({linear:.2f}, {angular:.2f})"
-    expect(_near(got[0], linear) and _near(got[1], angular), f"{shown} returned {tuple(got)} instead of {wanted}.")
+    right = _near(got[0], linear) and _near(got[1], angular)
+    wanted = f"({linear:.3f}, {angular:.3f})"
+    expect(right, f"{shown} returned ({got[0]:.3f}, {got[1]:.3f}) instead of {wanted}.")
 
 
 def _near(got: float, wanted: float) -> bool:
