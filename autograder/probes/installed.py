@@ -30,7 +30,7 @@ class Installed:
         modules: dotted names of the installed Python modules, packages included, of this package and any other.
         marker: whether the ament index knows the package.
         shared: paths below share/PACKAGE, without what colcon itself puts there.
-        listed: the files that setup.py itself names; what is missing here but installed was put there by colcon.
+        recorded: what setup.py itself installed, below the prefix; colcon puts a marker and package.xml beside it.
         scripts: the console scripts, each name with its `module:function`.
         extras: the requirements of each extra, such as `test`.
         metadata: headers such as Version, License, Maintainer-email.
@@ -43,15 +43,14 @@ class Installed:
     modules: frozenset[str]
     marker: bool
     shared: tuple[str, ...]
-    listed: frozenset[str]
+    recorded: frozenset[str]
     scripts: Mapping[str, str]
     extras: Mapping[str, tuple[str, ...]]
     metadata: Mapping[str, str]
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""
-        path = self.prefix / "share" / self.package / name
-        return _read(path) if path.parent.resolve().is_relative_to(self.prefix.resolve()) else None
+        return _read_below(self.prefix, Path("share", self.package, name))
 
 
 def look(install: Path, package: str) -> Installed:
@@ -76,7 +75,7 @@ def look(install: Path, package: str) -> Installed:
         modules=modules,
         marker=_read(prefix / INDEX / package) is not None,
         shared=tuple(name for name in _files(share) if not _of_colcon(name)),
-        listed=frozenset(_joined(own, "SOURCES.txt").splitlines()),
+        recorded=_recorded(install, package),
         scripts=_scripts(_joined(own, "entry_points.txt")),
         extras=_extras(_joined(own, "requires.txt")),
         metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
@@ -108,6 +107,19 @@ def _read(path: Path) -> bytes | None:
     except OSError:
         return None
     return data if len(data) <= MAX_BYTES else None
+
+
+def _read_below(folder: Path, name: Path) -> bytes | None:
+    """Return a plain file's bytes, unless a link on the way to it leads out of the folder."""
+    path = folder / name
+    return _read(path) if path.parent.resolve().is_relative_to(folder.resolve()) else None
+
+
+def _recorded(install: Path, package: str) -> frozenset[str]:
+    """Return what colcon had setup.py record of its own installing, beside the install space."""
+    text = (_read_below(install.parent / "build", Path(package, "install.log")) or b"").decode(errors="replace")
+    below = [line.partition(f"/{install.name}/{package}/") for line in text.splitlines()]
+    return frozenset(name for _, found, name in below if found)
 
 
 def _joined(folders: list[Path], name: str) -> str:

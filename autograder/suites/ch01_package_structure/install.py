@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from autograder.checks import check, expect
 from autograder.diagnosis import Diagnosis
 from autograder.lab import Workspace
-from autograder.probes.installed import Installed
+from autograder.probes.installed import INDEX, Installed
 from autograder.suites.ch01_package_structure.growth import Grown
 from autograder.visible.ch01_package_structure import contract, judge
 
@@ -34,19 +35,22 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     depends=("builds", "manifest"),
     hints=(
         "ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.",
-        "('share/ament_index/resource_index/packages', ['resource/' + package_name]) in data_files.",
+        "data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].",
     ),
     doc=contract.DEVELOP,
 )
 def test_marker(dance: Installed) -> None:
-    """setup.py installs the marker by which ROS finds the package."""
+    """setup.py installs the marker by which ROS finds the package, and package.xml."""
     expect(
         dance.marker, "The ament index does not know square_dance: ros2 run would say that the package is not found."
     )
+    marker, manifest = INDEX / contract.DANCE, Path("share", contract.DANCE, "package.xml")
+    missing = [str(path) for path in (marker, manifest) if str(path) not in dance.recorded]
     expect(
-        f"resource/{contract.DANCE}" in dance.listed,
-        "setup.py does not install resource/square_dance. colcon still does it for you, and warns that it will not "
+        not missing,
+        f"setup.py does not install {' and '.join(missing)}. colcon still does it for you, and warns that it will not "
         "for ever.",
+        fraction=0.5 * (2 - len(missing)),
     )
 
 

@@ -17,7 +17,6 @@ FILES = {
     f"{SITE}/lamp/nodes/__init__.py": "",
     f"{SITE}/lamp/nodes/lamp.py": "",
     f"{SITE}/test/__init__.py": "",
-    f"{EGG}/SOURCES.txt": "setup.py\nresource/lamp\n",
     f"{EGG}/entry_points.txt": "[console_scripts]\nlamp = lamp.nodes.lamp:main\n",
     f"{EGG}/requires.txt": "setuptools\n\n[test]\npytest\n\n[doc:python_version>'3']\nsphinx\n",
     f"{EGG}/PKG-INFO": "Metadata-Version: 2.1\nName: lamp\nVersion: 0.1.0\nLicense: MIT\n\nA lamp.\n",
@@ -37,6 +36,9 @@ def install(tmp_path: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
         path.chmod(0o755 if text.startswith("#!") else 0o644)
+    log = tmp_path / "build" / "lamp" / "install.log"
+    log.parent.mkdir(parents=True)
+    log.write_text(f"{tmp_path}/install/lamp/share/lamp/package.xml\n{tmp_path}/install/torch/share/torch/x\n")
     return tmp_path / "install"
 
 
@@ -47,7 +49,7 @@ def test_everything_that_a_package_has_is_seen(install: Path) -> None:
     assert found.modules == {"lamp", "lamp.nodes", "lamp.nodes.lamp", "test"}
     assert found.marker
     assert found.shared == ("package.xml", "config/lamp.yaml")
-    assert "resource/lamp" in found.listed
+    assert found.recorded == {"share/lamp/package.xml"}
     assert found.scripts == {"lamp": "lamp.nodes.lamp:main"}
     assert found.extras == {"test": ("pytest",), "doc": ("sphinx",)}
     assert (found.metadata["Version"], found.metadata["License"]) == ("0.1.0", "MIT")
@@ -58,6 +60,12 @@ def test_a_package_that_was_not_installed_has_nothing(tmp_path: Path) -> None:
     found = installed.look(tmp_path / "install", "lamp")
     assert (found.executables, found.modules, found.marker, found.shared) == ((), frozenset(), False, ())
     assert found.read("package.xml") is None
+
+
+def test_a_record_behind_a_link_is_not_read(install: Path, tmp_path: Path) -> None:
+    (tmp_path / "build" / "lamp").rename(tmp_path / "elsewhere")
+    (tmp_path / "build" / "lamp").symlink_to(tmp_path / "elsewhere")
+    assert installed.look(install, "lamp").recorded == frozenset()
 
 
 def test_a_file_that_may_not_be_run_is_no_executable(install: Path) -> None:
