@@ -102,9 +102,11 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     doc=contract.SERVICE,
 )
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
-    """A trip that is longer than the battery lasts leaves 0 percent, never less."""
+    """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
     reporter.level(draw.randrange(10, 40))
-    _expect(reporter.ask([draw.uniform(300.0, 900.0), 50.0], 5), 0, "After a trip far too long")
+    for reserve in (5, 0):
+        answer = reporter.ask([draw.uniform(300.0, 900.0), 50.0], reserve)
+        _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
 
 
 @check(

@@ -18,7 +18,10 @@ BUILT = ("robot_status", "check_trip", "drive_distance", "builds")
     group="status",
     visibility=SEEN,
     depends=BUILT,
-    hints=("create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.",),
+    hints=(
+        "create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.",
+        "A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.",
+    ),
     doc=contract.BATTERY,
 )
 def test_status(reporter: Reporter) -> None:
@@ -36,7 +39,7 @@ def test_status(reporter: Reporter) -> None:
     points=1,
     group="service",
     visibility=SEEN,
-    depends=("status",),
+    depends=BUILT,
     hints=("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.",),
     doc=contract.SERVICE,
 )

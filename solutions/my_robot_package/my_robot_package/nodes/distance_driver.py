@@ -71,7 +71,7 @@ class DistanceDriver(Node):
         super().destroy_node()
 
     def odom_callback(self, msg):
-        """Keep the newest position; log at level info that the odometry is there, once."""
+        """Keep the newest position; log at level info 'The odometry is there', once."""
         if self.position is None:
             self.get_logger().info('The odometry is there')
         self.position = (msg.pose.pose.position.x, msg.pose.pose.position.y)

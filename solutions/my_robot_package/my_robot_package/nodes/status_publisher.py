@@ -55,8 +55,8 @@ class StatusPublisher(Node):
         Name the node status_publisher; create its endpoints and its timer.
 
         The publisher uses STATUS_QOS, the subscriptions a queue of 10. The timer calls
-        publish_status every status_period. kwargs are handed on to Node, so that a test can
-        pass a context of its own.
+        publish_status every status_period. At the end, log at level info 'Status of NAME every
+        PERIOD s'. kwargs are handed on to Node, so that a test can pass a context of its own.
         """
         super().__init__('status_publisher', **kwargs)
         self.robot_name, period = self.read_parameters()
@@ -120,7 +120,8 @@ class StatusPublisher(Node):
         Fill in whether the battery would last for a trip, and return the response.
 
         battery_at_end is the battery's level now less the percent that the legs take, rounded
-        down, and never below 0. The trip is possible when that is at least the reserve.
+        down, and never below 0. The trip is possible when that is at least the reserve, and the
+        legs take no more than there is.
 
         When the battery's level is unknown, or a leg is negative or not finite, the trip is not
         possible and battery_at_end is BATTERY_UNKNOWN. Whenever it is not possible, the reason
@@ -135,7 +136,7 @@ class StatusPublisher(Node):
             used = sum(request.legs) / CheckTrip.Request.METRES_PER_PERCENT
             left = math.floor(max(0.0, level - used))
             response.battery_at_end = left
-            response.possible = left >= request.reserve
+            response.possible = used <= level and left >= request.reserve
             if not response.possible:
                 response.reason = f'{left} % would be left, less than the reserve'
         return response

@@ -40,9 +40,9 @@ def answer(heard, request, response):
     if any(math.isnan(leg) or math.isinf(leg) or leg < 0 for leg in request.legs):
         response.reason = "no such leg"
         return response
-    left = max(0, math.floor(level - sum(request.legs) / request.METRES_PER_PERCENT))
-    enough = left >= request.reserve
-    return CheckTrip.Response(possible=enough, battery_at_end=left, reason="" if enough else "too far")
+    left = math.floor(level - sum(request.legs) / request.METRES_PER_PERCENT)
+    enough = left >= max(0, request.reserve)
+    return CheckTrip.Response(possible=enough, battery_at_end=max(0, left), reason="" if enough else "too far")
 
 
 def main():
