@@ -191,6 +191,17 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
     return {str(node): _values(path.name, shortened(str(node)), below) for node, below in data.items()}
 
 
+def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
+    """Return what a parameter file says for a node, by wildcards or by its name, whichever way that is written.
+
+    Args:
+        file: from `read_file`.
+        name: the node's, without a namespace.
+    """
+    keys = ("/**", f"/**/{name}", name, f"/{name}")
+    return {parameter: value for key in keys for parameter, value in file.get(key, {}).items()}
+
+
 def _values(file: str, node: str, below: object) -> dict[str, Value]:
     if node == "ros__parameters":
         raise CheckFailed(f"In {file}, ros__parameters stands at the left margin: it belongs below a node, indented.")

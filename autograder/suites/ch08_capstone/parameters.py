@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from autograder.checks import CheckFailed, check, expect
 from autograder.lab import Stamped, Workspace
-from autograder.probes.parameters import Value, differences, missing_sentence, read_file
+from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
 from autograder.suites.ch08_capstone.nodes import OPEN
 from autograder.visible.ch02_nodes.scans import Part, scan
 from autograder.visible.ch08_capstone import contract
@@ -18,7 +18,6 @@ from autograder.visible.ch08_capstone.contract import (
     PACKAGE,
     PARAMETERS,
     PROCESSOR,
-    name_of,
 )
 from autograder.visible.ch08_capstone.system import System, expect_driving, expect_turning
 
@@ -103,7 +102,7 @@ def test_config(workspace: Workspace) -> None:
     """The configuration file holds every parameter with its default, by node."""
     file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, wanted in PARAMETERS.items():
-        values: dict[str, Value] = {**file.get("/**", {}), **file.get(node, {}), **file.get(name_of(node), {})}
+        values = for_node(file, node)
         expect(bool(values), f"{CONFIG} says nothing for {node}; it has: {', '.join(file)}.")
         wrong = differences(values, {name: bounds.default for name, bounds in wanted.items()})
         expect(not wrong, f"{CONFIG}, {node}: {'; '.join(wrong)}.", fraction=0.5)

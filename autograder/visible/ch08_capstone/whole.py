@@ -7,7 +7,7 @@ from autograder.lab import Workspace
 from autograder.lab.launching import LaunchLab
 from autograder.probes import launching, testing
 from autograder.probes.installed import look
-from autograder.probes.parameters import read_file
+from autograder.probes.parameters import for_node, read_file
 from autograder.probes.testing import Order
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import CONFIG, LAUNCH_FILE, PACKAGE, PARAMETERS, PROGRAMS, name_of
@@ -49,7 +49,7 @@ def test_config_file(workspace: Workspace) -> None:
     """Step 5: the installed configuration holds every parameter of every node."""
     file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, wanted in PARAMETERS.items():
-        values = {**file.get("/**", {}), **file.get(node, {}), **file.get(name_of(node), {})}
+        values = for_node(file, node)
         absent = [name for name in wanted if name not in values]
         expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
 

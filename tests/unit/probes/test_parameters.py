@@ -12,6 +12,7 @@ from autograder.probes.parameters import (
     SHOWN,
     as_declared,
     differences,
+    for_node,
     missing_sentence,
     near_misses,
     read_file,
@@ -95,6 +96,12 @@ def test_a_file_that_ros_would_not_read_is_told_why(tmp_path: Path, text: str, s
     path.write_text(text)
     with pytest.raises(CheckFailed, match=sentence):
         read_file(path)
+
+
+@pytest.mark.parametrize("key", ["/**/driver", "driver", "/driver"])
+def test_what_a_file_says_for_a_node_is_found_however_its_name_is_written(key: str) -> None:
+    file = {key: {"speed": 0.3}, "/**": {"speed": 0.1, "range": 2.0}, "other": {"speed": 9.0}}
+    assert for_node(file, "driver") == {"speed": 0.3, "range": 2.0}
 
 
 def test_a_file_that_is_not_installed_is_named(tmp_path: Path) -> None:
