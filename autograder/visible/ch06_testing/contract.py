@@ -23,7 +23,10 @@ MUTATE = "Break that line yourself in a copy of the package, run your tests, and
 ALL_PASS = "A test that fails on the package as it is asks for something that the contract does not say."
 SPIN = "Nothing arrives while nobody spins: until(...) has to call spin_once until the condition holds."
 SAME_DOMAIN = "The launched program and the test have to be in the same domain: SetEnvironmentVariable comes first."
-WAIT = "A program takes a second to start: wait for its endpoints with a deadline before you ask it anything."
+WAIT = (
+    "A program takes a second to start, and its name may be found later than its topics: wait for each, with a "
+    "deadline, before you rely on it."
+)
 NO_SLEEP = (
     "A sleep is too long on a fast machine and too short on a busy one.",
     "Wait for a condition, with a deadline: spin_once in a loop until it holds.",
