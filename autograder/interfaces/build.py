@@ -22,6 +22,7 @@ from autograder.ros.environment import without_wheel_bootstrap
 HERE = Path(__file__).parent
 SECONDS = 120.0
 RECIPE = "recipe.json"
+OWN = ("generate", "templates", "compile")  # the modules that make a prefix
 
 
 def build(
@@ -102,7 +103,7 @@ def _versions(ros: RosEnvironment) -> list[str]:
 
 @lru_cache(maxsize=1)
 def _own_version() -> str:
-    return hashlib.sha256((HERE / "generate.py").read_bytes() + (HERE / "compile.py").read_bytes()).hexdigest()
+    return hashlib.sha256(b"".join((HERE / f"{name}.py").read_bytes() for name in OWN)).hexdigest()
 
 
 def _make(

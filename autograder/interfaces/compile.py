@@ -7,9 +7,8 @@ import subprocess
 import sys
 import sysconfig
 from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
-
-import numpy
 
 FAST = "rosidl_typesupport_fastrtps_c"
 INTROSPECTION = "rosidl_typesupport_introspection_c"
@@ -27,7 +26,8 @@ def compile_package(
 ) -> None:
     """Compile what the generators wrote to `work` into libraries and the extension module under `prefix`.
 
-    The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name.
+    The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name. It is
+    the extension module, too, under a second name.
 
     Raises:
         RuntimeError: the compiler refused; its words are on stderr.
@@ -36,7 +36,7 @@ def compile_package(
     include = [f"-I{work / name}" for name in names]
     for root in prefixes:
         include += [f"-I{folder}" for folder in sorted((root / "include").glob("*/"))] + [f"-I{root / 'include'}"]
-    include += [f"-I{sysconfig.get_paths()['include']}", f"-I{numpy.get_include()}"]
+    include += [f"-I{sysconfig.get_paths()['include']}", *_numpy()]
     flags = ["-O0", "-fPIC", "-w", "-fvisibility=default", f'-DROS_PACKAGE_NAME="{package}"', *include]
 
     def sources(name: str, pattern: str) -> list[Path]:
@@ -46,38 +46,39 @@ def compile_package(
     conversions = [
         path for path in sources("rosidl_generator_py", "*.c") if path.parent != work / "rosidl_generator_py" / package
     ]
+    entry = next((work / "rosidl_generator_py" / package).glob("_*.ep.*.c"))
+    # What includes the same headers is compiled together. The C++ comes first, because it takes longest.
     main = [
-        _unit(work, "fast.cpp", sources(FAST, "*.cpp")),
-        _unit(work, "types.cpp", sources("rosidl_typesupport_c", "*.cpp")),
-        _unit(work, "python.c", conversions),
+        _unit(work, "types.cpp", sources(FAST, "*.cpp") + sources("rosidl_typesupport_c", "*.cpp")),
+        _unit(work, "python.c", [*conversions, entry]),
         _unit(work, "functions.c", functions),
         # Each names the types below it with the same static words.
         *sources("rosidl_generator_c", "*__description.c"),
     ]
     introspection = _unit(work, "introspection.c", sources(INTROSPECTION, "*.c"))
-    entry = next((work / "rosidl_generator_py" / package).glob("_*.ep.*.c"))
+    objects = {path: str(work / f"{number}.o") for number, path in enumerate([*main, introspection])}
     with ThreadPoolExecutor(min(3, (os.cpu_count() or 1) + 1)) as pool:
-        commands = {
-            path: _compilation(path, work / f"{i}.o", flags) for i, path in enumerate([*main, introspection, entry])
-        }
-        list(pool.map(_run, commands.values()))
-    objects = {path: command[-1] for path, command in commands.items()}
+        list(pool.map(_run, [_compilation(path, target, flags) for path, target in objects.items()]))
     folder = prefix / "lib"
     below = [f"-l{name}__{kind}" for name in dependencies for kind in _LIBRARIES if _library(prefixes, name, kind)]
     paths = [part for root in prefixes for part in (f"-L{root / 'lib'}", f"-Wl,-rpath,{root / 'lib'}")]
-    common = [f"-L{folder}", *paths, "-Wl,-rpath,$ORIGIN:$ORIGIN/../../.."]
-    runtime = [*below, f"-l{FAST}", "-lrosidl_typesupport_fastrtps_cpp", "-lfastcdr", f"-l{INTROSPECTION}"]
-    runtime += ["-lrosidl_typesupport_c", "-lrosidl_runtime_c", "-lrcutils"]
-    fast, inner = f"{package}__{FAST}", f"{package}__{INTROSPECTION}"
-    _link(folder / f"lib{fast}.so", [objects[path] for path in main], [*common, "-Wl,--as-needed", *runtime])
-    _link(
-        folder / f"lib{inner}.so",
-        [objects[introspection]],
-        [*common, "-Wl,--no-as-needed", f"-l{fast}", "-Wl,--as-needed", *runtime],
-    )
-    extension = f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
-    own = ["-Wl,--no-as-needed", f"-l{fast}", f"-l{inner}", "-Wl,--as-needed", *runtime]
-    _link(site(prefix) / package / extension, [objects[entry]], [*common, *own])
+    common = [f"-L{folder}", *paths, "-Wl,-rpath,$ORIGIN:$ORIGIN/../../..", "-Wl,--as-needed", *below]
+    common += [f"-l{INTROSPECTION}", "-lrosidl_typesupport_c", "-lrosidl_runtime_c", "-lrcutils"]
+    fast, inner = (folder / f"lib{package}__{name}.so" for name in (FAST, INTROSPECTION))
+    # Introspection needs functions of the main library, which is loaded first and brings it along.
+    _link(inner, [objects[introspection]], common)
+    own = [f"-l{FAST}", "-lrosidl_typesupport_fastrtps_cpp", "-lfastcdr", "-Wl,--no-as-needed", str(inner)]
+    _link(fast, [objects[path] for path in main], [*common, *own])
+    extension = site(prefix) / package / f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    extension.symlink_to(os.path.relpath(fast, extension.parent))
+
+
+def _numpy() -> list[str]:
+    """Return where numpy's headers are, as options; to import it would take longer than to compile some files."""
+    spec = find_spec("numpy")
+    if spec is None or spec.origin is None:
+        raise RuntimeError("numpy is not installed")
+    return [f"-I{Path(spec.origin).parent / core / 'include'}" for core in ("_core", "core")]
 
 
 def _library(prefixes: tuple[Path, ...], package: str, kind: str) -> bool:
@@ -90,9 +91,10 @@ def _unit(work: Path, name: str, sources: list[Path]) -> Path:
     return unit
 
 
-def _compilation(source: Path, target: Path, flags: list[str]) -> list[str]:
-    compiler = ["g++", "-std=c++17"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
-    return [*compiler, "-c", *flags, str(source), "-o", str(target)]
+def _compilation(source: Path, target: str, flags: list[str]) -> list[str]:
+    # C++14 is the least that Fast CDR takes, and its standard headers are the shortest.
+    compiler = ["g++", "-std=c++14"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
+    return [*compiler, "-c", *flags, str(source), "-o", target]
 
 
 def _link(target: Path, objects: list[str], libraries: list[str]) -> None:

@@ -19,6 +19,7 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from autograder.interfaces import compile as compiling
+from autograder.interfaces.templates import scan_once
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
@@ -84,11 +85,12 @@ def adapt(prefix: Path, work: Path, package: str, texts: dict[str, str]) -> tupl
     return tuple(path.rpartition(".")[0] + ".idl" for path in texts)
 
 
-def share_parsing() -> None:
-    """Let the generators parse each .idl once between them."""
+def share_parsing(job: Job) -> None:
+    """Parse each .idl, and let the generators take what came of it."""
     names = ("rosidl_generator_py.generate_py_impl", "rosidl_generator_type_description", "rosidl_pycommon")
     parser = import_module("rosidl_parser.parser")
     original, parsed = parser.parse_idl_file, dict[str, Any]()
+    locator_of = import_module("rosidl_parser.definition").IdlLocator
 
     def parse(locator: Any, png_file: Any = None) -> Any:
         name = str(locator.get_absolute_path())
@@ -98,6 +100,8 @@ def share_parsing() -> None:
 
     for module in (parser, *map(import_module, names)):
         module.parse_idl_file = parse  # type: ignore[attr-defined]
+    for file in job.files:
+        parse(locator_of(job.prefix / "share" / job.package, file))
 
 
 def arguments(job: Job, generator: str, **more: Any) -> str:
@@ -207,7 +211,8 @@ def main() -> None:
     prefixes = tuple(Path(path) for path in recipe["prefixes"])
     files = adapt(prefix, work, recipe["package"], recipe["texts"])
     job = Job(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
-    share_parsing()
+    share_parsing(job)
+    scan_once()
     generate(job)
     install(job)
     compiling.compile_package(job.package, prefix, work, prefixes, job.dependencies)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
@@ -12,8 +13,10 @@ from autograder.interfaces.cache import Cache
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
 from autograder.interfaces.exceptions import DefinitionError, GenerationError
 from autograder.interfaces.loading import load
-from autograder.lab.workspace import Workspace
 from autograder.packages import find_packages
+
+if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
+    from autograder.lab.workspace import Workspace
 
 
 def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:
