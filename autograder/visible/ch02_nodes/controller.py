@@ -19,7 +19,7 @@ SEEN = Visibility.VISIBLE
     visibility=SEEN,
     hints=(
         "The sentence above names the error, the lines below it say where.",
-        "setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.",
+        "It needs the whole file: forward_clearance, the class and main.",
     ),
     doc=contract.NODES,
 )
@@ -93,6 +93,7 @@ def test_drives(robot: Robot) -> None:
 def test_turns(robot: Robot) -> None:
     """It turns left when a wall is 0.6 m ahead, and only when it is ahead."""
     expect_turn(robot.see(scan(Part(-10.0, 10.0, 0.6))), "With a wall 0.6 m ahead")
+    expect_turn(robot.see(scan(Part(-22.0, -18.0, 0.6))), "With a post 0.6 m ahead, 20° to the right")
     expect_forward(robot.see(scan(Part(150.0, 180.0, 0.6))), "With a wall 0.6 m behind")
 
 
