@@ -62,7 +62,8 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
     for _ in range(4):
         level = draw.randrange(50, 101)
-        legs = [draw.uniform(1.0, 20.0) for _ in range(draw.randrange(1, 9))]
+        legs = [draw.uniform(1.0, 20.0) for _ in range(draw.randrange(1, 7))]
+        legs += [draw.uniform(0.1, 0.9), 0.0]  # a leg may be short, and it may be none
         used = sum(legs) / METRES_PER_PERCENT
         if abs(math.remainder(used, 1.0)) < 0.01:  # too near to a whole percent to be told apart
             legs[0] += 0.1
