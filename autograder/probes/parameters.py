@@ -101,7 +101,7 @@ class NodeParameters:
         response = self.lab.call(kind, service, request, SECONDS)
         if response is not None:
             return response
-        if service not in dict(self.lab.node.get_service_names_and_types()):
+        if not self.lab.node.count_services(service):
             raise CheckFailed(f"The node has no service {service}: leave its parameter services on.")
         raise CheckFailed(f"The node did not answer a request to {service} within {SECONDS:.0f} s.")
 

@@ -1,0 +1,65 @@
+"""A node's parameters are asked for over its own services; a node that has none, or does not answer, is told so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from tests.e2e.cell_support import in_cell
+
+NODE = """#!/usr/bin/env python3
+import rclpy
+from rcl_interfaces.srv import ListParameters
+from rclpy.node import Node
+from rclpy.task import Future
+
+async def silent(request, response):
+    await Future()
+
+rclpy.init()
+node = Node('tuned', start_parameter_services=SERVICES)
+if not SERVICES:
+    node.create_service(ListParameters, '~/list_parameters', silent)
+node.declare_parameter('speed', 0.5)
+rclpy.spin(node)
+"""
+
+
+def asked(scratch: Path) -> Any:
+    from autograder.checks import CheckFailed
+    from autograder.lab import LockstepLab, RealtimeLab, Workspace
+    from autograder.probes.parameters import NodeParameters
+    from autograder.ros import activate
+
+    folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
+    folder.mkdir(parents=True)
+    (scratch / "home").mkdir()
+    for name, services in (("open", "True"), ("closed", "False")):
+        (folder / name).write_text(NODE.replace("SERVICES", services))
+    workspace = Workspace(scratch / "ws", activate(), scratch / "home")
+    told: list[Any] = []
+    for kind in (LockstepLab, RealtimeLab):
+        with kind(workspace, "pkg", "open") as lab:
+            parameters = NodeParameters(lab, "/tuned")
+            answer = parameters.change({"speed": "fast"})
+            told.append(
+                [sorted(parameters.names()), parameters.values("speed", "mass"), answer.accepted, answer.reason]
+            )
+    with LockstepLab(workspace, "pkg", "closed") as lab:
+        parameters = NodeParameters(lab, "/tuned")
+        for ask in (lambda: parameters.values("speed"), parameters.names):
+            try:
+                ask()
+            except CheckFailed as failed:
+                told.append(str(failed))
+    return told
+
+
+def test_parameters_are_asked_for_in_either_time_and_silence_is_told() -> None:
+    stepped, real, without, silent = in_cell(asked)
+    assert stepped == real
+    names, values, accepted, reason = stepped
+    assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)
+    assert "Wrong parameter type" in reason
+    assert without == "The node has no service /tuned/get_parameters: leave its parameter services on."
+    assert silent == "The node did not answer a request to /tuned/list_parameters within 5 s."
