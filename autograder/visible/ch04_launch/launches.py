@@ -45,10 +45,10 @@ def test_arguments(workspace: Workspace) -> None:
 )
 def test_robot(workspace: Workspace) -> None:
     """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
-    with LaunchLab(workspace, PACKAGE, ROBOT, {"speed": "0.35", "robot_name": "Zoe"}) as lab:
+    with LaunchLab(workspace, PACKAGE, ROBOT, {"speed": "1", "robot_name": "42"}) as lab:
         launching.expect_nodes(lab, [DRIVER, REPORTER])
-        launching.expect_parameters(lab, DRIVER, {"speed": 0.35})
-        launching.expect_parameters(lab, REPORTER, {"robot_name": "Zoe"})
+        launching.expect_parameters(lab, DRIVER, {"speed": 1.0})
+        launching.expect_parameters(lab, REPORTER, {"robot_name": "42"})
         launching.expect_clean_stop(lab)
 
 
