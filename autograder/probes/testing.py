@@ -170,10 +170,13 @@ def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: in
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, network: bool = False) -> Sandbox:
-    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
+    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it.
+
+    Message packages import numpy: one thread of its library is quicker to start than one for each core.
+    """
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
     plain = workspace.sandbox(limits)
-    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "OPENBLAS_NUM_THREADS": "1"}
     return replace(plain, mounts=mounts, environment=environment, network=network)
 
 
@@ -191,9 +194,10 @@ def _run(workspace: Workspace, source: Source, order: Order, lane: int) -> Repor
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
     if not order.overheard:
-        return _host(_confined(there, folder, order, place / "home"), order)
+        return _host(_confined(there, folder, order, place / "home"), order, _arguments(source, folder, order))
     with Ear() as ear:
-        report = _host(_confined(replace(there, domain=ear.domain), folder, order, place / "home"), order)
+        spec = _confined(replace(there, domain=ear.domain), folder, order, place / "home")
+        report = _host(spec, order, _arguments(source, folder, order))
         return replace(report, heard=ear.heard())
 
 
@@ -206,20 +210,23 @@ def _confined(workspace: Workspace, folder: Path, order: Order, home: Path) -> S
     return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
 
 
-def _arguments(folder: Path, order: Order) -> list[str]:
+def _arguments(source: Source, folder: Path, order: Order) -> list[str]:
+    read = [*order.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
+    launches = any(b"launch" in source.tests.get(name, b"") for name in read)  # a plug-in takes time to import
     files = [str(folder / "test" / name) for name in order.files]
-    plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder), "-p", "launch_pytest.plugin"]
+    plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
+    plain += ["-p", "launch_pytest.plugin"] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
     return [*plain, *quiet, *(["-x"] if order.first_failure else []), *files]
 
 
-def _host(spec: Sandbox, order: Order) -> Report:
+def _host(spec: Sandbox, order: Order, arguments: list[str]) -> Report:
     answer_read, answer_write = os.pipe()
     go_read, go_write = os.pipe()
     report = Path(spec.environment["HOME"]) / "report.xml"
     command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(order.backwards)), str(report)]
     try:
-        process = launch([*command, *_arguments(spec.workdir, order)], spec, pass_fds=(answer_write, go_read))
+        process = launch([*command, *arguments], spec, pass_fds=(answer_write, go_read))
     finally:
         os.close(answer_write)
         os.close(go_read)

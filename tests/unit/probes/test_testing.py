@@ -213,6 +213,18 @@ def test_where_nobody_joins_nobody_is_heard(workspace: Workspace) -> None:
     assert not report.heard
 
 
+def test_tests_that_speak_of_launching_get_its_plugin_and_others_do_not(workspace: Workspace) -> None:
+    ask = "def test_it(pytestconfig):\n    assert {}pytestconfig.pluginmanager.has_plugin('lau' 'nch_pytest.plugin')\n"
+    write(workspace, ask.format("not "))
+    (plain,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, "# launch\n" + ask.format(""))
+    (speaking,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, ask.format(""))
+    write(workspace, "# launch\n", "conftest.py")
+    (shared,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert [plain.passed, speaking.passed, shared.passed] == [True, True, True]
+
+
 def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match=r"There is no folder src/other with a package\.xml"):
         take(workspace, "other")
