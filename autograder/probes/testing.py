@@ -8,8 +8,8 @@ Tests are programs of the student's. A run is in their power: what it reports is
 version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
 times and environment, and nothing that it can write to but a /tmp that dies with it. It sees its version and nothing of
 the others, the suites or earlier runs. See `versions` for how versions are kept alike. What remains is written there,
-too. Only a run that is overheard shares the grader's loopback, where nobody else is; it can tell, so its version is one
-that it knows to be right.
+too. Only a run that is overheard shares the grader's loopback, where nobody else is. It can tell itself from others by
+that, so what it is given has to be a right version.
 """
 
 from __future__ import annotations
