@@ -66,6 +66,11 @@ LOADED = """id => {
     const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
     return [...cell.node.querySelectorAll("img")].every(image => image.complete && image.naturalWidth > 0);
 }"""
+# Its pictures have a height now, and may have pushed it out of sight.
+CENTRE = """id => {
+    const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
+    (cell.node.querySelector("img") ?? cell.node).scrollIntoView({block: "center"});
+}"""
 FITS = """id => {
     const cell = window.jupyterapp.shell.currentWidget.content.widgets.find(cell => cell.model.id === id);
     const edge = cell.node.getBoundingClientRect().right + 1;
@@ -93,6 +98,7 @@ def photograph(page: Page, cell: str, path: Path) -> None:
     """Keep what a cell shows; all its pictures are there, and none is wider than the page."""
     page.evaluate(SCROLL, cell)
     page.wait_for_function(LOADED, arg=cell)
+    page.evaluate(CENTRE, cell)
     page.screenshot(path=path)
     assert page.evaluate(FITS, cell)
 
