@@ -16,7 +16,7 @@ from autograder.result import write_json
 from autograder.sandbox import Tier
 from autograder.suites.mutants import lay_down, lay_down_reference, mutants
 
-ASSIGNMENT = "02_nodes"
+ASSIGNMENT = "08_capstone"
 REFERENCE = "reference"
 
 
