@@ -99,8 +99,10 @@ class Bridge:
 
     def stop(self) -> None:
         """End the node and its thread. Safe to call twice."""
+        if self.running:  # between two callbacks: one that still publishes would trip over the end of its context
+            self._executor.create_task(self._context.try_shutdown)
+            self._thread.join(PATIENCE)
         self._context.try_shutdown()
-        self._thread.join(PATIENCE)
 
     def __enter__(self) -> Bridge:
         return self
