@@ -138,9 +138,9 @@ def _half_angle(system: System) -> None:
 def _silence_timeout(system: System) -> None:
     system.see(OPEN, 1.0)
     began = system.seconds
-    system.wait(1.1)
-    said = system.said(began + 0.6).reports
-    expect(bool(said) and said[-1].message.level == FAILED, "1.1 s after the last scan, health was not FAILED.")
+    system.wait(0.9)
+    said = system.said(began + 0.4).reports
+    expect(bool(said) and said[-1].message.level == FAILED, "0.9 s after the last scan, health was not FAILED.")
 
 
 _CASES: tuple[tuple[str, str, float, Callable[[System], None]], ...] = (
