@@ -1,7 +1,9 @@
-"""Mends the ROS wheels after pip: their CMake files name folders of the machine that built them.
+"""Mends the ROS wheels after pip, where they do not work as they are.
 
-The wheels' exported targets carry `/opt/python/cp3XX-cp3XX/...` for Python's and numpy's headers, so no message
-package compiles until they point at this interpreter. Each file is replaced atomically; mending twice changes nothing.
+Their CMake files name folders of the machine that built them: the exported targets carry `/opt/python/cp3XX-cp3XX/...`
+for Python's and numpy's headers, so no message package compiles until they point at this interpreter. And ament_flake8
+lets flake8 fork: beside tests that have used rclpy, whose threads a fork does not copy, the forked process may crash,
+and flake8 replaces it for ever. Each file is replaced atomically; mending twice changes nothing.
 """
 
 from __future__ import annotations
@@ -16,6 +18,9 @@ BAKED = "/opt/python/"
 _NUMPY = re.compile(r"/opt/python/cp\d+-cp\d+/lib/python3\.\d+/site-packages/numpy/_?core/include")
 _HEADERS = re.compile(r"/opt/python/cp\d+-cp\d+/include/python3\.\d+")
 _PREFIX = re.compile(r"/opt/python/cp\d+-cp\d+")
+
+FLAKE8_INI = Path("ament_flake8/configuration/ament_flake8.ini")
+ONE_PROCESS = "jobs = 1"
 
 STANDINS_PTH = "ros2_standins.pth"
 
@@ -46,23 +51,36 @@ def mend_wheels(prefix: Path) -> int:
             numpy_headers=numpy.get_include(),
             prefix=str(prefix),
         )
-        fresh = path.with_name(path.name + ".mended")
-        fresh.write_text(text)
-        fresh.replace(path)
+        _replace(path, text)
     return len(files)
+
+
+def mend_flake8(site_packages: Path) -> bool:
+    """Let flake8 check in one process; return whether that was to be changed."""
+    path = site_packages / FLAKE8_INI
+    if not path.is_file() or ONE_PROCESS in path.read_text():
+        return False
+    _replace(path, path.read_text().rstrip("\n") + f"\n{ONE_PROCESS}\n")
+    return True
 
 
 def link_standins(site_packages: Path) -> Path:
     """Put the stand-ins' folder at the end of `sys.path`, where anything real is found before them."""
     standins = Path(__file__).parent / "standins"
     pth = site_packages / STANDINS_PTH
-    fresh = pth.with_name(f".{pth.name}.{os.getpid()}")
-    fresh.write_text(f"{standins}\n")
-    fresh.replace(pth)
+    _replace(pth, f"{standins}\n")
     return pth
+
+
+def _replace(path: Path, text: str) -> None:
+    fresh = path.with_name(f".{path.name}.{os.getpid()}")
+    fresh.write_text(text)
+    fresh.replace(path)
 
 
 if __name__ == "__main__":
     count = mend_wheels(Path(sys.prefix))
-    link_standins(Path(sysconfig.get_paths()["purelib"]))
+    packages = Path(sysconfig.get_paths()["purelib"])
+    mend_flake8(packages)
+    link_standins(packages)
     print(f"mended {count} CMake files of the ROS wheels")

@@ -1,4 +1,4 @@
-"""The wheels' CMake files are mended once, whole, and to this interpreter's own folders."""
+"""The wheels' files are mended once and whole, CMake's to this interpreter's own folders."""
 
 from __future__ import annotations
 
@@ -74,3 +74,19 @@ def test_the_stand_ins_come_after_everything_real(tmp_path: Path) -> None:
     code = f"import site, sys; site.addsitedir({str(tmp_path)!r}); print(sys.path[-1])"
     done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == str(Path(mend.__file__).parent / "standins"), done.stderr
+
+
+def test_flake8_checks_in_one_process_and_is_mended_once(tmp_path: Path) -> None:
+    assert not mend.mend_flake8(tmp_path)
+    path = tmp_path / mend.FLAKE8_INI
+    path.parent.mkdir(parents=True)
+    path.write_text("[flake8]\nstatistics = true\n\n")
+    assert mend.mend_flake8(tmp_path)
+    assert not mend.mend_flake8(tmp_path)
+    assert path.read_text() == "[flake8]\nstatistics = true\njobs = 1\n"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_the_linter_of_this_environment_is_mended() -> None:
+    path = Path(sysconfig.get_paths()["purelib"]) / mend.FLAKE8_INI
+    assert not path.is_file() or mend.ONE_PROCESS in path.read_text()

@@ -12,7 +12,7 @@ from autograder.probes.junit import Claims, Verdict
 from autograder.probes.testing import Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
-from autograder.suites.ch06_testing.examination import BACKWARDS, HARD, SECOND, Examination
+from autograder.suites.ch06_testing.examination import BACKWARDS, SECOND, Examination
 from autograder.suites.ch06_testing.faults import faults
 from autograder.visible.ch06_testing.contract import LEAST, LIMITS
 from autograder.visible.ch06_testing.verdicts import expect_awake, expect_passed, fit, trouble
@@ -74,10 +74,10 @@ def test_a_sleep_is_named_by_file_and_line() -> None:
 @pytest.fixture
 def examination(tmp_path: Path) -> Examination:
     """An examination whose runs are given."""
-    made = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1)
+    made = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
     made.__dict__["trial"] = {LIMITS: ENOUGH}
     made.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
-        (LIMITS, what): ENOUGH for what in (SECOND, HARD)
+        (LIMITS, what): ENOUGH for what in (SECOND, BACKWARDS)
     }
     return made
 
@@ -111,8 +111,7 @@ def test_a_run_that_has_to_be_stopped_objects_and_is_endless(examination: Examin
 
 
 def test_a_difficulty_that_a_file_does_not_bear_is_named(examination: Examination) -> None:
-    examination.__dict__["runs"][LIMITS, HARD] = report(BAD)
-    examination.__dict__["_alone"] = {(LIMITS, BACKWARDS): report(BAD, message="secret")}
+    examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret")
     examination.expect_right(LIMITS, SECOND)
     with pytest.raises(CheckFailed, match=r"test_limits\.py fail when they run in the opposite") as failed:
         examination.expect_right(LIMITS, SECOND, BACKWARDS)
