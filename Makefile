@@ -9,7 +9,8 @@ BOOTSTRAP = $(PYTHON) -I autograder/bootstrap.py
 # `python -m autograder.ros COMMAND` runs a command with ROS switched on.
 WITH_ROS := $(BIN)/python -m autograder.ros
 
-WORKERS ?= 2
+# More than the two cores of a small machine: much of a test is waiting.
+WORKERS ?= 3
 PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
@@ -26,7 +27,7 @@ demo:           ## set up, grade the reference and flawed submissions, write .bu
 	@$(BOOTSTRAP)
 	@$(BIN)/autograder demo
 
-test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=2 PYTEST_ARGS=)
+test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=3 PYTEST_ARGS=)
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
