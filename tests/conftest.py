@@ -18,6 +18,7 @@ from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
+from autograder.sandbox.launcher import heed_interrupts
 
 # The same examples in each run: a test that fails now and then would be no gate. Looking further is a matter of hand:
 # pytest --hypothesis-profile=default
@@ -33,6 +34,7 @@ _DOMAINS = itertools.count(int(hashlib.sha256(_RUN.encode()).hexdigest(), 16) % 
 
 # Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
 activate(domain=next(_DOMAINS) % 101 + 1)
+heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -43,7 +45,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if item.get_closest_marker("slow") is not None:
             given = item.callspec.params if hasattr(item, "callspec") else {}
             chapter = given.get("assignment") or getattr(given.get("chapter"), "assignment", "")
-            group += f" {chapter}"
+            group += f" {chapter}" if chapter else ""
         item.add_marker(pytest.mark.xdist_group(group))
 
 

@@ -29,6 +29,7 @@ from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
+from autograder.sandbox.launcher import heed_interrupts
 from autograder.sandbox.tiers import Tier
 from autograder.suites import Suite
 
@@ -160,6 +161,7 @@ def main() -> None:
     """Grade the job that the command line holds."""
     job = Job.from_json(sys.argv[1])
     job.out.mkdir(parents=True, exist_ok=True)
+    heed_interrupts()
     activate()
     result = Grading(job, suites.load(job.assignment)).grade()
     write_json(job.out / RESULT, result.to_json())

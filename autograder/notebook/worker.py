@@ -19,7 +19,7 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.desk import ANSWER, RECORDING
 from autograder.result import write_json
 from autograder.ros import activate
-from autograder.sandbox.launcher import current_tier
+from autograder.sandbox.launcher import current_tier, heed_interrupts
 from autograder.sandbox.tiers import Tier
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ SEED = 1  # of the visible checks' inputs
 def main() -> None:
     """Run the errand that the command line holds."""
     errand = json.loads(sys.argv[1])
+    heed_interrupts()
     ros = activate()
     # Imported once ROS is switched on: these reach rclpy.
     from autograder.grading.observed import bring

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 
 from autograder.sandbox import bubblewrap
 from autograder.sandbox.process import Process
@@ -15,6 +16,16 @@ TIER_VARIABLE = "AUTOGRADER_TIER"
 def current_tier() -> Tier:
     """Return the tier of the cell that this process is in; `process` outside any cell."""
     return Tier(os.environ.get(TIER_VARIABLE, Tier.PROCESS.value))
+
+
+def heed_interrupts() -> None:
+    """Let what this process will start hear Ctrl-C; call it in the main thread.
+
+    A shell's background job ignores SIGINT, and all its descendants inherit that: the same node would end on Ctrl-C
+    when it is graded in the foreground, and not when it is graded in the background.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ()) -> Process:

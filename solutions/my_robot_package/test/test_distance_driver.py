@@ -66,11 +66,19 @@ def driver(world):
     driver = DistanceDriver(context=world.context)
     executor = MultiThreadedExecutor(context=world.context)
     executor.add_node(driver)
-    thread = threading.Thread(target=executor.spin)
+    over = threading.Event()
+
+    def spin():
+        """Look now and then whether the test is over: shutdown() can miss a thread that waits."""
+        while not over.is_set():
+            executor.spin_once(timeout_sec=0.1)
+
+    thread = threading.Thread(target=spin)
     thread.start()
     yield driver
-    executor.shutdown()
+    over.set()
     thread.join()
+    executor.shutdown()
     driver.destroy_node()
 
 

@@ -145,7 +145,10 @@ def main(args=None):
     node = None
     try:
         node = DistanceDriver()
-        rclpy.spin(node, executor=MultiThreadedExecutor())
+        executor = MultiThreadedExecutor()
+        executor.add_node(node)
+        while rclpy.ok():  # with several threads, a spin without end can miss a SIGTERM
+            executor.spin_once(timeout_sec=1.0)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except RuntimeError:

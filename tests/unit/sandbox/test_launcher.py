@@ -1,0 +1,24 @@
+"""What students' programs inherit from whoever starts them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+CHILD = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)"
+PARENT = f"""
+import subprocess, sys
+from autograder.sandbox.launcher import heed_interrupts
+if sys.argv[1] == "heed":
+    heed_interrupts()
+subprocess.run([sys.executable, "-c", {CHILD!r}], check=True)
+"""
+
+
+@pytest.mark.parametrize(("word", "ignores"), [("heed", "False"), ("leave", "True")])
+def test_a_program_hears_ctrl_c_although_its_grader_is_a_background_job(word: str, ignores: str) -> None:
+    command = ["sh", "-c", 'trap "" INT; exec "$@"', "sh", sys.executable, "-c", PARENT, word]
+    said = subprocess.run(command, text=True, capture_output=True, check=True)
+    assert said.stdout.strip() == ignores
