@@ -98,6 +98,9 @@ def isolation(system: System) -> Finding:
     inner = ["bwrap", "--unshare-user", "--unshare-pid", "--ro-bind", "/", "/", "--proc", "/proc"]
     single = system.run([*outer, "true"], {})
     nested = system.run([*outer, *inner, "true"], {}) if single.status == 0 else single
+    if nested.status == 0 and not system.bounded():
+        found = "root's processes can be bounded by control groups only, and none can be made: a fork bomb stops it all"
+        return Finding("isolation", Status.WEAK, found, "adduser grader && su grader")
     if nested.status == 0:
         return Finding("isolation", Status.OK, "bubblewrap makes namespaces, one inside the other")
     which = "one namespace inside another" if single.status == 0 else "namespaces"

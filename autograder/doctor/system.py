@@ -16,6 +16,7 @@ from pathlib import Path
 
 from autograder.ros import RosEnvironment, find
 from autograder.ros.mend import baked_files
+from autograder.sandbox import cgroup
 
 PATIENCE_SECONDS = 60.0
 
@@ -53,6 +54,7 @@ class System:
         writable: whether a file can be made in a folder, or the folder itself be made.
         package: an installed distribution's version, or None.
         find_ros: finds ROS 2, or raises `RosError`.
+        bounded: whether the kernel bounds how many processes a sandbox of this user has.
         baked: how many of the wheels' CMake files under a prefix still name the build machine.
     """
 
@@ -70,6 +72,7 @@ class System:
     writable: Callable[[Path], bool]
     package: Callable[[str], str | None]
     find_ros: Callable[[], RosEnvironment]
+    bounded: Callable[[], bool]
     baked: Callable[[Path], int]
 
 
@@ -90,6 +93,7 @@ def this_system() -> System:
         writable=_writable,
         package=_package,
         find_ros=find,
+        bounded=cgroup.bounded,
         baked=lambda prefix: len(baked_files(prefix)),
     )
 

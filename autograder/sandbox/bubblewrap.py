@@ -22,7 +22,7 @@ def rlimits(limits: Limits) -> list[str]:
         "prlimit",
         f"--cpu={limits.cpu_seconds}:{limits.cpu_seconds + 5}",
         f"--as={limits.address_space}",
-        f"--nproc={limits.threads * 4}",
+        f"--nproc={limits.tasks}",
         f"--fsize={limits.file_size}",
         f"--nofile={limits.open_files}",
         "--core=0",

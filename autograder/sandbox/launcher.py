@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
-from autograder.sandbox import bubblewrap
+from autograder.sandbox import bubblewrap, cgroup
 from autograder.sandbox.process import Process
 from autograder.sandbox.spec import Sandbox
 from autograder.sandbox.tiers import Tier
@@ -30,18 +30,18 @@ def heed_interrupts() -> None:
 
 def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ()) -> Process:
     """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can."""
-    if current_tier() is Tier.BUBBLEWRAP:
-        return Process(
-            bubblewrap.sandbox(command, spec),
-            spec.limits,
-            environment={"PATH": os.defpath},
-            pass_fds=pass_fds,
-            contained=True,
-        )
+    group = cgroup.make(spec.limits.tasks)
+    contained = current_tier() is Tier.BUBBLEWRAP
+    if contained:
+        command = bubblewrap.sandbox(command, spec)
+    else:
+        command = [*bubblewrap.rlimits(spec.limits), *command]
     return Process(
-        [*bubblewrap.rlimits(spec.limits), *command],
+        group.enter(command) if group else command,
         spec.limits,
-        environment={"PATH": os.defpath, **spec.environment},
+        environment={"PATH": os.defpath, **({} if contained else spec.environment)},
         pass_fds=pass_fds,
-        cwd=spec.workdir,
+        cwd=None if contained else spec.workdir,
+        contained=contained,
+        at_end=group.close if group else None,
     )

@@ -34,6 +34,11 @@ class Limits:
     output: int = 1 * MIB
     scratch: int = 64 * MIB
 
+    @property
+    def tasks(self) -> int:
+        """Where the kernel refuses one more: well above `threads`, so that going over those is seen and said."""
+        return self.threads * 4
+
 
 NODE = Limits()
 BUILD = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)

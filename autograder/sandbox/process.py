@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -81,6 +81,7 @@ class Process:
         pass_fds: descriptors that it inherits, beside its standard streams.
         cwd: its working folder; the present one when not given.
         contained: the end of the outermost process takes the whole tree with it, as in a pid namespace.
+        at_end: is called once, after its end; leaving the block waits for it.
     """
 
     def __init__(
@@ -92,7 +93,9 @@ class Process:
         pass_fds: tuple[int, ...] = (),
         cwd: Path | None = None,
         contained: bool = False,
+        at_end: Callable[[], None] | None = None,
     ) -> None:
+        self._at_end = at_end
         self._contained = contained
         self._limits = limits
         self._output = bytearray()
@@ -211,6 +214,8 @@ class Process:
         self._popen.wait()
         self._ending = self._ending or Ending.EXITED
         self._ended.set()
+        if self._at_end is not None:
+            self._at_end()
 
     def _wait_for_exit(self, timeout: float) -> None:
         try:

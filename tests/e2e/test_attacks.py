@@ -12,6 +12,7 @@ from autograder.grading import Graded, grade_submission
 from autograder.grading.hygiene import grade_id
 from autograder.proof.attacks import ASSIGNMENT, Attack, attacks
 from autograder.proof.malice import CANARY
+from autograder.sandbox import cgroup
 
 ATTACKS = attacks(ASSIGNMENT)
 
@@ -45,6 +46,8 @@ def _grade(attack: Attack, folder: Path) -> Graded:
 def test_an_attack_gains_no_point_and_learns_nothing(
     attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    if attack.id == "fork bomb" and not cgroup.bounded():
+        pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     graded = _grade(attack, tmp_path)
     result = graded.result

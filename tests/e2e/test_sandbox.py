@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.sandbox import Ending, Limits, Mount, Sandbox
+from autograder.sandbox import Ending, Limits, Mount, Sandbox, cgroup
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import GIB, MIB
 from tests.e2e.cell_support import in_cell
@@ -157,6 +157,7 @@ def test_a_node_reaches_the_cell_s_loopback_and_a_build_does_not() -> None:
     assert in_cell(meets, code) == {"True": True, "False": False}
 
 
+BOUNDED = pytest.mark.skipif(not cgroup.bounded(), reason="root without control groups: a fork bomb stops the machine")
 ENDLESS = "import signal\nwhile True: signal.pause()"
 
 
@@ -167,6 +168,7 @@ ENDLESS = "import signal\nwhile True: signal.pause()"
             "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass",
             {"memory": 4 * GIB},
             Ending.THREADS,
+            marks=BOUNDED,
             id="fork bomb",
         ),
         pytest.param(
@@ -254,6 +256,20 @@ def killed(scratch: Path) -> list[str]:
     print(f"answer: {os.getpid()}", flush=True)
     os.kill(os.getpid(), signal.SIGKILL)
     return []
+
+
+def group_of(scratch: Path) -> str:
+    """Return the control groups of a sandboxed program, as the machine names them."""
+    spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
+    with launch([sys.executable, "-I", "-c", "print('up', flush=True)\n" + ENDLESS], spec) as process:
+        _until(lambda: "up" in process.output)
+        return Path(f"/proc/{process.innermost()}/cgroup").read_text()
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="prlimit bounds everybody but root")
+@BOUNDED
+def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
+    assert "/autograder-" in in_cell(group_of)
 
 
 def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:

@@ -51,6 +51,7 @@ GOOD = System(
     writable=lambda path: True,
     package=lambda name: "1.2",
     find_ros=lambda: WHEELS,
+    bounded=lambda: True,
     baked=lambda prefix: 0,
 )
 
@@ -387,3 +388,10 @@ def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> No
     told = " ".join(done.stdout.split())
     assert "a node does not start: ImportError: half an installation" in told
     assert "the wheels are installed as well" in told
+
+
+def test_a_root_whose_processes_nothing_bounds_is_told_to_be_somebody_else() -> None:
+    found = finding("isolation", bounded=lambda: False)
+    assert found.status is Status.WEAK
+    assert "a fork bomb stops it all" in found.found
+    assert found.mend == "adduser grader && su grader"
