@@ -32,10 +32,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ())
     """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can."""
     group = cgroup.make(spec.limits.tasks)
     contained = current_tier() is Tier.BUBBLEWRAP
-    if contained:
-        command = bubblewrap.sandbox(command, spec)
-    else:
-        command = [*bubblewrap.rlimits(spec.limits), *command]
+    command = bubblewrap.sandbox(command, spec) if contained else [*bubblewrap.rlimits(spec.limits), *command]
     return Process(
         group.enter(command) if group else command,
         spec.limits,
