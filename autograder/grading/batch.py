@@ -61,6 +61,7 @@ def grade_all(
     jobs: int,
     isolation: Tier = Tier.BUBBLEWRAP,
     resume: bool = False,
+    pictures: bool = True,
     on_result: Callable[[Result], None] = lambda result: None,
 ) -> tuple[Result, ...]:
     """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
@@ -73,6 +74,7 @@ def grade_all(
         jobs: how many are graded at once; the results do not depend on it.
         isolation: the sandbox's tier.
         resume: keep a stored result whose submission, suite, seed and isolation are the same.
+        pictures: whether checks leave pictures.
         on_result: called for each result as it comes, in any order.
 
     Returns:
@@ -92,6 +94,7 @@ def grade_all(
             out=out / entry.student,
             isolation=isolation,
             only=entry.only,
+            pictures=pictures,
         )
         return graded.result
 

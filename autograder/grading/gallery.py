@@ -13,10 +13,11 @@ DPI = 96
 
 @dataclass(frozen=True)
 class Gallery:
-    """Saves what a check wants to show. Frozen but for the shared list of what was saved."""
+    """Saves what a check wants to show, or nothing if closed. Frozen but for the shared list of what was saved."""
 
     folder: Path
     check: str = ""
+    closed: bool = False
     artifacts: list[Artifact] = field(default_factory=list)
 
     def of(self, check: str) -> Gallery:
@@ -35,6 +36,8 @@ class Gallery:
             mark: the instant to point out, in seconds.
             note: what happened then.
         """
+        if self.closed:
+            return
         import sim.view  # matplotlib is slow to import, and most checks have no picture
 
         stem = f"{self.check}-{name}"

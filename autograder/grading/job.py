@@ -22,6 +22,7 @@ class Job:
         scratch: the cell's own file system; nothing in it outlives the cell.
         tier: how the submission is isolated.
         only: the checks to run, for the proof; all of them when empty.
+        pictures: whether checks leave pictures; the proof looks at none.
     """
 
     path: Path
@@ -32,6 +33,7 @@ class Job:
     scratch: Path
     tier: Tier
     only: tuple[str, ...] = ()
+    pictures: bool = True
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

@@ -46,6 +46,7 @@ def grade_submission(
     out: Path,
     isolation: Tier = Tier.BUBBLEWRAP,
     only: tuple[str, ...] = (),
+    pictures: bool = True,
 ) -> Graded:
     """Grade one submission.
 
@@ -57,6 +58,7 @@ def grade_submission(
         out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed.
         isolation: the sandbox's tier.
         only: the checks to run, for the proof, where the others' points don't matter; all of them when empty.
+        pictures: whether checks leave pictures.
 
     Returns:
         The result. `status` is `not_graded` when the grader failed twice; that is no zero.
@@ -76,7 +78,7 @@ def grade_submission(
     for _ in range(TRIES):
         report = run_in_cell(
             lambda scratch: _worker(
-                Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, only)
+                Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, only, pictures)
             ),
             isolation,
         )

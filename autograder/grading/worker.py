@@ -50,7 +50,7 @@ class Grading:
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.tier is Tier.BUBBLEWRAP else 1 + os.getpid() % 100
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
-        self._gallery = Gallery(job.out)
+        self._gallery = Gallery(job.out, closed=not job.pictures)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
         self._build: Build | None = None

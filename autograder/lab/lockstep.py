@@ -7,7 +7,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from types import TracebackType
 from typing import Any
@@ -46,6 +46,10 @@ class Player:
         return self.description
 
 
+class _Spared(Exception):
+    """A program that may fail has failed, and the lab no longer has it."""
+
+
 class LockstepLab(Lab):
     """Programs that are stepped through ROS time: faster than real time, and the same every time.
 
@@ -55,8 +59,10 @@ class LockstepLab(Lab):
 
     Attributes:
         notes: why steps are not all that moves the programs, if so: thread, clock or sleep.
+        spared: executables that may fail: the others live on without them.
     """
 
+    spared: frozenset[str] = frozenset()
     _players: Sequence[Player] = ()
 
     def _start(self) -> None:
@@ -68,7 +74,7 @@ class LockstepLab(Lab):
             stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
             self._players = [*self._players, Player(program, stepper)]
         for player in self._players:
-            with self._naming(player):
+            with suppress(_Spared), self._judging(player):
                 player.stepper.wait_ready()
 
     def __exit__(
@@ -81,6 +87,11 @@ class LockstepLab(Lab):
     @property
     def processes(self) -> tuple[Process, ...]:
         return tuple(player.stepper.process for player in self._players)
+
+    @property
+    def running(self) -> frozenset[str]:
+        """The executables that the lab has not lost."""
+        return frozenset(player.program.executable for player in self._players)
 
     @property
     def now_ns(self) -> int:
@@ -151,10 +162,15 @@ class LockstepLab(Lab):
 
     def _turn(self, player: Player, instants: list[int]) -> None:
         """Let one program live through instants, and deliver what it sends."""
+        if player not in self._players:
+            return
         self._post(self._station.sent)
         mail, player.mail = player.mail, Counter()
-        with self._naming(player):
-            reply = player.stepper.step(instants, mail)
+        try:
+            with self._judging(player):
+                reply = player.stepper.step(instants, mail)
+        except _Spared:
+            return
         player.wake = reply.wake
         for reason in reply.notes:
             if reason not in self.notes:
@@ -204,12 +220,17 @@ class LockstepLab(Lab):
     # Meeting.
 
     def _meet(self) -> None:
+        while True:
+            with suppress(_Spared):
+                return self._meet_all()
+
+    def _meet_all(self) -> None:
         super()._meet()
         descriptions = [player.description for player in self._players]
         for player in self._players:
             others = [description for description in descriptions if description is not player.description]
             early = _sum(description.early for description in others)
-            with self._naming(player):
+            with self._judging(player):
                 player.stepper.meet(
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
@@ -222,7 +243,7 @@ class LockstepLab(Lab):
         self._collect()
 
     def _topics(self) -> tuple[set[str], set[str]]:
-        descriptions = [player.describe() for player in self._players]
+        descriptions = self._describe()
         self.tick_ns = max(FINEST_TICK_NS, math.gcd(self.tick_ns, *(p for d in descriptions for p in d.timers)))
         subscribed = {channels.topic_of(name[0]) for d in descriptions for name, _ in d.readers if name}
         published = {channels.topic_of(name) for d in descriptions for name, _ in d.writers}
@@ -233,7 +254,14 @@ class LockstepLab(Lab):
         return subscribed, published
 
     def _connected(self) -> bool:
-        return connected([player.describe() for player in self._players], self._station)
+        return connected(self._describe(), self._station)
+
+    def _describe(self) -> list[Description]:
+        found = []
+        for player in self._players:
+            with self._judging(player):
+                found.append(player.describe())
+        return found
 
     def _reach(self, client: Any, seconds: float) -> bool:
         def there() -> bool:
@@ -246,11 +274,15 @@ class LockstepLab(Lab):
         return True
 
     @contextmanager
-    def _naming(self, player: Player) -> Iterator[None]:
-        """Say which of several programs it is that failed."""
+    def _judging(self, player: Player) -> Iterator[None]:
+        """Go on without a program that failed and may; of others say which of several it was."""
         try:
             yield
         except StudentError as error:
+            if player.program.executable in self.spared:
+                self._players = [other for other in self._players if other is not player]
+                player.stepper.__exit__(None, None, None)
+                raise _Spared from None
             if len(self._players) == 1 or isinstance(error, UnsteppableError):
                 raise
             sentence = f"{player.program.executable}: {error.diagnosis.sentence}"

@@ -179,6 +179,10 @@ class Lab(ABC):
         first = bisect_right(received, since, key=_seconds)
         return received[first : bisect_right(received, until, first, key=_seconds)]
 
+    def rate(self, topic: str, since: float) -> float:
+        """Return how many messages a second came on `topic` after `since`, in ROS time, until now."""
+        return len(self.messages(topic, since=since)) / (self.seconds - since)
+
     def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
         """Call a service of the student's; the programs live on, at most `seconds` of ROS time.
 

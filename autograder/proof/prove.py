@@ -39,7 +39,14 @@ def prove(
     with tempfile.TemporaryDirectory(prefix="proof-") as name:
         entries = tuple(Entry(case.name, _written(case, Path(name) / case.name), case.only) for case in cases)
         results = grade_all(
-            entries, assignment, seed=seed, out=out, jobs=jobs, isolation=isolation, on_result=on_result
+            entries,
+            assignment,
+            seed=seed,
+            out=out,
+            jobs=jobs,
+            isolation=isolation,
+            pictures=False,
+            on_result=on_result,
         )
     return tuple(
         Claim(assignment, case.kind, case.name, result, case.judge(result), case.reason)

@@ -27,7 +27,7 @@ def test_ten_hertz(robot: Robot) -> None:
             robot.see(scan(), 2.0)
         else:
             robot.left_alone(2.0)
-        rate = len(robot.messages("/cmd_vel", since=began)) / 2.0
+        rate = robot.rate("/cmd_vel", since=began)
         expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second {situation}, instead of 10.")
 
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
+from autograder.checks import expect
 from autograder.lab.meeting import NAME
-from autograder.visible.ch08_capstone.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR, PROGRAMS
+from autograder.visible.ch08_capstone.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
 _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"
@@ -38,18 +39,19 @@ ENDPOINTS = (
 )
 
 
-def say_missing(node: Node) -> list[str]:
-    """Say for each node and endpoint that is not there what is there instead; nothing when all are.
+def expect_ends(graph: Node, name: str) -> None:
+    """Fail the check unless a node is there under its name, with all its ends; say what is there instead.
 
     Args:
-        node: the grader's node, which sees the graph.
+        graph: the grader's node, which sees the graph.
+        name: the node's.
     """
-    there = [found for found in node.get_node_names_and_namespaces() if found[0] != NAME]
-    absent = [name for name in PROGRAMS if (name, "/") not in there]
-    others = ", ".join(f"{space.rstrip('/')}/{name}" for name, space in there) or "none"
-    missing = [f"No node is called /{name}; there is: {others}." for name in absent]
-    wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node not in absent]
-    return missing + [said for endpoint in wanted if (said := _say(node, endpoint))]
+    there = [found for found in graph.get_node_names_and_namespaces() if found[0] != NAME]
+    others = ", ".join(f"{space.rstrip('/')}/{other}" for other, space in there) or "none"
+    expect((name, "/") in there, f"No node is called /{name}; there is: {others}.")
+    wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
+    missing = [said for endpoint in wanted if (said := _say(graph, endpoint))]
+    expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(wanted)), 2))
 
 
 def _say(node: Node, wanted: Endpoint) -> str:

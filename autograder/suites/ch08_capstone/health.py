@@ -19,7 +19,7 @@ DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 @check(
     points=3,
     group=GROUP,
-    depends=("endpoints",),
+    depends=("processor", "controller", "monitor"),
     hints=(
         "A topic that was never heard is silent, too: start with None for each.",
         "FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.",

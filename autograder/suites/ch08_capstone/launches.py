@@ -25,7 +25,8 @@ from autograder.visible.ch08_capstone.contract import (
 )
 
 GROUP = "step_4"
-STARTS = ("executables", "shares", "interface_package")
+SHARED = ("shares", "interface_package")
+STARTS = ("executables", *SHARED)
 OTHER_CONFIG = "config/of_another_robot.yaml"
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
@@ -59,7 +60,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
 @check(
     points=1,
     group=GROUP,
-    depends=STARTS,
+    depends=SHARED,
     hints=(
         "ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.",
         "DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.",

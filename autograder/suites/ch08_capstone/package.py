@@ -68,17 +68,31 @@ def test_dependencies(workspace: Workspace) -> None:
 
 
 @check(
-    points=2,
+    points=1,
     group=GROUP,
+    hints=(
+        "Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.",
+        "setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_build(builds: Mapping[str, Diagnosis]) -> None:
+    """Colcon builds the package of the nodes."""
+    require_built(builds, PACKAGE)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("build",),
     hints=(
         "entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}",
         "install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.",
     ),
     doc=contract.PACKAGES_DOC,
 )
-def test_executables(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """Colcon builds the package of the nodes and installs its three executables where ros2 run looks."""
-    require_built(builds, PACKAGE)
+def test_executables(workspace: Workspace) -> None:
+    """The build installs the package's three executables where ros2 run looks."""
     found = look(workspace.install, PACKAGE)
     absent = [name for name in PROGRAMS if name not in found.executables]
     there = ", ".join(found.executables) or "none"
@@ -93,7 +107,7 @@ def test_executables(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> N
 @check(
     points=1,
     group=GROUP,
-    depends=("executables",),
+    depends=("build",),
     hints=(
         "data_files holds pairs: a folder below share/, and the files that go there.",
         "('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.",
@@ -111,7 +125,7 @@ def test_shares(workspace: Workspace) -> None:
 @check(
     points=1,
     group=GROUP,
-    depends=("manifests", "executables"),
+    depends=("manifests", "build"),
     hints=("Copy the four from one file to the other, to the letter.",),
     doc=contract.PACKAGES_DOC,
 )

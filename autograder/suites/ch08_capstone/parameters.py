@@ -27,7 +27,7 @@ GROUP = "step_5"
 @check(
     points=2,
     group=GROUP,
-    depends=("endpoints",),
+    depends=("processor", "controller", "monitor"),
     hints=(
         "ros2 param list /navigation_controller shows what a node declares.",
         "declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...'): name and default as in the table.",

@@ -26,7 +26,7 @@ def tested(workspace: Workspace) -> Report:
 @check(
     points=2,
     group=GROUP,
-    depends=("executables", "interface_package"),
+    depends=("build", "interface_package"),
     hints=(
         "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
         "test_flake8.py, test_pep257.py and test_integration.py are in test/, too.",

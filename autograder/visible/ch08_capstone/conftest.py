@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
 
 import pytest
 
 from autograder.lab import Workspace
+from autograder.visible.ch08_capstone.contract import PROGRAMS
 from autograder.visible.ch08_capstone.messages import load_messages, types
 from autograder.visible.ch08_capstone.system import System
 
@@ -21,12 +22,13 @@ class Stable:
         self._stack = ExitStack()
         self._system: System | None = None
 
-    def system(self) -> System:
-        """Return a system that runs."""
-        if self._system is None or not self._system.alive:
+    def system(self, *needed: str) -> System:
+        """Return a system in which these programs run; that others fail is no matter then."""
+        if self._system is None or not self._system.serves(needed):
             self.close()
-            system = System(self._workspace, types(load_messages(self._workspace)))
+            system = System(self._workspace, types(load_messages(self._workspace)), needed)
             self._system = self._stack.enter_context(system)
+        self._system.need(needed)
         return self._system
 
     def close(self) -> None:
@@ -43,16 +45,10 @@ def stable(workspace: Workspace) -> Iterator[Stable]:
     place.close()
 
 
-@pytest.fixture(scope="session")
-def running(stable: Stable) -> Callable[[], System]:
-    """Return a running system each time it is called, the same one as long as its programs live."""
-    return stable.system
-
-
 @pytest.fixture
 def system(stable: Stable) -> System:
     """The system, which has seen other scans before; each check shows it an open space first, if that matters."""
-    return stable.system()
+    return stable.system(*PROGRAMS)
 
 
 @pytest.fixture

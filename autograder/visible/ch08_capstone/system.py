@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,7 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
 from autograder.lab import LockstepLab, Program, Stamped, Workspace
+from autograder.probes.installed import look
 from autograder.probes.parameters import NodeParameters
 from autograder.visible.ch02_nodes.robot import say
 from autograder.visible.ch08_capstone.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
@@ -35,18 +36,25 @@ class Said:
 class System:
     """The three programs, stepped together; a scan, its clearance and the command that follows belong to one step.
 
+    Args:
+        workspace: where they are installed.
+        types: of the student's messages.
+        needed: those without which it is of no use; the others may be missing, or fail.
+
     Attributes:
         lab: where they run.
         first: what they said before the first scan.
     """
 
-    def __init__(self, workspace: Workspace, types: Types) -> None:
+    def __init__(self, workspace: Workspace, types: Types, needed: Collection[str] = PROGRAMS) -> None:
+        there = [name for name in PROGRAMS if name in needed or _is_installed(workspace, name)]
         self.lab = LockstepLab(
             workspace,
-            programs=tuple(Program(PACKAGE, name) for name in PROGRAMS),
+            programs=tuple(Program(PACKAGE, name) for name in there),
             offers={"/scan": LaserScan},
             listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
         )
+        self.need(needed)
 
     def __enter__(self) -> System:
         self.lab.__enter__()
@@ -60,10 +68,13 @@ class System:
     def __exit__(self, *ending: object) -> None:
         self.lab.__exit__(None, None, None)
 
-    @property
-    def alive(self) -> bool:
-        """Whether no program has ended."""
-        return all(process.ending is None for process in self.lab.processes)
+    def need(self, needed: Collection[str]) -> None:
+        """Say without which programs it is of no use from now on."""
+        self.lab.spared = frozenset(PROGRAMS) - frozenset(needed)
+
+    def serves(self, needed: Collection[str]) -> bool:
+        """Return whether these programs are there, and none of all has ended."""
+        return self.lab.running.issuperset(needed) and all(process.ending is None for process in self.lab.processes)
 
     @property
     def seconds(self) -> float:
@@ -164,6 +175,10 @@ def report_in_words(report: Any) -> str:
     level = LEVELS[report.level] if 0 <= report.level < len(LEVELS) else str(report.level)
     silent = ", ".join(str(topic)[:40] for topic in list(report.silent)[:5]) or "none"
     return f"level {level}, silent: {silent}"
+
+
+def _is_installed(workspace: Workspace, program: str) -> bool:
+    return program in look(workspace.install, PACKAGE).executables
 
 
 def _near(value: float, wanted: float) -> bool:
