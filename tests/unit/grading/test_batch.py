@@ -81,7 +81,16 @@ class Grader:
         self._meeting = threading.Barrier(together)
 
     def __call__(
-        self, path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: object, only: object
+        self,
+        path: Path,
+        assignment: str,
+        *,
+        student: str,
+        seed: int,
+        out: Path,
+        isolation: object,
+        only: object,
+        pictures: bool,
     ) -> Graded:
         self._meeting.wait(60)
         self.graded.append(student)

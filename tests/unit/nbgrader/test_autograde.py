@@ -38,7 +38,15 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
     seen: list[tuple[Any, ...]] = []
 
     def grade(
-        path: Path, assignment: str, *, student: str, seed: int, out: Path, isolation: str, only: tuple[str, ...] = ()
+        path: Path,
+        assignment: str,
+        *,
+        student: str,
+        seed: int,
+        out: Path,
+        isolation: str,
+        only: tuple[str, ...] = (),
+        pictures: bool = True,
     ) -> Graded:
         seen.append((path, assignment, student, seed, out, isolation))
         return verdict()
