@@ -398,3 +398,64 @@ def test_of_several_programs_the_one_that_crashes_is_named() -> None:
     kind, sentence = in_cell(failing, texts, False)
     assert kind == "crashed_at_import"
     assert sentence.startswith("broken: Your module could not be imported: ValueError: no lidar")
+
+
+def sparing(scratch: Path, text: str) -> Any:
+    from std_srvs.srv import Trigger
+
+    from autograder.exceptions import StudentError
+
+    workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
+
+    def run() -> Any:
+        lab = open_lab(workspace, "server", "spared", "map")
+        lab.spared = frozenset({"spared"})
+        with lab:
+            lab.run(0.5)
+            answer = lab.call(Trigger, "/ask", Trigger.Request()).message
+            running = sorted(lab.running)
+            lab.spared = frozenset()
+            try:
+                lab.run(0.5)
+            except StudentError as error:
+                return [answer, running, error.diagnosis.sentence]
+            return [answer, running, ""]
+
+    return twice(run)
+
+
+CRASHING = """
+class Listener(Speaker):
+    def __init__(self):
+        super().__init__('listener')
+        self.create_subscription(String, 'map', self.read, LATCHED)
+        self.create_timer({period}, self.fall)
+
+    def read(self, message):
+        {reading}
+
+    def fall(self):
+        raise ValueError('out of range')
+
+spin(Listener)
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "raise ValueError('no lidar')",
+        CRASHING.format(period=60.0, reading="raise ValueError('no map')"),
+        CRASHING.format(period=0.2, reading="pass"),
+    ],
+    ids=["at the start", "at a message", "at a timer"],
+)
+def test_the_others_live_on_without_a_program_that_may_fail(text: str) -> None:
+    assert in_cell(sparing, text) == ["1", ["map", "server"], ""]
+
+
+def test_a_program_that_may_fail_and_does_not_takes_part_until_it_must_not() -> None:
+    answer, running, sentence = in_cell(sparing, CRASHING.format(period=0.7, reading="pass"))
+    assert (answer, running) == ("1", ["map", "server", "spared"])
+    assert sentence.startswith("spared: ")
+    assert "out of range" in sentence
