@@ -1,4 +1,4 @@
-"""What grading the capstone costs: core-seconds of one grading of the reference, all processes counted, caches warm."""
+"""What grading the capstone costs: core-seconds of one grading of the reference, caches warm, on an idle machine."""
 
 from __future__ import annotations
 
@@ -31,6 +31,6 @@ def _grade(folder: Path, name: str) -> None:
 
 
 def _spent() -> float:
-    """Return the processor time of this process and of all that it has waited for, in seconds."""
-    spent = os.times()
-    return spent.user + spent.system + spent.children_user + spent.children_system
+    """Return the processor time of the whole machine, in seconds: nobody waits for what is killed in a sandbox."""
+    user, nice, system, _, _, irq, softirq = map(int, Path("/proc/stat").read_text().split()[1:8])
+    return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
