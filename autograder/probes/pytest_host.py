@@ -5,16 +5,25 @@
 When pytest has ended, its exit status and its report, a file of JUnit XML, go to ANSWER_FD; the process then waits for
 the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears for their
 claim.
+
+Many such runs are made for one submission, most of them short. A third of one's time went into looking for garbage
+among pytest's own modules, while they were loaded and when the interpreter took everything down again: neither is done.
 """
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import sys
 from pathlib import Path
 
-import pytest
+gc.disable()
+
+import pytest  # noqa: E402
+
+gc.freeze()
+gc.enable()
 
 
 class Reversed:
@@ -26,8 +35,14 @@ class Reversed:
         items.reverse()
 
 
-def main() -> int:
+def leave() -> None:
+    """End the process at the end of its exit functions: threads have been waited for, only its modules are left."""
+    os._exit(0)
+
+
+def main() -> None:
     """Run pytest with the arguments of the command line."""
+    atexit.register(leave)  # first of all, so that it is called last
     answer, go, backwards = (int(argument) for argument in sys.argv[1:4])
     report = Path(sys.argv[4])
     arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]
@@ -38,9 +53,8 @@ def main() -> int:
     with os.fdopen(answer, "wb") as stream:
         stream.write(b"%d %d\n%b" % (status, len(text), text))
     os.read(go, 1)
-    return status
 
 
 if __name__ == "__main__":
     sys.path.pop(0)  # this file's folder is none of the tests' business
-    sys.exit(main())
+    main()

@@ -147,6 +147,25 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
     assert not report.passed
 
 
+def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        testing.sandboxed, "__kwdefaults__", {"limits": replace(testing.LIMITS, wall_seconds=4.0), "network": False}
+    )
+    text = (
+        "import threading\n\n\ndef test_it():\n    threading.Thread(target=threading.Event().wait, daemon={}).start()\n"
+    )
+    write(workspace, text.format(True))
+    (short,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    write(workspace, text.format(False))
+    (endless,) = runs(workspace, Order(("test_half.py",), RIGHT))
+    assert short.ending is Ending.EXITED
+    assert endless.ending is Ending.WALL_TIME
+    assert short.passed
+    assert endless.passed
+
+
 def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
     write(
         workspace,
