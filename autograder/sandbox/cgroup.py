@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
+import signal
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,14 +34,20 @@ class ControlGroup:
         return ["sh", "-c", 'echo $$ > "$0"/cgroup.procs && exec "$@"', str(self.folder), *command]
 
     def close(self) -> None:
-        """Remove the group once its last process is gone; one that is not within 5 s is left to a later `make`."""
+        """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""
         deadline = time.monotonic() + _PATIENCE
+        with contextlib.suppress(OSError):
+            (self.folder / "pids.max").write_text("0")  # who is about to die has no more children
         while True:
             try:
                 return self.folder.rmdir()
             except OSError:
                 if time.monotonic() > deadline:
                     return None
+            for pid in map(int, _read(str(self.folder / "cgroup.procs")).split()):
+                with contextlib.suppress(OSError):
+                    if pid > 0:  # 0 is one of another pid namespace, and to kill() the caller's whole group
+                        os.kill(pid, signal.SIGKILL)
             time.sleep(_TICK)
 
 

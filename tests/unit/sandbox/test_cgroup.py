@@ -65,10 +65,15 @@ def test_the_kernel_refuses_one_process_too_many_and_nothing_stays(tmp_path: Pat
     done = subprocess.run(group.enter(["sh", "-c", script]), capture_output=True, text=True, timeout=20, check=False)
     assert "all of them" not in done.stdout
     assert "fork" in done.stderr.lower()
-    for pid in (group.folder / "cgroup.procs").read_text().split():
-        os.kill(int(pid), 9)
+    left = (group.folder / "cgroup.procs").read_text().split()
+    assert left
     group.close()
     assert not group.folder.exists()
+    assert not [pid for pid in left if Path(f"/proc/{pid}/cmdline").is_file() and _runs(pid)]
+
+
+def _runs(pid: str) -> bool:
+    return b"sleep" in Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 @NEEDED
