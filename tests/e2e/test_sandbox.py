@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.sandbox import Ending, Limits, Mount, Sandbox, cgroup
+from autograder.sandbox import Ending, Limits, Mount, Sandbox, Tier, cgroup
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import GIB, MIB
 from tests.e2e.cell_support import in_cell
@@ -270,6 +270,27 @@ def group_of(scratch: Path) -> str:
 @BOUNDED
 def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
     assert "/autograder-" in in_cell(group_of)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
+@BOUNDED
+def test_not_even_the_weak_tier_leaves_root_a_fork_bomb() -> None:
+    code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
+    before = _bombs(code)
+    answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, tier=Tier.PROCESS)
+    assert answer["ending"] == Ending.THREADS.value
+    assert _bombs(code) <= before
+
+
+def _bombs(code: str) -> set[int]:
+    found = set()
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if code.encode() in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
+                found.add(int(pid))
+        except OSError:
+            continue
+    return found
 
 
 def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:
