@@ -34,19 +34,19 @@ ENDS = (
 
 @check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
 def test_processor(stable: Stable) -> None:
-    """Sensor_processor has its name, and its topics with their types."""
+    """The node sensor_processor has its name, and its topics with their types."""
     expect_ends(stable.system(PROCESSOR).lab.node, PROCESSOR)
 
 
 @check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
 def test_controller(stable: Stable) -> None:
-    """Navigation_controller has its name, and its topics and its service with their types."""
+    """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_ends(stable.system(CONTROLLER).lab.node, CONTROLLER)
 
 
 @check(points=1, group=GROUP, depends=(*BUILT, "health_message"), hints=ENDS, doc=contract.NODES_DOC)
 def test_monitor(stable: Stable) -> None:
-    """Status_monitor has its name, and its topics with their types."""
+    """The node status_monitor has its name, and its topics with their types."""
     expect_ends(stable.system(MONITOR).lab.node, MONITOR)
 
 
