@@ -24,9 +24,9 @@ TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which typ
     ),
     doc=contract.SUBSTITUTIONS,
 )
-def test_arguments(workspace: Workspace) -> None:
+def test_arguments(shared: Shared) -> None:
     """robot.launch.py declares robot_name, speed and report, each with its default and a description."""
-    arguments = launching.shown_arguments(workspace, PACKAGE, ROBOT)
+    arguments = shared.robot_arguments()
     for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
         launching.expect_argument(arguments, name, default)
 
@@ -41,9 +41,9 @@ def test_arguments(workspace: Workspace) -> None:
     ),
     doc=contract.SUBSTITUTIONS,
 )
-def test_choices(workspace: Workspace) -> None:
+def test_choices(workspace: Workspace, shared: Shared) -> None:
     """Report can be true or false, and nothing else."""
-    found = launching.shown_arguments(workspace, PACKAGE, ROBOT)["report"].choices
+    found = shared.robot_arguments()["report"].choices
     shown = ", ".join(found) if found else "any value"
     expect(sorted(found) == ["false", "true"], f"The argument report takes {shown}, instead of true and false.")
     with LaunchLab(workspace, PACKAGE, ROBOT, {"report": "maybe"}) as lab:

@@ -1,4 +1,4 @@
-"""Launches that several checks look at."""
+"""Launches, and what they declare, that several checks look at."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from std_msgs.msg import String
 
 from autograder.lab import Workspace
 from autograder.lab.launching import LaunchLab
-from autograder.probes.launching import with_files
+from autograder.probes.launching import Argument, shown_arguments, with_files
 from autograder.suites.ch04_launch import given
 from autograder.suites.ch04_launch.inputs import Inputs, with_values
 from autograder.visible.ch04_launch.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
@@ -30,10 +30,16 @@ class Shared:
         self._stack = ExitStack()
         self._labs: dict[str, LaunchLab] = {}
         self._copies: dict[str, Workspace] = {}
+        self._arguments: dict[str, Argument] = {}
 
     def robot(self, **arguments: object) -> LaunchLab:
         """Return robot.launch.py as it runs with these arguments."""
         return self._lab(ROBOT, arguments, {})
+
+    def robot_arguments(self) -> dict[str, Argument]:
+        """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
+        self._arguments = self._arguments or shown_arguments(self._workspace, PACKAGE, ROBOT)
+        return self._arguments
 
     def fleet(self, **arguments: object) -> LaunchLab:
         """Return two_robots.launch.py as it runs with these arguments."""
