@@ -229,15 +229,23 @@ def test_stops(driving: System) -> None:
     ),
     doc=contract.SERVICE_DOC,
 )
-def test_enable(driving: System) -> None:
+def test_enable(driving: System, stable: Stable) -> None:
     """The service enable holds the robot still, and lets it go again."""
-    driving.see(OPEN)
-    answer = driving.call(SetBool, "/enable", SetBool.Request(data=False))
+    try:
+        _hold_and_release(driving)
+    except CheckFailed:
+        stable.close()  # a robot that is still held would fail what follows
+        raise
+
+
+def _hold_and_release(system: System) -> None:
+    system.see(OPEN)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=False))
     expect(answer.success, "Asked to hold still, it answered success = false.")
-    expect_still(driving.see(OPEN).commands, "After enable with data: false")
-    answer = driving.call(SetBool, "/enable", SetBool.Request(data=True))
+    expect_still(system.see(OPEN).commands, "After enable with data: false")
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
     expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
-    expect_driving(driving.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
+    expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
 
 
 def _beside(sign: float, distance: float) -> Part:
