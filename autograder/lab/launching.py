@@ -69,15 +69,11 @@ def command(*words: str) -> list[str]:
 
 
 def sandbox(workspace: Workspace) -> Sandbox:
-    """Describe the sandbox of a `ros2` command: that of a node, which also sees the command.
-
-    Message packages import numpy: one thread of its library is quicker to start than one for each core.
-    """
+    """Describe the sandbox of a `ros2` command: that of a node, which also sees the command."""
     package = Path(autograder.__file__).parent
     plain = workspace.sandbox(LIMITS)
     path = os.pathsep.join(part for part in (plain.environment.get("PYTHONPATH", ""), str(package.parent)) if part)
-    environment = {**plain.environment, "PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1"}
-    return replace(plain, mounts=(*plain.mounts, Mount(package)), environment=environment)
+    return replace(plain, mounts=(*plain.mounts, Mount(package)), environment={**plain.environment, "PYTHONPATH": path})
 
 
 class LaunchLab:

@@ -69,7 +69,10 @@ class Workspace:
         )
 
     def environment(self) -> dict[str, str]:
-        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
+        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it.
+
+        Message packages import numpy: one thread of its library is quicker to start than one for each core.
+        """
         prefixes = self.prefixes()
         libraries = [str(prefix / "lib") for prefix in prefixes]
         modules = [str(prefix / _SITE) for prefix in prefixes if (prefix / _SITE).is_dir()]
@@ -85,6 +88,7 @@ class Workspace:
             "PYTHONUNBUFFERED": "1",
             "PYTHONDONTWRITEBYTECODE": "1",
             "PYTHONNOUSERSITE": "1",
+            "OPENBLAS_NUM_THREADS": "1",
             "PATH": os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"]),
             "HOME": str(self.scratch),
             "TMPDIR": str(self.scratch),

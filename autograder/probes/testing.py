@@ -170,13 +170,10 @@ def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: in
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, network: bool = False) -> Sandbox:
-    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it.
-
-    Message packages import numpy: one thread of its library is quicker to start than one for each core.
-    """
+    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
     plain = workspace.sandbox(limits)
-    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "OPENBLAS_NUM_THREADS": "1"}
+    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     return replace(plain, mounts=mounts, environment=environment, network=network)
 
 

@@ -59,7 +59,7 @@ def test_start_speed(custom: Custom) -> None:
 )
 def test_start_rate(custom: Custom) -> None:
     """It publishes at the frequency that it was started with."""
-    expect_rate(custom.robot.rate(), custom.frequency, f"Started with control_frequency {custom.frequency}")
+    expect_rate(custom.robot.command_rate(), custom.frequency, f"Started with control_frequency {custom.frequency}")
 
 
 @check(

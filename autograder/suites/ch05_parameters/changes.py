@@ -94,13 +94,13 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
     robot = fresh_robot
     request: dict[str, Value] = {"control_frequency": 25.0, "max_linear_velocity": 0.8, "safety_distance": 2.0}
     _change(robot, CHANGEABLE)
-    present, before = robot.parameters.values(*request), robot.rate()
+    present, before = robot.parameters.values(*request), robot.command_rate()
     answer = robot.change(request)
     expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
     wrong = differences(robot.parameters.values(*request), present)
     expect(not wrong, f"It refused the request, and yet {'; '.join(wrong)}.")
     expect_speed(robot.speed_at(2.5), SPEED, "After a refused request for 0.8 m/s, with a wall 2.5 m ahead")
-    expect_rate(robot.rate(), before, "After a refused request for 25 Hz")
+    expect_rate(robot.command_rate(), before, "After a refused request for 25 Hz")
 
 
 @check(
@@ -164,7 +164,7 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
     """A new control_frequency sets the rate of its commands, up and down."""
     for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
         _change(robot, {"control_frequency": frequency})
-        expect_rate(robot.rate(), frequency, f"After control_frequency was set to {frequency}")
+        expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
 
 
 @check(

@@ -63,4 +63,4 @@ def test_rate(robot: Robot) -> None:
     """A new control_frequency sets the rate of its commands."""
     answer = robot.change({"control_frequency": 20.0})
     expect(answer.accepted, f"It refused 20 Hz: “{answer.reason}”.")
-    expect_rate(robot.rate(1.0), 20.0, "After control_frequency was set to 20.0")
+    expect_rate(robot.command_rate(1.0), 20.0, "After control_frequency was set to 20.0")

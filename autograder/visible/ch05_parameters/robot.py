@@ -82,12 +82,12 @@ class Robot(LockstepLab):
         commands = self.see(distance)
         return float(commands[-1].message.linear.x) if commands else math.nan
 
-    def rate(self, seconds: float = 2.0) -> float:
+    def command_rate(self, seconds: float = 2.0) -> float:
         """Return how many commands a second come while the way is clear."""
         self.see(3.0, 0.3)  # a period that has just been changed counts from now on
         began = self.seconds
         self.see(3.0, seconds)
-        return len(self.messages("/cmd_vel", since=began)) / seconds
+        return self.rate("/cmd_vel", since=began)
 
     def charge(self, percent: float) -> None:
         """Let the battery say its charge."""
