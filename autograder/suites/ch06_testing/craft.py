@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import check, expect
+from autograder.lab import Workspace
+from autograder.probes import linters
 from autograder.probes.junit import Verdict
 from autograder.suites.ch06_testing.examination import Examination
 from autograder.visible.ch06_testing import contract
@@ -71,7 +73,7 @@ def test_colcon(examination: Examination) -> None:
     ),
     doc=contract.CLI,
 )
-def test_linters(examination: Examination) -> None:
+def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
     verdicts = examination.colcon.claims.verdicts
     ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
@@ -80,3 +82,4 @@ def test_linters(examination: Examination) -> None:
     expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
     bad = [name.partition("::")[2] for name, verdict in ran.items() if verdict is not Verdict.PASSED]
     expect(not bad, f"{' and '.join(bad)} found something in the package.", fraction=0.5)
+    linters.expect_tidy(workspace, examination.source, fraction=0.5)

@@ -6,9 +6,10 @@ import pytest
 
 from autograder.checks import check, expect
 from autograder.lab import Workspace
+from autograder.probes import linters
 from autograder.probes.colcon import colcon_test
 from autograder.probes.junit import Verdict
-from autograder.probes.testing import Report
+from autograder.probes.testing import Report, take
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import PACKAGE
 
@@ -56,11 +57,12 @@ def test_colcon_finds_tests(tested: Report) -> None:
     ),
     doc=contract.TESTING_DOC,
 )
-def test_linters_pass(tested: Report) -> None:
+def test_linters_pass(workspace: Workspace, tested: Report) -> None:
     """Flake8 and PEP 257 have nothing to say."""
     for name in LINTERS:
         verdict = tested.claims.verdicts.get(name)
         expect(verdict is Verdict.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
+    linters.expect_tidy(workspace, take(workspace, PACKAGE))
 
 
 @check(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
@@ -22,12 +23,17 @@ TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 Reports = Mapping[tuple[str, ...], Report]
 
 
-@pytest.fixture(scope="module")
-def reports(workspace: Workspace) -> Reports:
-    """What the tests and the linters say, those of them that are there, run at the same time."""
-    there = [files for files in (TESTS, LINTERS) if not _absent(workspace, files)]
-    runs = testing.run(workspace, testing.take(workspace, PACKAGE), [Order(files) for files in there])
-    return dict(zip(there, runs, strict=True))
+@pytest.fixture(scope="module", autouse=True)
+def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
+    """What the tests and the linters will have said; they run beside the launch, which is mostly waiting."""
+
+    def run() -> Reports:
+        there = [files for files in (TESTS, LINTERS) if not _absent(workspace, files)]
+        runs = testing.run(workspace, testing.take(workspace, PACKAGE), [Order(files) for files in there])
+        return dict(zip(there, runs, strict=True))
+
+    with ThreadPoolExecutor(1) as beside:
+        yield beside.submit(run)
 
 
 @check(
@@ -78,10 +84,10 @@ def test_config_file(workspace: Workspace) -> None:
     ),
     doc=contract.TESTING_DOC,
 )
-def test_sector_tests(workspace: Workspace, reports: Reports) -> None:
+def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
-    report = reports[TESTS]
+    report = reports.result()[TESTS]
     messages = report.claims.messages
     failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
     expect(not report.failed, f"{len(report.failed)} tests fail: {failed}")
@@ -99,13 +105,13 @@ def test_sector_tests(workspace: Workspace, reports: Reports) -> None:
     ),
     doc=contract.TESTING_DOC,
 )
-def test_quality(workspace: Workspace, reports: Reports) -> None:
+def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
     extras = look(workspace.install, PACKAGE).extras
     expect(any("pytest" in found for found in extras.get("test", ())), "setup.py has no extras_require for the tests.")
     absent = _absent(workspace, LINTERS)
     expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")
-    report = reports[LINTERS]
+    report = reports.result()[LINTERS]
     shown = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
     expect(report.passed, f"The linters object: {shown or report.output.strip()[-300:]}")
 

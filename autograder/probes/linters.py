@@ -1,0 +1,47 @@
+"""What the linters say of a student's package, asked by the grader itself.
+
+A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
+the student's, and no conftest.py is read, which could change what they say.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from autograder.checks import CheckFailed
+from autograder.lab.workspace import Workspace
+from autograder.probes import testing
+from autograder.probes.testing import Order, Source
+from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
+
+# How each linter writes what it found.
+_FINDINGS = {
+    "test_flake8": re.compile(r"^\./(\S+:\d+:\d+: [A-Z]+\d+ .*)$", re.MULTILINE),
+    "test_pep257": re.compile(r"^\./(\S+:\d+ .*: D\d+: .*)$", re.MULTILINE),
+}
+
+
+def expect_tidy(workspace: Workspace, source: Source, fraction: float = 0.0) -> None:
+    """Fail the check, for this fraction of its points, if a linter finds something that its test has not told.
+
+    Raises:
+        CheckFailed: the message names the linter's test, and the first that it should have found.
+    """
+    for name, finding in objections(workspace, source).items():
+        sentence = f"{name} passes, but its linter finds something in the package: {finding}"
+        raise CheckFailed(sentence, fraction=fraction)
+
+
+def objections(workspace: Workspace, source: Source) -> dict[str, str]:
+    """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test."""
+    tests = [f"{name}.py" for name in _FINDINGS]
+    files = {**source.files, **{f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}}
+    (report,) = testing.run(workspace, replace(source, files=files), [Order(tuple(tests), conftest=False)])
+    said: dict[str, str] = {}
+    for name, finding in _FINDINGS.items():
+        test = f"{name}::{name}"
+        if test not in report.executed or test in report.failed:
+            match = finding.search(report.output)
+            said[name] = match[1] if match else report.claims.messages.get(test, "it did not run")
+    return said

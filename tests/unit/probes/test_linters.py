@@ -1,0 +1,62 @@
+"""The linters' word on a package, whatever the student's tests of that name do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.lab import Workspace
+from autograder.probes.linters import expect_tidy, objections
+from autograder.probes.testing import take
+from autograder.ros import environment
+
+TIDY = '"""Halves."""\n\n\ndef half(x):\n    """Return a half of x."""\n    return x / 2\n'
+SILENT = "def test_flake8():\n    pass\n\n\ndef test_pep257():\n    pass\n"
+EMPTIES = (
+    '"""Lets no test run."""\n\n\ndef pytest_collection_modifyitems(items):\n    """Run none."""\n    items.clear()\n'
+)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    """A workspace with a package `half`, whose own tests of the style say nothing."""
+    folder = tmp_path / "ws/src/half"
+    for path, text in {
+        "package.xml": "<package/>",
+        "half.py": TIDY,
+        "test/test_flake8.py": SILENT,
+        "test/test_pep257.py": SILENT,
+        "test/conftest.py": EMPTIES,
+    }.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+def test_nothing_is_said_of_a_tidy_package(workspace: Workspace) -> None:
+    assert objections(workspace, take(workspace, "half")) == {}
+
+
+def test_each_linter_names_the_first_that_it_finds_though_the_students_tests_and_conftest_find_nothing(
+    workspace: Workspace,
+) -> None:
+    untidy = TIDY.replace("half of x.", "half of x").replace("x / 2", "x/ 2")
+    (workspace.root / "src/half/half.py").write_text(untidy)
+    said = objections(workspace, take(workspace, "half"))
+    assert said["test_flake8"] == "half.py:6:13: E225 missing whitespace around operator"
+    assert said["test_pep257"].startswith("half.py:5 in public function `half`: D400: ")
+    with pytest.raises(
+        CheckFailed, match=r"test_flake8 passes, but its linter finds .*: half\.py:6:13: E225"
+    ) as caught:
+        expect_tidy(workspace, take(workspace, "half"), fraction=0.5)
+    assert caught.value.fraction == 0.5
+
+
+def test_a_conftest_is_not_obeyed_but_judged_like_any_other_file(workspace: Workspace) -> None:
+    (workspace.root / "src/half/test/conftest.py").write_text(EMPTIES.replace("Run none.", "Run none"))
+    said = objections(workspace, take(workspace, "half"))
+    assert list(said) == ["test_pep257"]
+    assert said["test_pep257"].startswith("test/conftest.py:")
