@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -105,6 +106,7 @@ class LaunchLab:
         *,
         listens: Mapping[str, type] | None = None,
     ) -> None:
+        self._anew = partial(LaunchLab, workspace, package, file, arguments, listens=listens)
         # Other labs count their domains upwards: the two kinds can be open at once.
         workspace = replace(workspace, domain=(workspace.domain - next(_LABS)) % DOMAINS)
         self._domain = workspace.domain
@@ -238,6 +240,10 @@ class LaunchLab:
             os.kill(_first_child(self.process.innermost()), signal.SIGINT)
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
+
+    def another(self) -> LaunchLab:
+        """Return a lab of the same launch, yet to be started."""
+        return self._anew()
 
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""

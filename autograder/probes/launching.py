@@ -20,6 +20,7 @@ START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machi
 QUIET_SECONDS = 1.5  # real time without a change, once each program that runs has its node
 STOP_SECONDS = 20.0  # real time for the end; nodes that end cleanly need 0.2
 SHOW_SECONDS = 30.0
+KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
 _NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
@@ -97,7 +98,7 @@ def settle(lab: LaunchLab, wanted: Collection[str], seconds: float = START_SECON
     """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
 
     Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
-    a node and nothing has changed for a while.
+    a node, and either these are the wanted ones or nothing has changed for a while.
     """
     state: tuple[object, ...] = ()
     since = time.monotonic()
@@ -105,7 +106,7 @@ def settle(lab: LaunchLab, wanted: Collection[str], seconds: float = START_SECON
     def done() -> bool:
         nonlocal state, since
         nodes, running = lab.nodes(), len(lab.programs())
-        if nodes == sorted(wanted) and running >= len(wanted):
+        if nodes == sorted(wanted) and running == len(wanted):
             return True
         if (nodes, running) != state or len(nodes) < running or not running:
             state, since = (nodes, running), time.monotonic()
@@ -153,12 +154,32 @@ def expect_parameters(lab: LaunchLab, node: str, wanted: Mapping[str, object]) -
 def expect_clean_stop(lab: LaunchLab) -> None:
     """Fail the check unless Ctrl-C ends the launch with exit status 0, every process cleanly, and leaves none.
 
+    Where a process had to be killed, a second launch decides. Once in some two thousand launches on a busy machine, a
+    right node ended neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does.
+
     Raises:
         CheckFailed: it does not.
     """
+    nodes = lab.nodes()
+    died = _died_of_ctrl_c(lab)
+    if any(code == KILLED for _, code in died):
+        with lab.another() as second:
+            expect_nodes(second, nodes)
+            died = _died_of_ctrl_c(second)
+    said = ", ".join(f"{name} with {code}" for name, code in died)
+    expect(not died, f"After Ctrl-C, not every process ended cleanly: {said}.", fraction=0.5)
+
+
+def _died_of_ctrl_c(lab: LaunchLab) -> list[tuple[str, str]]:
+    """Interrupt a launch, which has to end; return name and exit code of each process that did not end cleanly.
+
+    A node is seen before its constructor has ended, where Ctrl-C is beyond what its `main` catches. One that answers
+    is spinning; one that never answers is not waited for long.
+    """
+    for node in lab.nodes():
+        lab.parameters(node, ["use_sim_time"])
     expect_stopped(lab.interrupt(STOP_SECONDS))
-    died = [f"{match['name']} with {match['code']}" for match in _DIED.finditer(lab.output)]
-    expect(not died, f"After Ctrl-C, not every process ended cleanly: {', '.join(died)}.", fraction=0.5)
+    return [(match["name"], match["code"]) for match in _DIED.finditer(lab.output)]
 
 
 def expect_stopped(stop: Stop, status: int | None = 0) -> None:

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import pytest
 from std_msgs.msg import String
 
 from autograder.checks import Visibility, check, expect
@@ -13,6 +18,34 @@ from autograder.visible.ch04_launch.contract import DRIVER, FLEET, PACKAGE, REPO
 
 SEEN = Visibility.VISIBLE
 HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
+
+
+@dataclass(frozen=True)
+class Launches:
+    """Every launch that the checks look at."""
+
+    robot: LaunchLab
+    quiet: LaunchLab
+    fleet: LaunchLab
+    full: LaunchLab
+    empty: LaunchLab
+
+
+@pytest.fixture(scope="module")
+def launches(workspace: Workspace) -> Iterator[Launches]:
+    """Start them all with the first check that asks: together they are up in half the time, and a student waits."""
+    with ExitStack() as stack:
+
+        def start(file: str, arguments: dict[str, str], listens: dict[str, type] | None = None) -> LaunchLab:
+            return stack.enter_context(LaunchLab(workspace, PACKAGE, file, arguments, listens=listens))
+
+        yield Launches(
+            robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
+            quiet=start(ROBOT, {"report": "false"}),
+            fleet=start(FLEET, {}, {SHARED: String}),
+            full=start(SAFE, {"battery": "90"}),
+            empty=start(SAFE, {"battery": "5"}),
+        )
 
 
 @check(
@@ -43,13 +76,12 @@ def test_arguments(workspace: Workspace) -> None:
     ),
     doc=contract.LAUNCH,
 )
-def test_robot(workspace: Workspace) -> None:
+def test_robot(launches: Launches) -> None:
     """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
-    with LaunchLab(workspace, PACKAGE, ROBOT, {"speed": "1", "robot_name": "42"}) as lab:
-        launching.expect_nodes(lab, [DRIVER, REPORTER])
-        launching.expect_parameters(lab, DRIVER, {"speed": 1.0})
-        launching.expect_parameters(lab, REPORTER, {"robot_name": "42"})
-        launching.expect_clean_stop(lab)
+    launching.expect_nodes(launches.robot, [DRIVER, REPORTER])
+    launching.expect_parameters(launches.robot, DRIVER, {"speed": 1.0})
+    launching.expect_parameters(launches.robot, REPORTER, {"robot_name": "42"})
+    launching.expect_clean_stop(launches.robot)
 
 
 @check(
@@ -60,10 +92,9 @@ def test_robot(workspace: Workspace) -> None:
     hints=("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.",),
     doc=contract.SUBSTITUTIONS,
 )
-def test_quiet(workspace: Workspace) -> None:
+def test_quiet(launches: Launches) -> None:
     """With report:=false, robot.launch.py starts the driver alone."""
-    with LaunchLab(workspace, PACKAGE, ROBOT, {"report": "false"}) as lab:
-        launching.expect_nodes(lab, [DRIVER])
+    launching.expect_nodes(launches.quiet, [DRIVER])
 
 
 @check(
@@ -76,12 +107,12 @@ def test_quiet(workspace: Workspace) -> None:
     ),
     doc=contract.LARGE,
 )
-def test_two_robots(workspace: Workspace) -> None:
+def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts two robots, and both report on /fleet/status."""
-    with LaunchLab(workspace, PACKAGE, FLEET, listens={SHARED: String}) as lab:
-        launching.expect_nodes(lab, contract.in_spaces(contract.FIRST, contract.SECOND))
-        lab.wait_for(lambda: len(speakers(lab)) == 2, HEAR_SECONDS)
-        expect(len(speakers(lab)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(lab))) or 'nobody'} was heard.")
+    lab = launches.fleet
+    launching.expect_nodes(lab, contract.in_spaces(contract.FIRST, contract.SECOND))
+    lab.wait_for(lambda: len(speakers(lab)) == 2, HEAR_SECONDS)
+    expect(len(speakers(lab)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(lab))) or 'nobody'} was heard.")
 
 
 @check(
@@ -94,14 +125,13 @@ def test_two_robots(workspace: Workspace) -> None:
     ),
     doc=contract.EVENTS,
 )
-def test_safe_start(workspace: Workspace) -> None:
+def test_safe_start(launches: Launches) -> None:
     """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
-    with LaunchLab(workspace, PACKAGE, SAFE, {"battery": "90"}) as lab:
-        launching.expect_nodes(lab, [DRIVER, REPORTER])
-    with LaunchLab(workspace, PACKAGE, SAFE, {"battery": "5"}) as lab:
-        ended = lab.wait_for(lambda: lab.status is not None, launching.START_SECONDS)
-        expect("driver" not in launching.started(lab.output), "With the battery at 5 %, the driver was started.")
-        expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+    launching.expect_nodes(launches.full, [DRIVER, REPORTER])
+    lab = launches.empty
+    ended = lab.wait_for(lambda: lab.status is not None, launching.START_SECONDS)
+    expect("driver" not in launching.started(lab.output), "With the battery at 5 %, the driver was started.")
+    expect(ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
 def speakers(lab: LaunchLab) -> set[str]:

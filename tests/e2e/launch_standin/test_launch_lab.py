@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -31,6 +32,64 @@ def generate_launch_description():
 FLOODS = """
 while True:
     print("x" * 1000)
+"""
+
+SPINS = """
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+finally:
+    rclpy.try_shutdown()
+"""
+STUBBORN = f"""#!{sys.executable}
+import pathlib
+import signal
+import sys
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+
+rclpy.init()
+been_here = pathlib.Path.home() / 'been_here'
+if sys.argv[1] == 'always' or not been_here.exists():
+    been_here.touch()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+node = rclpy.create_node('stubborn')
+{SPINS}"""
+SLOW = f"""#!{sys.executable}
+import time
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+
+rclpy.init()
+node = rclpy.create_node('slow')
+time.sleep(2.0)
+{SPINS}"""
+LATE = f"""#!{sys.executable}
+import time
+
+import rclpy
+
+time.sleep(1.5)
+rclpy.init()
+rclpy.spin(rclpy.create_node('late'))
+"""
+STARTS_IT = """
+from launch import LaunchDescription
+from launch.conditions import LaunchConfigurationEquals
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    limits = {'sigterm_timeout': '0.5', 'sigkill_timeout': '0.5'}
+    how = LaunchConfiguration('how')
+    given = Node(package='fleet', executable='given', arguments=[how], **limits)
+    beacon = Node(package='fleet', executable='beacon', condition=LaunchConfigurationEquals('how', 'with_beacon'))
+    return LaunchDescription([given, beacon])
 """
 
 
@@ -85,6 +144,44 @@ def test_what_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
         with pytest.raises(CheckFailed, match="It ended, but left a process running: sleep 600"):
             launching.expect_clean_stop(lab)
     assert not (workspace.install / "fleet/share/fleet/launch/leaves_one.launch.py").exists()
+
+
+@pytest.fixture
+def starts(workspace: Workspace) -> Callable[[str], Workspace]:
+    """Return a function that puts a program into `fleet`, which `given.launch.py` starts."""
+
+    def put(text: str) -> Workspace:
+        there = launching.with_files(workspace, "given", "fleet", {"launch/given.launch.py": STARTS_IT})
+        program = there.install / "fleet/lib/fleet/given"
+        program.write_text(text)
+        program.chmod(0o755)
+        return there
+
+    return put
+
+
+def test_a_program_whose_node_comes_late_is_not_overlooked(starts: Callable[[str], Workspace]) -> None:
+    both = LaunchLab(starts(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
+    with both as lab, pytest.raises(CheckFailed, match="/late not asked for"):
+        launching.expect_nodes(lab, ["/beacon"])
+
+
+def test_ctrl_c_waits_for_a_node_that_is_seen_and_not_yet_made(starts: Callable[[str], Workspace]) -> None:
+    with LaunchLab(starts(SLOW), "fleet", "given.launch.py", {"how": "once"}) as lab:
+        launching.expect_nodes(lab, ["/slow"])
+        launching.expect_clean_stop(lab)
+
+
+def test_a_node_that_had_to_be_killed_gets_a_second_launch_which_decides(starts: Callable[[str], Workspace]) -> None:
+    there = starts(STUBBORN)
+    with LaunchLab(there, "fleet", "given.launch.py", {"how": "once"}) as lab:
+        launching.expect_nodes(lab, ["/stubborn"])
+        launching.expect_clean_stop(lab)
+        assert "exit code -9" in lab.output
+    with LaunchLab(there, "fleet", "given.launch.py", {"how": "always"}) as lab:
+        launching.expect_nodes(lab, ["/stubborn"])
+        with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with -9"):
+            launching.expect_clean_stop(lab)
 
 
 def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(workspace: Workspace) -> None:
