@@ -44,8 +44,8 @@ class Watch:
         return self._frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
-        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
-        count = bisect.bisect_right(self._times, time_ns)
+        """Return the track of the first robot up to `time_ns`, (K, 2) in metres; its first place at least."""
+        count = max(1, bisect.bisect_right(self._times, time_ns))  # the bridge may have run before it was looked at
         places = [frame.state.robots[0].pose for frame in self._frames[: count : 1 + count // TRAIL]]
         return np.array([(pose.x, pose.y) for pose in places])
 

@@ -101,9 +101,10 @@ def main() -> None:
         signal.signal(number, lambda *_: helper.ending.set())
     for node in (talker, helper):
         executor.add_node(node)
-    threading.Thread(target=executor.spin, daemon=True).start()
     print("ready", flush=True)
-    helper.ending.wait()
+    # On this thread: one that still spins while the interpreter ends makes the program abort.
+    while not helper.ending.is_set():
+        executor.spin_once(timeout_sec=0.1)
     executor.shutdown()
     rclpy.try_shutdown()
 

@@ -133,6 +133,16 @@ def test_the_live_view_looks_on_and_drives(bridge: Bridge, monkeypatch: pytest.M
     assert view.time == 0.0
 
 
+def test_a_view_may_be_opened_long_after_the_bridge(bridge: Bridge, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("AUTOGRADER_GRADING", raising=False)
+    bridge.step(0.5)
+    view = live(bridge, play=False)
+    assert isinstance(view, LiveView)
+    assert view.recording.times_ns.tolist() == [bridge.driver.state.time_ns]
+    view.step(0.1)
+    assert view.time == pytest.approx(bridge.driver.state.time_ns / 1e9)
+
+
 def test_settings_that_make_no_sense_leave_nothing_behind(ros_domain: int) -> None:
     with pytest.raises(WorldError, match="nowhere"):
         Bridge("nowhere.yaml", domain_id=ros_domain)
