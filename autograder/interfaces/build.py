@@ -10,7 +10,6 @@ import sys
 import sysconfig
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib import metadata
 from pathlib import Path
 
 from autograder.interfaces.cache import Cache
@@ -94,9 +93,9 @@ def identity(ros: RosEnvironment) -> dict[str, object]:
 @lru_cache(maxsize=1)
 def _versions(ros: RosEnvironment) -> list[str]:
     """Name the installed ROS: each wheel's version, or each sourced package's manifest by its size and time."""
-    if ros.kind == "wheels":
-        found = [d for d in metadata.distributions() if d.name.lower().startswith(("ros-", "ros_", "numpy"))]
-        return sorted(f"{d.name}=={d.version}" for d in found)
+    if ros.kind == "wheels":  # by the folders' names: to read what is in them takes half a second
+        found = [path.stem for path in ros.rclpy.parent.glob("*.dist-info")]
+        return sorted(name for name in found if name.lower().startswith(("ros-", "ros_", "numpy")))
     manifests = [path for prefix in ros.prefixes for path in sorted(prefix.glob("share/*/package.xml"))]
     return [f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}" for path in manifests]
 

@@ -33,7 +33,7 @@ class RealtimeLab(Lab):
             command = [sys.executable, str(path), *program.words(self._folder)]
             self._processes = (*self._processes, launch(command, self._sandbox))
         if not self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self.programs), START_SECONDS):
-            raise StudentError(stuck(Kind.NEVER_STARTED, START_SECONDS, self.output))
+            raise StudentError(stuck(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

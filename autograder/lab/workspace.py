@@ -14,6 +14,7 @@ from autograder.ros import RosEnvironment
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
+from autograder.sandbox.spec import INTERPRETER
 
 _SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
@@ -69,10 +70,7 @@ class Workspace:
         )
 
     def environment(self) -> dict[str, str]:
-        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it.
-
-        Message packages import numpy: one thread of its library is quicker to start than one for each core.
-        """
+        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
         prefixes = self.prefixes()
         libraries = [str(prefix / "lib") for prefix in prefixes]
         modules = [str(prefix / _SITE) for prefix in prefixes if (prefix / _SITE).is_dir()]
@@ -84,15 +82,10 @@ class Workspace:
             **self.ros.variables(overlays=prefixes, domain=self.domain, log_dir=self.scratch / "ros-log"),
             "LD_LIBRARY_PATH": os.pathsep.join([*libraries, os.environ.get("LD_LIBRARY_PATH", "")]).strip(os.pathsep),
             "PYTHONPATH": os.pathsep.join(modules),
-            "PYTHONHASHSEED": "0",
-            "PYTHONUNBUFFERED": "1",
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "PYTHONNOUSERSITE": "1",
-            "OPENBLAS_NUM_THREADS": "1",
+            **INTERPRETER,
             "PATH": os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"]),
             "HOME": str(self.scratch),
             "TMPDIR": str(self.scratch),
-            "LANG": "C.UTF-8",
         }
 
     def sandbox(self, limits: Limits = NODE) -> Sandbox:

@@ -80,16 +80,16 @@ def diagnose_ending(process: Process) -> Diagnosis:
     )
 
 
-def stuck(kind: Kind, seconds: float, output: str) -> Diagnosis:
-    """Name a program that did not come back in time."""
+def stuck(kind: Kind, waited: str, output: str) -> Diagnosis:
+    """Name a program that did not come back within what was waited, such as "60 s"."""
     if kind is Kind.NEVER_STARTED:
         sentence = (
-            f"Your node did not start to spin within {seconds:.0f} s: look for a loop, an input() or a sleep in "
+            f"Your node did not start to spin within {waited}: look for a loop, an input() or a sleep in "
             "__init__ or in main() before rclpy.spin(node)."
         )
     else:
         sentence = (
-            f"Your node did not come back from a callback within {seconds:.0f} s: a callback must return quickly. "
+            f"Your node did not come back from a callback within {waited}: a callback must return quickly. "
             "Look for a loop that waits, a time.sleep or a blocking call."
         )
     return Diagnosis(kind, sentence, tail(output))

@@ -7,6 +7,7 @@ import os
 import selectors
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -22,9 +23,30 @@ from autograder.sandbox.launcher import launch
 from autograder.sandbox.spec import Sandbox
 
 HOST = Path(__file__).with_name("lockstep_host")
-START_SECONDS = 60.0  # real time from start to the first wait for work, generous for a machine that is busy
-STEP_SECONDS = 30.0  # real time for one step
+PRELOAD = Path(__file__).with_name("preload.py")
 QUIT_SECONDS = 20.0
+_TICK = 0.5  # s between two looks at how much a silent program has computed
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How long a program may be silent.
+
+    Attributes:
+        seconds: of real time, generous for a machine that is busy.
+        computing: of processor time, which no machine's load makes longer: a loop without end is found by it.
+    """
+
+    seconds: float
+    computing: float
+
+
+START = Patience(60.0, 15.0)  # from start to the first wait for work, which takes half a second of computing
+STEP = Patience(30.0, 10.0)
+
+
+class _Silence(Exception):
+    """A program's answer does not come; says in words how long it was waited for."""
 
 
 class Stepper:
@@ -39,7 +61,7 @@ class Stepper:
         our_read, their_write = os.pipe()
         command = [python, str(HOST), str(their_read), str(their_write), str(executable), *arguments]
         try:
-            self.process: Process = launch(command, spec, pass_fds=(their_read, their_write))
+            self.process: Process = launch(command, spec, pass_fds=(their_read, their_write), preload=PRELOAD)
         finally:
             os.close(their_read)
             os.close(their_write)
@@ -52,22 +74,22 @@ class Stepper:
 
     def wait_ready(self) -> None:
         """Wait until the program waits for work for the first time."""
-        self._expect("ready", START_SECONDS, Kind.NEVER_STARTED)
+        self._expect("ready", START, Kind.NEVER_STARTED)
 
     def describe(self) -> Description:
         """Ask what the program's nodes look like."""
         self._send({"op": "describe"})
-        return protocol.description(self._expect("description", STEP_SECONDS, Kind.STUCK))
+        return protocol.description(self._expect("description", STEP, Kind.STUCK))
 
     def meet(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
         """Tell the program that its endpoints see their peers, and what these had sent before."""
         self._send({"op": "meet", "kept": dict(kept), "early": dict(early)})
-        self._expect("met", STEP_SECONDS, Kind.STUCK)
+        self._expect("met", STEP, Kind.STUCK)
 
     def step(self, instants: Sequence[int], mail: Mapping[str, int]) -> Reply:
         """Let the program live through instants of ROS time; `mail` is what was sent to it since the last step."""
         self._send({"op": "step", "instants": list(instants), "mail": dict(mail)})
-        return protocol.reply(self._expect("done", STEP_SECONDS, Kind.STUCK))
+        return protocol.reply(self._expect("done", STEP, Kind.STUCK))
 
     def quit(self) -> int | None:
         """Interrupt the program as Ctrl-C does; return its exit status, or None if it had to be killed."""
@@ -91,13 +113,11 @@ class Stepper:
         except (BrokenPipeError, BlockingIOError):
             raise StudentError(self._ending()) from None
 
-    def _expect(self, event: str, seconds: float, on_timeout: Kind) -> dict[str, Any]:
-        deadline = time.monotonic() + seconds
-        line = self._read_line(deadline)
-        if line is None:
-            raise StudentError(stuck(on_timeout, seconds, self.process.output))
+    def _expect(self, event: str, patience: Patience, on_timeout: Kind) -> dict[str, Any]:
         try:
-            data = protocol.parse(line)
+            data = protocol.parse(self._read_line(patience))
+        except _Silence as silence:
+            raise StudentError(stuck(on_timeout, str(silence), self.process.output)) from None
         except ProtocolError:
             raise StudentError(self._ending()) from None
         if data["event"] == "crash":
@@ -111,13 +131,25 @@ class Stepper:
             raise StudentError(self._ending())
         return data
 
-    def _read_line(self, deadline: float) -> bytes | None:
-        """Return one line, b'' at the end of the stream, or None at the deadline."""
+    def _read_line(self, patience: Patience) -> bytes:
+        """Return one line, or b'' at the end of the stream.
+
+        Raises:
+            _Silence: the patience is over.
+        """
+        deadline, before = time.monotonic() + patience.seconds, None
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 return bytes(self._buffer)
-            if not self._selector.select(max(0.0, deadline - time.monotonic())):
-                return None
+            left = deadline - time.monotonic()
+            if not self._selector.select(max(0.0, min(_TICK, left))):
+                if left <= 0.0:
+                    raise _Silence(f"{patience.seconds:.0f} s")
+                now = self.process.cpu_seconds()
+                before = now if before is None else before
+                if now - before > patience.computing:
+                    raise _Silence(f"{patience.computing:.0f} s of computing")
+                continue
             chunk = os.read(self._read_fd, 65536)
             if not chunk:
                 return b""

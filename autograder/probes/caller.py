@@ -1,10 +1,10 @@
 """Runs inside the sandbox: calls functions and classes of a student's module as JSON says, and answers in JSON.
 
-    python caller.py ANSWER_FD
+    python caller.py ORDER_FD ANSWER_FD
 
-The order comes on standard input, `{"module": ..., "steps": [...]}`; steps are as in `autograder.probes.calls`. The
-answer goes to a descriptor of its own, so that what the student's code prints is not part of it. It is a claim of the
-process that the student's code runs in; the trusted side compares its values and believes nothing else of it.
+The order, `{"module": ..., "steps": [...]}`, comes on one descriptor; steps are as in `autograder.probes.calls`. The
+answer goes to another, so that what the student's code prints is not part of it. It is a claim of the process that the
+student's code runs in; the trusted side compares its values and believes nothing else of it.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ REFERENCE = "$made"
 
 
 def main() -> None:
-    """Carry out the order of standard input."""
-    answer = os.fdopen(int(sys.argv[1]), "w", encoding="utf-8")
-    order = json.loads(sys.stdin.read())
+    """Carry out the order."""
+    with os.fdopen(int(sys.argv[1]), encoding="utf-8") as stream:
+        order = json.load(stream)
+    answer = os.fdopen(int(sys.argv[2]), "w", encoding="utf-8")
     try:
         module = importlib.import_module(order["module"])
     except Exception as error:

@@ -26,6 +26,7 @@ from autograder.exceptions import StudentError
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
+from autograder.probes import PRELOAD
 from autograder.sandbox import Limits, Mount
 from autograder.sandbox.launcher import launch
 
@@ -110,9 +111,9 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
     read_fd, write_fd = os.pipe()
     order_read, order_write = os.pipe()
-    command = [sys.executable, "-c", _REDIRECT, str(order_read), str(CALLER), str(write_fd)]
+    command = [sys.executable, str(CALLER), str(order_read), str(write_fd)]
     try:
-        process = launch(command, spec, pass_fds=(write_fd, order_read))
+        process = launch(command, spec, pass_fds=(write_fd, order_read), preload=PRELOAD)
     finally:
         os.close(write_fd)
         os.close(order_read)
@@ -155,13 +156,6 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, int | float) and isinstance(other, int | float):
         return (math.isnan(one) and math.isnan(other)) or one == other or math.isclose(one, other, rel_tol=1e-9)
     return type(one) is type(other) and one == other
-
-
-# The order is longer than a command line may be, and a sandboxed process has no standard input.
-_REDIRECT = (
-    "import os, runpy, sys; os.dup2(int(sys.argv[1]), 0); sys.argv = sys.argv[2:]; "
-    "runpy.run_path(sys.argv[0], run_name='__main__')"
-)
 
 
 def _plain(step: Step) -> dict[str, Any]:

@@ -30,7 +30,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.grading.intake import take_source
 from autograder.lab.workspace import Workspace
-from autograder.probes import junit
+from autograder.probes import PRELOAD, junit
 from autograder.probes.junit import Claims, Verdict
 from autograder.probes.overhearing import Ear
 from autograder.probes.versions import Version, lay_down
@@ -57,6 +57,7 @@ class Order:
         backwards: whether the tests run in the opposite order.
         first_failure: whether the run ends with the first test that fails.
         overheard: whether somebody listens in the default domain.
+        conftest: whether pytest reads the conftest.py that is there.
     """
 
     files: tuple[str, ...]
@@ -64,6 +65,7 @@ class Order:
     backwards: bool = False
     first_failure: bool = False
     overheard: bool = False
+    conftest: bool = True
 
 
 @dataclass(frozen=True)
@@ -214,7 +216,8 @@ def _arguments(source: Source, folder: Path, order: Order) -> list[str]:
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
     plain += ["-p", "launch_pytest.plugin"] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
-    return [*plain, *quiet, *(["-x"] if order.first_failure else []), *files]
+    asked = [*(["-x"] if order.first_failure else []), *([] if order.conftest else ["--noconftest"])]
+    return [*plain, *quiet, *asked, *files]
 
 
 def _host(spec: Sandbox, order: Order, arguments: list[str]) -> Report:
@@ -223,7 +226,7 @@ def _host(spec: Sandbox, order: Order, arguments: list[str]) -> Report:
     report = Path(spec.environment["HOME"]) / "report.xml"
     command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(order.backwards)), str(report)]
     try:
-        process = launch([*command, *arguments], spec, pass_fds=(answer_write, go_read))
+        process = launch([*command, *arguments], spec, pass_fds=(answer_write, go_read), preload=PRELOAD)
     finally:
         os.close(answer_write)
         os.close(go_read)

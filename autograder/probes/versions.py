@@ -15,9 +15,10 @@ import ast
 import os
 import random
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeGuard
 
 WHEN = 1_750_000_000  # s since 1970: the time of every file of every version
 _SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
@@ -102,35 +103,37 @@ def _installed(prefix: Path, package: str, name: str) -> Path | None:
 
 def _disguised(text: str, draw: random.Random) -> str:
     tree = ast.parse(text)
-    for node in ast.walk(tree):
+    nodes = list(ast.walk(tree))  # to go round a tree takes long, and there are hundreds of them
+    for node in nodes:
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
             node.body = node.body[1:] or [ast.Pass()]
-    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
-        names = {name: _word(draw) for name in sorted(_own_names(function))}
-        for node in ast.walk(function):
+    for function in (node for node in nodes if isinstance(node, ast.FunctionDef)):
+        inner = list(ast.walk(function))
+        names = {name: _word(draw) for name in sorted(_own_names(inner))}
+        for node in inner:
             if isinstance(node, ast.Name) and node.id in names:
                 node.id = names[node.id]
-    for owner in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
-        attributes = {node.attr for node in _of_self(owner) if isinstance(node.ctx, ast.Store)}
-        fresh = {name: _word(draw) for name in sorted(attributes)}
-        for node in _of_self(owner):
-            node.attr = fresh.get(node.attr, node.attr)
+    for owner in (node for node in nodes if isinstance(node, ast.ClassDef)):
+        mine = [node for node in ast.walk(owner) if _is_of_self(node)]
+        fresh = {name: _word(draw) for name in sorted({n.attr for n in mine if isinstance(n.ctx, ast.Store)})}
+        for attribute in mine:
+            attribute.attr = fresh.get(attribute.attr, attribute.attr)
     return ast.unparse(tree) + "\n"
 
 
-def _own_names(function: ast.FunctionDef) -> set[str]:
-    """Return the names that only a function assigns to: no parameters, which callers may name, and nothing shared."""
-    nodes = list(ast.walk(function))
+def _own_names(nodes: Sequence[ast.AST]) -> set[str]:
+    """Return the names that only a function of these nodes assigns to.
+
+    These are no parameters, which callers may name, and nothing shared.
+    """
     stored = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     kept = {node.arg for node in nodes if isinstance(node, ast.arg)}
     kept |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
     return stored - kept
 
 
-def _of_self(owner: ast.ClassDef) -> Iterator[ast.Attribute]:
-    for node in ast.walk(owner):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
-            yield node
+def _is_of_self(node: ast.AST) -> TypeGuard[ast.Attribute]:
+    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
 def _word(draw: random.Random) -> str:

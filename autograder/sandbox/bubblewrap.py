@@ -16,18 +16,22 @@ _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
 _PRIVATE = (layout.SUITES, layout.SOLUTIONS)
 
 
+def resources(limits: Limits) -> dict[str, tuple[int, int]]:
+    """Return the kernel's own limits on each process, soft and hard, by their names in `resource`."""
+    return {
+        "RLIMIT_CPU": (limits.cpu_seconds, limits.cpu_seconds + 5),
+        "RLIMIT_AS": (limits.address_space, limits.address_space),
+        "RLIMIT_NPROC": (limits.tasks, limits.tasks),
+        "RLIMIT_FSIZE": (limits.file_size, limits.file_size),
+        "RLIMIT_NOFILE": (limits.open_files, limits.open_files),
+        "RLIMIT_CORE": (0, 0),
+    }
+
+
 def rlimits(limits: Limits) -> list[str]:
     """Return the `prlimit` prefix that sets the kernel's own limits on each process."""
-    return [
-        "prlimit",
-        f"--cpu={limits.cpu_seconds}:{limits.cpu_seconds + 5}",
-        f"--as={limits.address_space}",
-        f"--nproc={limits.tasks}",
-        f"--fsize={limits.file_size}",
-        f"--nofile={limits.open_files}",
-        "--core=0",
-        "--",
-    ]
+    named = {name.removeprefix("RLIMIT_").lower(): bounds for name, bounds in resources(limits).items()}
+    return ["prlimit", *(f"--{name}={soft}:{hard}" for name, (soft, hard) in named.items()), "--"]
 
 
 def cell(command: list[str], *, scratch: Path, size: int) -> list[str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,6 +41,31 @@ def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: L
     Raises:
         IsolationError: this machine cannot give the tier.
     """
+    with in_cell(make_command, tier, limits) as (process, _):
+        process.wait(None)
+        assert process.ending is not None
+        return CellReport(process.ending, process.returncode or 0, process.output)
+
+
+@contextmanager
+def in_cell(
+    make_command: Callable[[Path], list[str]],
+    tier: Tier,
+    limits: Limits = WORKER,
+    *,
+    pass_fds: tuple[int, ...] = (),
+) -> Iterator[tuple[Process, Path]]:
+    """Start a trusted command in a new cell; give its process and the cell's scratch folder, which both end with it.
+
+    Args:
+        make_command: gets the cell's scratch folder, returns the command.
+        tier: how strongly the cell is kept apart.
+        limits: a bound on the whole cell, students' processes included.
+        pass_fds: descriptors that the command inherits.
+
+    Raises:
+        IsolationError: this machine cannot give the tier.
+    """
     require(tier)
     scratch = Path(tempfile.mkdtemp(prefix="cell-"))
     try:
@@ -47,9 +73,7 @@ def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: L
         if tier is Tier.BUBBLEWRAP:
             command = bubblewrap.cell(command, scratch=scratch, size=SCRATCH)
         environment = {**without_wheel_bootstrap(os.environ), TIER_VARIABLE: tier.value}
-        with Process(command, limits, environment=environment) as process:
-            process.wait(None)
-            assert process.ending is not None
-            return CellReport(process.ending, process.returncode or 0, process.output)
+        with Process(command, limits, environment=environment, pass_fds=pass_fds) as process:
+            yield process, scratch
     finally:
         shutil.rmtree(scratch, ignore_errors=True)

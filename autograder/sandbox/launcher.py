@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
+import atexit
+import logging
 import os
 import signal
+import socket
+import subprocess
+import threading
+from pathlib import Path
 
+from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import bubblewrap, cgroup
+from autograder.sandbox.cgroup import ControlGroup
+from autograder.sandbox.exceptions import ZygoteError
 from autograder.sandbox.process import Process
-from autograder.sandbox.spec import Sandbox
+from autograder.sandbox.spec import INTERPRETER, Sandbox
 from autograder.sandbox.tiers import Tier
+from autograder.sandbox.zygote import HOLDER, PATIENCE, Zygote
 
 TIER_VARIABLE = "AUTOGRADER_TIER"
+
+# Where a zygote finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
+_SEARCHED = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
+
+_lock = threading.Lock()
+_log = logging.getLogger(__name__)
+_zygotes: dict[Path, Zygote | None] = {}  # by what they import; None where programs could not be forked
 
 
 def current_tier() -> Tier:
@@ -28,9 +45,40 @@ def heed_interrupts() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ()) -> Process:
-    """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can."""
-    group = cgroup.make(spec.limits.tasks)
+def launch(
+    command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), preload: Path | None = None
+) -> Process:
+    """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can.
+
+    Args:
+        command: what is run.
+        spec: the sandbox.
+        pass_fds: descriptors that it inherits.
+        preload: for a Python script, what the interpreter may have imported from which it is forked (see `zygote`).
+    """
+    if preload is not None and current_tier() is Tier.BUBBLEWRAP:
+        process = _forked(command[1:], spec, pass_fds, preload)
+        if process is not None:
+            return process
+    return _started(command, spec, cgroup.make(spec.limits.tasks), pass_fds)
+
+
+def warm_up(preload: Path) -> None:
+    """Let a zygote begin its imports, if there is none yet that has them."""
+    with _lock:
+        if preload not in _zygotes:
+            kept = {name: os.environ[name] for name in _SEARCHED if name in os.environ}
+            zygote = _zygotes[preload] = Zygote(preload, {"PATH": os.defpath, **INTERPRETER, **kept})
+            atexit.register(zygote.close)
+
+
+def _started(
+    command: list[str],
+    spec: Sandbox,
+    group: ControlGroup | None,
+    pass_fds: tuple[int, ...] = (),
+    stdin: int = subprocess.DEVNULL,
+) -> Process:
     contained = current_tier() is Tier.BUBBLEWRAP
     command = bubblewrap.sandbox(command, spec) if contained else [*bubblewrap.rlimits(spec.limits), *command]
     return Process(
@@ -41,4 +89,30 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = ())
         cwd=None if contained else spec.workdir,
         contained=contained,
         at_end=group.close if group else None,
+        stdin=stdin,
     )
+
+
+def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], preload: Path) -> Process | None:
+    """Fork a program from a zygote; None where that cannot be, and it has not begun."""
+    warm_up(preload)
+    zygote = _zygotes[preload]
+    if zygote is None:
+        return None
+    group = cgroup.make(spec.limits.tasks)
+    line, theirs = socket.socketpair()
+    with line:
+        with theirs:
+            process = _started(HOLDER, spec, group, stdin=theirs.fileno())
+        try:
+            line.settimeout(PATIENCE)
+            if not line.recv(1):
+                raise ZygoteError(f"the sandbox was not made: {process.output}")
+            folder = str(group.folder) if group else ""
+            process.entered(zygote.spawn(command, spec, process.innermost(), folder, line.fileno(), pass_fds))
+        except (ZygoteError, TimeoutError) as error:
+            process.kill()
+            _zygotes[preload] = None
+            _log.warning("programs are started one by one, which takes longer: %s", error)
+            return None
+    return process

@@ -8,6 +8,17 @@ from pathlib import Path
 
 from autograder.sandbox.limits import NODE, Limits
 
+INTERPRETER = {
+    "PYTHONHASHSEED": "0",
+    "PYTHONUNBUFFERED": "1",
+    "PYTHONDONTWRITEBYTECODE": "1",
+    "PYTHONNOUSERSITE": "1",
+    # Message packages import numpy: one thread of its library is quicker to start than one for each core.
+    "OPENBLAS_NUM_THREADS": "1",
+    "LANG": "C.UTF-8",
+}
+"""Environment variables that every Python of a workspace is started with."""
+
 
 @dataclass(frozen=True)
 class Mount:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from autograder.sandbox import Tier
+from autograder.sandbox import Process, Tier
 from autograder.sandbox.cell import run_in_cell
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,6 +35,15 @@ def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUB
     assert report.returncode == 0, report.output
     assert answers, report.output
     return json.loads(answers[-1].removeprefix(_MARK))
+
+
+def is_forked(process: Process) -> bool:
+    """Return whether a sandboxed program was forked from a zygote; of one that has ended, nobody can say it was not."""
+    try:
+        words = Path(f"/proc/{process.innermost()}/cmdline").read_bytes()
+    except OSError:
+        return True
+    return b"zygote_host" in words or not words
 
 
 def main() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +15,27 @@ from autograder.grading.build import build
 from autograder.lab import Workspace
 from autograder.layout import SOLUTIONS
 from autograder.packages import find_packages
+from autograder.probes import PRELOAD
 from autograder.ros import environment
+from autograder.sandbox import Mount, Sandbox
+from autograder.sandbox.launcher import launch
+from tests.e2e.cell_support import in_cell, is_forked
+
+
+def forked(scratch: Path) -> bool:
+    """Return whether a program that may be forked into its sandbox is."""
+    program = scratch / "program.py"
+    program.write_text("import signal\nsignal.pause()")
+    spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
+    with launch([sys.executable, str(program)], spec, preload=PRELOAD) as process:
+        return is_forked(process)
+
+
+@pytest.fixture(scope="session")
+def forks() -> None:
+    """For tests of programs that are forked into sandboxes, which a kernel may forbid: then they are started."""
+    if not in_cell(forked):
+        pytest.skip("this machine lets no process join a sandbox")
 
 
 @dataclass(frozen=True)

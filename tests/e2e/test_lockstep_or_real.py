@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from autograder.grading.job import Scope
 from autograder.grading.pipeline import grade_submission
 from autograder.lab.either import TIME_VARIABLE
 from autograder.result import Result
@@ -25,7 +26,7 @@ NODE = f"src/{PACKAGE}/{PACKAGE}/nodes/robot_controller.py"
 def grade(folder: Path) -> Result:
     """Grade a source tree by a few of the checks of 02_nodes."""
     out = folder / "out"
-    return grade_submission(folder, "02_nodes", student="s", seed=11, out=out, only=CHECKS).result
+    return grade_submission(folder, "02_nodes", student="s", seed=11, out=out, scope=Scope(only=CHECKS)).result
 
 
 def outcomes(result: Result) -> dict[str, str]:

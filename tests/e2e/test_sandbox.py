@@ -1,4 +1,4 @@
-"""The sandbox in a cell, for real: what code in it sees, reaches and leaves."""
+"""The sandbox in a cell, for real: what code in it sees, reaches and leaves, started there or forked into it."""
 
 from __future__ import annotations
 
@@ -15,12 +15,37 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.sandbox import Ending, Limits, Mount, Sandbox, Tier, cgroup
-from autograder.sandbox.launcher import launch
+from autograder.lockstep.stepper import PRELOAD
+from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup
+from autograder.sandbox.launcher import launch, warm_up
 from autograder.sandbox.limits import GIB, MIB
-from tests.e2e.cell_support import in_cell
+from tests.e2e.cell_support import in_cell, is_forked
 
 SMALL = {"wall_seconds": 60.0, "threads": 40, "memory": 200 * MIB, "output": 50_000, "scratch": 4 * MIB}
+
+
+WAY = "SANDBOX_WAY"
+WAYS = ("started", "forked")
+
+
+@pytest.fixture(params=WAYS, autouse=True)
+def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """How a program comes into its sandbox; whoever is in a cell learns it from the environment."""
+    if request.param == "forked":
+        request.getfixturevalue("forks")
+    monkeypatch.setenv(WAY, request.param)
+    return str(request.param)
+
+
+def run(code: str, spec: Sandbox) -> Process:
+    """Run code as a program in a sandbox, in the way that this test is about."""
+    if os.environ[WAY] == "started":
+        return launch([sys.executable, "-I", "-c", code], spec)
+    program = spec.workdir / ".program.py"
+    program.write_text(code)
+    process = launch([sys.executable, str(program)], spec, preload=PRELOAD)
+    assert is_forked(process)
+    return process
 
 
 def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = False) -> dict[str, Any]:
@@ -28,8 +53,10 @@ def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = Fal
     home = scratch / "home"
     home.mkdir()
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=network, limits=Limits(**limits))
+    if os.environ[WAY] == "forked":
+        warm_up(PRELOAD)
     before = _processes()
-    with launch([sys.executable, "-I", "-c", code], spec) as process:
+    with run(code, spec) as process:
         process.wait(limits["wall_seconds"] + 60)
         ending = process.ending
     deadline = time.monotonic() + 30
@@ -153,7 +180,7 @@ def meets(scratch: Path, code: str) -> dict[str, bool]:
 
 
 def test_a_node_reaches_the_cell_s_loopback_and_a_build_does_not() -> None:
-    code = "import socket; socket.create_connection(('127.0.0.1', PORT), timeout=5); print('REACHED')"
+    code = "import socket\nsocket.create_connection(('127.0.0.1', PORT), timeout=5)\nprint('REACHED')"
     assert in_cell(meets, code) == {"True": True, "False": False}
 
 
@@ -222,7 +249,7 @@ def signalled(scratch: Path, code: str) -> list[Any]:
     """Send SIGTERM to a sandboxed program that is up; say its status and whether its handler ran."""
     home = scratch / "home"
     home.mkdir()
-    with launch([sys.executable, "-I", "-c", code], Sandbox(home, mounts=(Mount(home, writable=True),))) as process:
+    with run(code, Sandbox(home, mounts=(Mount(home, writable=True),))) as process:
         _until(lambda: "up" in process.output)
         process.signal(signal.SIGTERM)
         return [process.wait(60), process.returncode, process.output]
@@ -251,9 +278,9 @@ while True: signal.pause()
 def killed(scratch: Path) -> list[str]:
     """Start a sandboxed program and end without any clean-up, as a worker does that is killed."""
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
-    process = launch([sys.executable, "-I", "-c", "print('up', flush=True)\n" + ENDLESS], spec)
+    process = run("print('up', flush=True)\n" + ENDLESS, spec)
     _until(lambda: "up" in process.output)
-    print(f"answer: {os.getpid()}", flush=True)
+    print(f"answer: {os.getpid()} {process.innermost()}", flush=True)
     os.kill(os.getpid(), signal.SIGKILL)
     return []
 
@@ -261,7 +288,7 @@ def killed(scratch: Path) -> list[str]:
 def group_of(scratch: Path) -> str:
     """Return the control groups of a sandboxed program, as the machine names them."""
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
-    with launch([sys.executable, "-I", "-c", "print('up', flush=True)\n" + ENDLESS], spec) as process:
+    with run("print('up', flush=True)\n" + ENDLESS, spec) as process:
         _until(lambda: "up" in process.output)
         return Path(f"/proc/{process.innermost()}/cgroup").read_text()
 
@@ -274,6 +301,7 @@ def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
 @BOUNDED
+@pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak tier knows no other
 def test_not_even_the_weak_tier_leaves_root_a_fork_bomb() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
@@ -296,13 +324,6 @@ def _bombs(code: str) -> set[int]:
 def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:
     with pytest.raises(AssertionError, match="answer: ") as caught:
         in_cell(killed)
-    worker = int(str(caught.value).partition("answer: ")[2].split()[0])
-    _until(lambda: not Path(f"/proc/{worker}").exists())
-    _until(lambda: not any(_is_student(pid) for pid in filter(str.isdigit, os.listdir("/proc"))))
-
-
-def _is_student(pid: str) -> bool:
-    try:
-        return b"print('up', flush=True)\nimport signal\nwhile True" in Path(f"/proc/{pid}/cmdline").read_bytes()
-    except OSError:
-        return False
+    pids = str(caught.value).partition("answer: ")[2].split()[:2]
+    for pid in pids:
+        _until(lambda pid=pid: not Path(f"/proc/{pid}").exists())  # type: ignore[misc]

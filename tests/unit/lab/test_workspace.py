@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.grading.job import Job
+from autograder.grading.job import Job, Scope
 from autograder.lab import Workspace, station
 from autograder.ros import activate
 from autograder.sandbox import Tier
@@ -78,5 +78,7 @@ def test_the_grader_asks_for_no_more_than_every_publisher_gives() -> None:
 
 
 def test_a_job_crosses_a_process_boundary_whole(tmp_path: Path) -> None:
-    job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, tmp_path / "out", tmp_path / "scratch", Tier.PROCESS)
+    scope = Scope(("starts", "ten_hertz"), first_loss=True, pictures=False)
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, out, scratch, Tier.PROCESS, scope)
     assert Job.from_json(job.to_json()) == job

@@ -99,7 +99,7 @@ def test_a_program_that_runs_but_no_longer_answers_is_no_ended_one() -> None:
 
 
 def test_a_node_that_never_spins_and_one_that_hangs_are_told_apart() -> None:
-    never, hangs = stuck(Kind.NEVER_STARTED, 60.0, "a\nb"), stuck(Kind.STUCK, 30.0, "")
+    never, hangs = stuck(Kind.NEVER_STARTED, "60 s", "a\nb"), stuck(Kind.STUCK, "30 s", "")
     assert "did not start to spin within 60 s" in never.sentence
     assert never.detail == "a\nb"
     assert "did not come back from a callback within 30 s" in hangs.sentence

@@ -1,0 +1,186 @@
+"""The zygote's process: it waits for orders, and forks for each.
+
+    python zygote_host SOCKET_FD PRELOAD
+
+It is trusted, lives outside every sandbox, and runs no line of a student's: PRELOAD is a script of the grader's. For
+each order a child, the attendant, joins the sandbox that bubblewrap has made, forks the program's process into it, and
+gives its exit status to the process there that bubblewrap waits for. The program's process gives up whatever is left of
+the outside (see `confinement`) before it reads anything of a student's, and then becomes the program.
+
+Descriptors that come with an order are the line to the process that bubblewrap waits for, then the program's.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import json
+import os
+import runpy
+import select
+import socket
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from autograder.sandbox.zygote_host import confinement
+else:
+    import confinement
+
+MAX_ORDER = 1024 * 1024  # bytes
+MAX_FDS = 16
+SELF = Path(__file__).parent
+
+
+def serve(orders: socket.socket) -> dict[str, Any] | None:
+    """Fork for each order. Return None when there are no more; in the process of a program, its order.
+
+    An order is received by the child that it is for: a program finds nothing of earlier ones in its memory.
+    """
+    while True:
+        select.select([orders], [], [])
+        taken, told = os.pipe()
+        if os.fork() == 0:
+            data, fds, _, _ = socket.recv_fds(orders, MAX_ORDER, MAX_FDS)
+            if not data:
+                os._exit(0)
+            os.write(told, b"1")
+            order: dict[str, Any] = json.loads(data)
+            with _reporting(orders):
+                if not _attend(orders, order, fds):
+                    _confine(orders, order, fds)
+                    return order
+            os._exit(0)
+        os.close(told)
+        received = os.read(taken, 1)
+        os.close(taken)
+        if not received:
+            return None
+        _reap()
+
+
+@contextmanager
+def _reporting(orders: socket.socket) -> Iterator[None]:
+    """Say that this process has failed, and end it: the order is not carried out."""
+    try:
+        yield
+    except BaseException as error:
+        orders.send(json.dumps({"failed": repr(error)}).encode())
+        os._exit(1)
+
+
+def _reap() -> None:
+    with suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+
+
+def _attend(orders: socket.socket, order: dict[str, Any], fds: list[int]) -> bool:
+    """Be the attendant of one program until its end; return at once, and False, in the program's own process."""
+    holder = order["holder"]
+    if order["group"]:
+        (Path(order["group"]) / "cgroup.procs").write_text("0")
+    output = os.open(f"/proc/{holder}/fd/2", os.O_WRONLY)
+    inner = confinement.join(holder)
+    program = os.fork()
+    if program == 0:
+        os.setsid()
+        os.dup2(output, 1)
+        os.dup2(output, 2)
+        confinement.join_user(inner)
+        return False
+    orders.send(json.dumps({"program": program}).encode())
+    _, status = os.waitpid(program, 0)
+    code = os.waitstatus_to_exitcode(status)
+    with suppress(BrokenPipeError):  # the sandbox was ended from outside
+        os.write(fds[0], b"%d\n" % (code if code >= 0 else 128 - code))
+    return True
+
+
+def _confine(orders: socket.socket, order: dict[str, Any], fds: list[int]) -> None:
+    """Give up whatever is left of the outside, the line on which orders come last of all."""
+    os.chdir(order["workdir"])
+    with socket.socket(fileno=confinement.place(fds[1:], order["fds"], orders.detach())) as kept:
+        with _reporting(kept):
+            confinement.limit(order["limits"])
+            confinement.drop()
+        kept.send(b'{"entered": true}')
+
+
+def become(order: dict[str, Any], base: dict[str, bool]) -> tuple[Any, dict[str, Any]]:
+    """Make this interpreter like one that was started for a program; return the program's code and its namespace.
+
+    Args:
+        order: what is to be run, and with which environment.
+        base: where Python finds modules without any PYTHONPATH, and whether that is there outside.
+    """
+    before = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    os.environ.clear()
+    os.environ.update(order["environment"], PWD=order["workdir"])  # bubblewrap tells it, too
+    script = Path(order["command"][0])
+    file, folder = (script / "__main__.py", script) if script.is_dir() else (script, script.parent)
+    modules = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
+    if _shadowed(modules):  # such a program would have another module than the one that is loaded
+        os.execve(sys.executable, [sys.executable, *order["command"]], os.environ)
+    hidden = {path for path, there in base.items() if there and not Path(path).exists()}
+    sys.path[:] = [str(folder), *modules, *(path for path in base if path not in hidden)]
+    sys.path_importer_cache.clear()  # it knows the folders of the outside
+    sys.argv[:] = order["command"]
+    sys.orig_argv[:] = [sys.executable, *order["command"]]
+    _load([part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in before])
+    del sys.modules[confinement.__name__]
+    main = sys.modules["__main__"] = ModuleType("__main__")
+    main.__dict__.update(__file__=str(file), __builtins__=__builtins__)
+    return compile(file.read_bytes(), str(file), "exec"), main.__dict__
+
+
+def _shadowed(folders: list[str]) -> bool:
+    """Return whether a folder has a module of its own that is called as one that is loaded."""
+    loaded = {name.partition(".")[0] for name in sys.modules}
+    own = {entry.partition(".")[0] for folder in folders if Path(folder).is_dir() for entry in os.listdir(folder)}
+    return bool(own & loaded)
+
+
+def _load(folders: list[str]) -> None:
+    """Load the libraries of the sandbox's own packages.
+
+    The dynamic linker has read LD_LIBRARY_PATH when this process was started, and looks nowhere else. It does take what
+    is loaded already. A library that needs another one of them is tried again.
+    """
+    waiting = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
+    while waiting:
+        left = [path for path in waiting if not _loads(path)]
+        if len(left) == len(waiting):
+            return
+        waiting = left
+
+
+def _loads(path: Path) -> bool:
+    try:
+        ctypes.CDLL(str(path))
+    except OSError:
+        return False
+    return True
+
+
+def main() -> tuple[Any, dict[str, Any]] | None:
+    """Serve until there are no more orders, or this is the process of a program."""
+    sys.path.remove(str(SELF))
+    given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    base = {path: Path(path).exists() for path in sys.path if path not in given}
+    orders = socket.socket(fileno=int(sys.argv[1]))
+    runpy.run_path(sys.argv[2])
+    gc.collect()
+    gc.freeze()  # what the programs share is not theirs to look through
+    order = serve(orders)
+    return None if order is None else become(order, base)
+
+
+if __name__ == "__main__":
+    # The program is run from here, and ends as any does: nothing of the zygote is on its stack but this line.
+    if program := main():
+        exec(*program)

@@ -1,0 +1,260 @@
+"""A program that is forked into its sandbox is where, what and as little as one that is started there."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import probes
+from autograder.lockstep import stepper
+from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.sandbox import Mount, Process, Sandbox
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.spec import INTERPRETER
+from tests.e2e.cell_support import in_cell, is_forked
+
+pytestmark = pytest.mark.usefixtures("forks")
+
+LOCKSTEP, PROBES = stepper.PRELOAD, probes.PRELOAD
+LONG = 120.0
+
+# What a process can find out about its place and its rights.
+REPORT = """
+import json, os, pathlib, signal, socket, stat, sys, threading
+
+def read(path):
+    return pathlib.Path(path).read_text()
+
+def kind(number):
+    mode = os.fstat(number).st_mode
+    return "pipe" if stat.S_ISFIFO(mode) else "null" if stat.S_ISCHR(mode) else oct(mode)
+
+status = dict(line.split(":", 1) for line in read("/proc/self/status").splitlines())
+rights = ("Umask Uid Gid Groups CapInh CapPrm CapEff CapBnd CapAmb NoNewPrivs Seccomp SigBlk SigIgn SigCgt Threads "
+          "NSpid").split()
+descriptors = [int(name) for name in os.listdir("/proc/self/fd")]
+report = {
+    "rights": {name: status[name].split() for name in rights},
+    "limits": read("/proc/self/limits"),
+    "mounts": [line.split()[3:6] + line.split(" - ")[1].split() for line in read("/proc/self/mountinfo").splitlines()],
+    "root": sorted(os.listdir("/")),
+    "environment": dict(os.environ),
+    "descriptors": {n: kind(n) for n in descriptors if os.path.exists(f"/proc/self/fd/{n}")},
+    "inheritable": [n for n in descriptors if os.path.exists(f"/proc/self/fd/{n}") and os.get_inheritable(n)],
+    "cwd": os.getcwd(),
+    "host": socket.gethostname(),
+    "uid map": read("/proc/self/uid_map").split(),
+    "own files": os.access("/proc/self/mem", os.R_OK),
+    "leads": os.getsid(0) in (os.getpid(), 1, 2),
+    "oom": read("/proc/self/oom_score_adj"),
+    "python": {
+        "argv": sys.argv, "orig_argv": sys.orig_argv[1:], "path": sys.path, "flags": str(sys.flags), "name": __name__,
+        "file": __file__, "executable": sys.executable, "streams": [s.line_buffering for s in (sys.stdin, sys.stdout)],
+        "write_through": sys.stdout.write_through, "interrupt": signal.getsignal(signal.SIGINT).__name__,
+        "main": sys.modules["__main__"].__dict__ is globals(), "thread": threading.current_thread().name,
+    },
+}
+"""
+
+
+def workplace(scratch: Path, **options: Any) -> Sandbox:
+    """Describe a sandbox as a workspace does."""
+    home = scratch / "home"
+    home.mkdir(exist_ok=True)
+    ros = {name: os.environ[name] for name in WHEEL_BOOTSTRAP_VARIABLES if name in os.environ}
+    own = {"PATH": "/usr/bin:/bin", "HOME": str(home), "PYTHONPATH": str(home / "modules")}
+    return Sandbox(home, mounts=(Mount(home, writable=True),), environment={**ros, **INTERPRETER, **own}, **options)
+
+
+def start(spec: Sandbox, code: str, preload: Path | None, *arguments: str, **options: Any) -> Process:
+    """Run code as a script, forked from what `preload` names or, without it, started."""
+    script = spec.workdir / "program.py"
+    script.write_text(code)
+    process = launch([sys.executable, str(script), *arguments], spec, preload=preload, **options)
+    assert preload is None or is_forked(process)
+    return process
+
+
+def reports(scratch: Path, network: bool) -> list[Any]:
+    """Return what a started and a forked program find out, and in which of the worker's namespaces they are."""
+    found = []
+    for preload in (None, LOCKSTEP):
+        spec = workplace(scratch, network=network)
+        code = REPORT + "print(json.dumps(report), flush=True)\nsignal.pause()"
+        with start(spec, code, preload, "one", "two") as process:
+            while not process.output.endswith("\n") and not process.wait(0.05):
+                pass
+            ours, theirs = (Path(f"/proc/{pid}/ns") for pid in ("self", process.innermost()))
+            shared = [name.name for name in ours.iterdir() if name.readlink() == (theirs / name.name).readlink()]
+            found.append([json.loads(process.output), sorted(shared)])
+    return found
+
+
+@pytest.mark.parametrize("network", [True, False])
+def test_a_forked_program_finds_itself_where_a_started_one_does(network: bool) -> None:
+    (started, apart), (forked, too) = in_cell(reports, network)
+    assert apart == too
+    assert ("net" in too) is network
+    assert not {"mnt", "pid", "user", "ipc", "uts"} & set(too)
+    for one in (started, forked):
+        del one["rights"]["NSpid"]  # numbers differ, as bubblewrap's helpers have some of their own
+        caught = one["rights"].pop("SigCgt")[0]
+        assert int(caught, 16) & 0x7FFFFFFF == 1 << signal.SIGINT - 1  # above are those of the C library's threads
+    assert forked == started
+    assert set(forked["rights"]["CapEff"] + forked["rights"]["CapBnd"]) == {"0" * 16}
+
+
+ENDS = {
+    "plain": "print('done')",
+    "status": "import sys\nprint('out', end='')\nsys.exit(7)",
+    "words": "import sys\nsys.exit('too bad')",
+    "error": "raise ValueError('nothing')",
+    "killed": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
+    "fault": "import ctypes\nctypes.string_at(0)",
+    "exit": "import os\nprint('gone', flush=True)\nos._exit(3)",
+    "at exit": "import atexit\natexit.register(print, 'last')\nprint('first')",
+    "threads": "import threading\nthreading.Timer(0.2, print, ['later']).start()",
+    "interrupt": "import os, signal\nos.kill(os.getpid(), signal.SIGINT)",
+    "left behind": "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(600)\nprint('over')",
+}
+
+
+def endings(scratch: Path) -> dict[str, list[Any]]:
+    """Return how programs end, started and forked: how, with which status, and with which last line."""
+    found: dict[str, list[Any]] = {}
+    for name, code in ENDS.items():
+        found[name] = []
+        for preload in (None, PROBES):
+            with start(workplace(scratch), code, preload) as process:
+                assert process.wait(LONG), name
+                assert process.ending is not None
+                last = process.output.splitlines()[-1:]
+                found[name].append([process.ending.value, process.returncode, last])
+    return found
+
+
+def test_a_forked_program_ends_as_a_started_one_does() -> None:
+    found = in_cell(endings)
+    assert {name: forked for name, (_, forked) in found.items()} == {name: s for name, (s, _) in found.items()}
+    assert found["status"][1] == ["exited", 7, ["out"]]
+    assert found["killed"][1][1] == 128 + 9
+
+
+def imports(scratch: Path, preload: str, code: str) -> list[str]:
+    """Return what code prints in a started and in a forked program."""
+    said = []
+    for way in (None, Path(preload)):
+        with start(workplace(scratch), code, way) as process:
+            assert process.wait(LONG)
+            said.append(process.output)
+    return said
+
+
+@pytest.mark.parametrize(
+    ("preload", "code"),
+    [
+        (PROBES, "import rclpy\nprint([n for n in dir(rclpy)])\nimport rclpy.node\nprint(dir(rclpy))"),
+        (PROBES, "import numpy\nprint(dir(numpy))"),
+        (PROBES, "import pytest\nprint(dir(pytest))"),
+        (PROBES, "import rclpy\nrclpy.node.Node"),
+        (LOCKSTEP, "import sensor_msgs\nsensor_msgs.msg.LaserScan"),
+        (LOCKSTEP, "import std_srvs\nstd_srvs.srv"),
+    ],
+)
+def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(preload: Path, code: str) -> None:
+    started, forked = in_cell(imports, str(preload), code)
+    assert forked.splitlines()[-1] == started.splitlines()[-1]
+
+
+def shadows(scratch: Path, name: str) -> list[str]:
+    """Return what a started and a forked program print that has a module of its own of that name."""
+    own = workplace(scratch).workdir / "modules" / name
+    own.mkdir(parents=True)
+    (own / "__init__.py").write_text("import sys\nprint('my own', __name__)")
+    spec, said = workplace(scratch), []
+    program = spec.workdir / "program.py"
+    program.write_text(f"import os, sys\nimport {name}\nprint(sys.argv[1:], os.getcwd()[-4:], sorted(os.environ))")
+    for preload in (None, LOCKSTEP):
+        with launch([sys.executable, str(program), "one"], spec, preload=preload) as process:
+            assert process.wait(LONG)
+            said.append(process.output)
+    return said
+
+
+@pytest.mark.parametrize("name", ["rclpy", "numpy", "selectors", "mine"])
+def test_a_module_of_the_students_comes_first_as_it_does_for_them(name: str) -> None:
+    started, forked = in_cell(shadows, name)
+    assert started.startswith(f"my own {name}\n['one'] home")
+    assert forked == started
+
+
+def draws(scratch: Path) -> list[str]:
+    """Return what two forked programs draw."""
+    code = "import random, numpy\nprint(random.random(), numpy.random.default_rng().random(), numpy.random.random())"
+    return [imports(scratch, str(PROBES), code)[1] for _ in range(2)]
+
+
+def test_forked_programs_do_not_share_their_chances() -> None:
+    one, other = in_cell(draws)
+    assert not set(one.split()) & set(other.split())
+
+
+SEARCH = """
+import re, sys
+pattern, found = re.compile(sys.argv[1].encode()), 0
+with open("/proc/self/maps") as maps, open("/proc/self/mem", "rb") as memory:
+    for line in maps:
+        span, rights, _, _, inode, *_ = line.split()
+        if rights.startswith("rw") and inode == "0":
+            start, end = (int(part, 16) for part in span.split("-"))
+            memory.seek(start)
+            found += len(pattern.findall(memory.read(end - start)))
+print(found)
+"""
+
+
+def remembered(scratch: Path) -> list[str]:
+    """Give a word to a program, and look for it in that one's memory and in that of the next."""
+    said = []
+    for words in (["[w]ord-of-mine", "word-of-mine " * 4000], ["[w]ord-of-mine"]):  # a pattern is not its own match
+        with start(workplace(scratch), SEARCH, LOCKSTEP, *words) as process:
+            assert process.wait(LONG)
+            said.append(process.output)
+    return said
+
+
+def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
+    own, other = (int(count) for count in in_cell(remembered))
+    assert own >= 1
+    assert other == 0
+
+
+def without(scratch: Path) -> list[Any]:
+    """Fork from what cannot be imported, twice; return what came of the programs, and what was said."""
+    broken = scratch / "broken.py"
+    broken.write_text("import nothing_of_that_name")
+    said: list[str] = []
+    handler = logging.Handler()
+    handler.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
+    logging.getLogger("autograder").addHandler(handler)
+    spec, ends = workplace(scratch), []
+    (spec.workdir / "program.py").write_text("print('here')")
+    for _ in range(2):
+        with launch([sys.executable, str(spec.workdir / "program.py")], spec, preload=broken) as process:
+            assert process.wait(LONG)
+            ends.append([process.returncode, process.output])
+    return [ends, said]
+
+
+def test_where_nothing_can_be_forked_programs_are_started() -> None:
+    ends, said = in_cell(without)
+    assert ends == [[0, "here\n"]] * 2
+    assert len(said) == 1
+    assert said[0].startswith("programs are started one by one, which takes longer: ")
