@@ -10,6 +10,24 @@ from autograder.sandbox import Tier
 
 
 @dataclass(frozen=True)
+class Scope:
+    """How much of a suite is run. Anything but all of it is for the proof, where nobody gets marks.
+
+    Attributes:
+        only: the checks to run; all of them when empty.
+        first_loss: whether to stop at the first check that does not pass.
+        pictures: whether checks leave pictures.
+    """
+
+    only: tuple[str, ...] = ()
+    first_loss: bool = False
+    pictures: bool = True
+
+
+ALL = Scope()
+
+
+@dataclass(frozen=True)
 class Job:
     """One submission to grade.
 
@@ -21,8 +39,7 @@ class Job:
         out: the folder that gets `result.json`, `notebook.ipynb` and the pictures.
         scratch: the cell's own file system; nothing in it outlives the cell.
         tier: how the submission is isolated.
-        only: the checks to run, for the proof; all of them when empty.
-        pictures: whether checks leave pictures; the proof looks at none.
+        scope: how much of the suite is run.
     """
 
     path: Path
@@ -32,8 +49,7 @@ class Job:
     out: Path
     scratch: Path
     tier: Tier
-    only: tuple[str, ...] = ()
-    pictures: bool = True
+    scope: Scope = ALL
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""
@@ -44,4 +60,5 @@ class Job:
         """Read a job from its JSON."""
         data = json.loads(text)
         paths = {name: Path(data[name]) for name in ("path", "out", "scratch")}
-        return cls(**{**data, **paths, "tier": Tier(data["tier"]), "only": tuple(data["only"])})
+        scope = Scope(**{**data["scope"], "only": tuple(data["scope"]["only"])})
+        return cls(**{**data, **paths, "tier": Tier(data["tier"]), "scope": scope})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
@@ -13,7 +14,7 @@ from autograder import suites
 from autograder.checks import Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.grading.job import Job
+from autograder.grading.job import ALL, Job, Scope
 from autograder.result import CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
@@ -28,6 +29,8 @@ NOTEBOOK = "notebook.ipynb"
 TRIES = 2
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
+RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
+
 
 @dataclass(frozen=True)
 class Graded:
@@ -35,6 +38,11 @@ class Graded:
 
     result: Result
     notebook: NotebookNode | None
+
+
+def in_own_cell(job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
+    """Run a job, which `job_in` makes from a scratch folder, by a worker of its own in a cell of its own."""
+    return run_in_cell(lambda scratch: _worker(job_in(scratch)), tier)
 
 
 def grade_submission(
@@ -45,8 +53,8 @@ def grade_submission(
     seed: int,
     out: Path,
     isolation: Tier = Tier.BUBBLEWRAP,
-    only: tuple[str, ...] = (),
-    pictures: bool = True,
+    scope: Scope = ALL,
+    run_job: RunJob = in_own_cell,
 ) -> Graded:
     """Grade one submission.
 
@@ -57,8 +65,8 @@ def grade_submission(
         seed: every hidden input is drawn from it; the same seed gives the same inputs.
         out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed.
         isolation: the sandbox's tier.
-        only: the checks to run, for the proof, where the others' points don't matter; all of them when empty.
-        pictures: whether checks leave pictures.
+        scope: how much of the suite is run.
+        run_job: runs the job in a cell.
 
     Returns:
         The result. `status` is `not_graded` when the grader failed twice; that is no zero.
@@ -76,10 +84,8 @@ def grade_submission(
         (out / stale).unlink(missing_ok=True)
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
-        report = run_in_cell(
-            lambda scratch: _worker(
-                Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, only, pictures)
-            ),
+        report = run_job(
+            lambda scratch: Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, scope),
             isolation,
         )
         if report.returncode == 0 and (out / RESULT).is_file():

@@ -14,6 +14,7 @@ from autograder.checks import Check, CheckFailed, Outcome, declared
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.grading.gallery import Gallery
+from autograder.grading.job import ALL, Scope
 from autograder.lab.workspace import Workspace
 from autograder.result import CheckResult
 
@@ -33,17 +34,22 @@ class GradingPlugin:
         seed: int,
         gallery: Gallery,
         builds: Mapping[str, Diagnosis] | None = None,
-        only: frozenset[str] = frozenset(),
+        scope: Scope = ALL,
     ) -> None:
         self._workspace = workspace
         self._builds = builds or {}
-        self._only = only
+        self._scope = scope
         self._seed = seed
         self._gallery = gallery
         self.results: dict[str, CheckResult] = {}
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
         self._seconds: dict[str, float] = {}
+
+    @property
+    def enough(self) -> bool:
+        """Whether no more checks need to be run: one did not pass, and the first that does not is all that is asked."""
+        return self._scope.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")
     def workspace(self) -> Workspace:
@@ -73,11 +79,13 @@ class GradingPlugin:
         check = _declared_by(item)
         if check is not None:
             self._record(check, call)
+        if self.enough:
+            item.session.shouldstop = "a check did not pass"
         return (yield)
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        if self._only:
-            items[:] = [item for item in items if (check := _declared_by(item)) and check.id in self._only]
+        if only := self._scope.only:
+            items[:] = [item for item in items if (check := _declared_by(item)) and check.id in only]
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)

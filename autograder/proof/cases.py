@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from autograder import layout, suites
+from autograder.grading.job import Scope
 from autograder.proof.attacks import Attack, attacks
 from autograder.proof.claims import Kind, as_named, full, killed, nothing
 from autograder.proof.generated import Generated, generated
@@ -16,6 +17,7 @@ from autograder.result import Result
 from autograder.suites.mutants import Mutant, lay_down, lay_down_reference, mutants
 
 Judge = Callable[[Result], str]
+UNSEEN = Scope(pictures=False)
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Case:
         write: writes it to a folder.
         judge: says what is not as claimed, an empty string if all is.
         reason: why it may survive, for a generated mutant.
-        only: the checks to run; all of them when empty.
+        scope: how much of the suite is run.
     """
 
     kind: Kind
@@ -36,7 +38,7 @@ class Case:
     write: Callable[[Path], None]
     judge: Judge
     reason: str = ""
-    only: tuple[str, ...] = ()
+    scope: Scope = UNSEEN
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
@@ -101,7 +103,7 @@ def write_release(assignment: str, folder: Path) -> None:
 
 def _mutant(mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
     judge = partial(as_named, mutant, only=frozenset(only))
-    return Case(Kind.MUTANT, mutant.id, partial(lay_down, mutant, sources), judge, only=only)
+    return Case(Kind.MUTANT, mutant.id, partial(lay_down, mutant, sources), judge, scope=replace(UNSEEN, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
@@ -121,7 +123,8 @@ def _generated(made: Generated, sources: tuple[str, ...]) -> Case:
         lay_down_reference(sources, folder)
         (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
 
-    return Case(Kind.GENERATED, made.id, write, killed, made.reason)
+    # One lost check kills it: the others would say nothing more.
+    return Case(Kind.GENERATED, made.id, write, killed, made.reason, replace(UNSEEN, first_loss=True))
 
 
 def _attack(attack: Attack) -> Case:

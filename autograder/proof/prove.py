@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from autograder.grading.batch import Entry, grade_all
+from autograder.grading.lanes import Lanes
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
 from autograder.result import Result
@@ -37,17 +38,18 @@ def prove(
         on_result: called for each result as it comes.
     """
     with tempfile.TemporaryDirectory(prefix="proof-") as name:
-        entries = tuple(Entry(case.name, _written(case, Path(name) / case.name), case.only) for case in cases)
-        results = grade_all(
-            entries,
-            assignment,
-            seed=seed,
-            out=out,
-            jobs=jobs,
-            isolation=isolation,
-            pictures=False,
-            on_result=on_result,
-        )
+        entries = tuple(Entry(case.name, _written(case, Path(name) / case.name), case.scope) for case in cases)
+        with Lanes(assignment, isolation, jobs) as lanes:
+            results = grade_all(
+                entries,
+                assignment,
+                seed=seed,
+                out=out,
+                jobs=jobs,
+                isolation=isolation,
+                run_job=lanes,
+                on_result=on_result,
+            )
     return tuple(
         Claim(assignment, case.kind, case.name, result, case.judge(result), case.reason)
         for case, result in zip(cases, results, strict=True)

@@ -50,8 +50,8 @@ def interpreter(folder: Path, name: str, body: str) -> None:
 
 
 def chosen(folder: Path, **environ: str) -> str:
-    """Return the interpreter that the set-up would be run with."""
-    return make("-n", "setup", path=str(folder), **environ).split()[0]
+    """Return the interpreter that the set-up would be run with; the system has none unless one is given."""
+    return make("-n", "setup", path=str(folder), **{"SYSTEM_PYTHON": "", **environ}).split()[0]
 
 
 def test_a_name_that_does_not_run_is_passed_over(interpreters: Path) -> None:
@@ -64,6 +64,12 @@ def test_an_interpreter_of_the_wrong_version_is_passed_over(interpreters: Path) 
     interpreter(interpreters, "python3", "exit 1")
     interpreter(interpreters, "python3.11", "exit 0")
     assert chosen(interpreters) == "python3.11"
+
+
+def test_the_systems_own_comes_before_one_that_was_built_by_hand(interpreters: Path) -> None:
+    for name in ("system", "python3", "python3.13"):
+        interpreter(interpreters, name, "exit 0")
+    assert chosen(interpreters, SYSTEM_PYTHON="system") == "system"
 
 
 def test_jazzys_own_python_comes_first(interpreters: Path) -> None:

@@ -89,8 +89,8 @@ class Grader:
         seed: int,
         out: Path,
         isolation: object,
-        only: object,
-        pictures: bool,
+        scope: object,
+        run_job: object,
     ) -> Graded:
         self._meeting.wait(60)
         self.graded.append(student)

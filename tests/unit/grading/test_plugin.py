@@ -12,6 +12,7 @@ import pytest
 from autograder.checks import Outcome
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.grading.gallery import Gallery
+from autograder.grading.job import ALL, Scope
 from autograder.grading.plugin import GradingPlugin, run
 from autograder.lab.workspace import Workspace
 from autograder.ros import activate
@@ -22,7 +23,7 @@ from autograder.checks import CheckFailed, check, expect
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 """
-Grade = Callable[[str], GradingPlugin]
+Grade = Callable[..., GradingPlugin]
 _NUMBERS = itertools.count()
 
 
@@ -33,12 +34,13 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str) -> GradingPlugin:
+    def grade_text(text: str, scope: Scope = ALL) -> GradingPlugin:
         # A name of its own: pytest keeps the modules that this process has imported.
         path = tmp_path / "suite" / f"checks_{next(_NUMBERS)}.py"
-        path.parent.mkdir()
+        path.parent.mkdir(exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
-        plugin = GradingPlugin(Workspace(tmp_path / "ws", activate(), tmp_path), 7, Gallery(tmp_path / "out"))
+        workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
+        plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), scope=scope)
         run((path,), plugin)
         return plugin
 
@@ -47,6 +49,28 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
 
 def _outcomes(plugin: GradingPlugin) -> dict[str, tuple[Outcome, float]]:
     return {name: (result.outcome, result.points) for name, result in plugin.results.items()}
+
+
+def test_where_the_first_loss_is_enough_no_check_runs_after_it(grade: Grade) -> None:
+    text = """
+        @check(points=2, group="g")
+        def test_right():
+            '''It is right.'''
+
+        @check(points=4, group="g")
+        def test_wrong():
+            '''It is wrong.'''
+            expect(False, "wrong")
+
+        @check(points=1, group="g")
+        def test_later():
+            '''It comes later.'''
+    """
+    assert list(grade(text).results) == ["right", "wrong", "later"]
+    plugin = grade(text, Scope(first_loss=True))
+    assert (list(plugin.results), plugin.enough, plugin.failures) == (["right", "wrong"], True, [])
+    plugin = grade(text, Scope(only=("right", "later"), first_loss=True))
+    assert (list(plugin.results), plugin.enough) == (["right", "later"], False)
 
 
 def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(grade: Grade) -> None:
