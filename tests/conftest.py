@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
+from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import heed_interrupts
 
 # The same examples in each run: a test that fails now and then would be no gate. Looking further is a matter of hand:
@@ -25,15 +25,10 @@ from autograder.sandbox.launcher import heed_interrupts
 hypothesis.settings.register_profile("course", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("course")
 
-# Domains 1 to 101 have no port in the range that Linux hands out to others. Runs start at different ones, and the
-# workers of a run take turns, so that no two tests at work at the same time hear each other.
-_WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-_WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-_RUN = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid()))
-_DOMAINS = itertools.count(int(hashlib.sha256(_RUN.encode()).hexdigest(), 16) % 101 + _WORKER, _WORKERS)
-
 # Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
-activate(domain=next(_DOMAINS) % 101 + 1)
+_OURS = Domain()
+_NEXT = itertools.count(_OURS.number)  # one that was just left may still have somebody in it who is on the way out
+activate(domain=_OURS.number)
 heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
@@ -50,11 +45,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(autouse=True)
-def ros_domain(monkeypatch: pytest.MonkeyPatch) -> int:
+def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     """Give the test, and the processes it starts, a ROS domain of its own; return its number."""
-    domain = next(_DOMAINS) % 101 + 1
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    return domain
+    with Domain(next(_NEXT)) as domain:
+        monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
+        yield domain.number
 
 
 MakeCheck = Callable[..., Check]

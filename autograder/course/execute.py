@@ -23,6 +23,7 @@ from autograder import layout
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, write_notebook
+from autograder.ros.domains import Domain
 
 # Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
 # (colcon, CMake) are not the notebook's to answer for.
@@ -81,7 +82,8 @@ def run_notebooks(
     def run(index: int) -> Execution:
         path, form = wanted[index]
         report = reports / f"{path.stem}-{form.value}.ipynb"
-        return run_notebook(path, form, report=report, domain=1 + (os.getpid() + index) % 100)
+        with Domain() as domain:
+            return run_notebook(path, form, report=report, domain=domain.number)
 
     with ThreadPoolExecutor(jobs) as pool:
         runs = [pool.submit(run, index) for index in range(len(wanted))]

@@ -8,7 +8,6 @@ the pipeline takes for what it is: a failure of the grader.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -29,6 +28,7 @@ from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
+from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import heed_interrupts
 from autograder.sandbox.tiers import Tier
 from autograder.suites import Suite
@@ -48,7 +48,7 @@ class Grading:
         home = job.scratch / "home"
         home.mkdir(parents=True)
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
-        domain = 0 if job.tier is Tier.BUBBLEWRAP else 1 + os.getpid() % 100
+        domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._gallery = Gallery(job.out, closed=not job.scope.pictures)
         self._phases: dict[str, float] = {}

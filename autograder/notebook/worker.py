@@ -19,6 +19,7 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.desk import ANSWER, RECORDING
 from autograder.result import write_json
 from autograder.ros import activate
+from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import current_tier, heed_interrupts
 from autograder.sandbox.tiers import Tier
 
@@ -45,7 +46,7 @@ def main() -> None:
     scratch, out = Path(errand["scratch"]), Path(errand["out"])
     home = scratch / "home"
     home.mkdir(parents=True)
-    domain = 0 if current_tier() is Tier.BUBBLEWRAP else 1 + hash(str(scratch)) % 100
+    domain = 0 if current_tier() is Tier.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     shutil.copytree(errand["source"], workspace.root / "src", ignore=layout.NOT_COPIED)
     packages, may_fail, run = {"drive": _for_drive, "check": _for_check}[errand["verb"]](errand["arguments"])

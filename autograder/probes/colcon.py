@@ -10,7 +10,7 @@ from autograder.lab.workspace import Workspace
 from autograder.probes import junit
 from autograder.probes.junit import Claims
 from autograder.probes.testing import Report, sandboxed
-from autograder.sandbox import Mount
+from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 
@@ -24,8 +24,14 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
         arguments: more for the command line.
 
     Returns:
-        What colcon says: its exit status, and the tests in the file that its `test-result` would count.
+        What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
+        be stopped, that of a second time, as `testing.run` has it.
     """
+    first = _colcon_test(workspace, package, arguments)
+    return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
+
+
+def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
     colcon = str(Path(sys.executable).with_name("colcon"))
     command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "test"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -145,6 +147,28 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
     (report,) = runs(workspace, Order(("test_half.py",), RIGHT))
     assert report.ending is Ending.WALL_TIME
     assert not report.passed
+
+
+@pytest.mark.parametrize(
+    ("hangs", "ends"),
+    [
+        pytest.param(1, (Ending.EXITED, Ending.EXITED), id="once, where rclpy missed the end of an executor"),
+        pytest.param(2, (Ending.WALL_TIME, Ending.WALL_TIME), id="on every version, as tests that never end"),
+    ],
+)
+def test_a_run_that_alone_had_to_be_stopped_gets_a_second_one(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[Ending, ...]
+) -> None:
+    write(workspace, GOOD)
+    really, stopped = testing._run, itertools.count()
+
+    def sometimes(*run: Any) -> Report:
+        report = really(*run)
+        return report if next(stopped) >= hangs else replace(report, ending=Ending.WALL_TIME)
+
+    monkeypatch.setattr(testing, "_run", sometimes)
+    reports = runs(workspace, Order(("test_half.py",), RIGHT), Order(("test_half.py",), WRONG))
+    assert tuple(report.ending for report in reports) == ends
 
 
 def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(

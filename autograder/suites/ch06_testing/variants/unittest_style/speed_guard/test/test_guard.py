@@ -34,8 +34,14 @@ class Harness:
         self.executor = MultiThreadedExecutor(num_threads=2, context=context)
         self.executor.add_node(self.node)
         self.executor.add_node(guard)
-        self.thread = threading.Thread(target=self.executor.spin)
+        self.over = threading.Event()
+        self.thread = threading.Thread(target=self.spin)
         self.thread.start()
+
+    def spin(self):
+        """Look now and then whether the test is over: shutdown() can miss a thread that waits."""
+        while not self.over.is_set():
+            self.executor.spin_once(timeout_sec=0.1)
 
     def distance(self, value):
         """Publish a distance, and a harmless command: answered, it has been taken."""
@@ -70,8 +76,9 @@ def guarded(**parameters):
     try:
         yield harness
     finally:
-        harness.executor.shutdown()
+        harness.over.set()
         harness.thread.join()
+        harness.executor.shutdown()
         guard.destroy_node()
         harness.node.destroy_node()
         rclpy.try_shutdown(context=context)
