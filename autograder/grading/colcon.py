@@ -15,6 +15,7 @@ from autograder.sandbox import Ending, Mount, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 
+HOST, PRELOAD = Path(__file__).with_name("colcon_host.py"), Path(__file__).with_name("preload.py")
 LOG_LINES = 40
 
 
@@ -28,8 +29,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
     """
-    colcon = str(Path(sys.executable).with_name("colcon"))
-    command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *choice]
     environment = workspace.environment()
     slim = slim_interfaces(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
@@ -43,14 +43,14 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *(Mount(space) for space in workspace.underlays),
+            *map(Mount, (HOST, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
         environment=environment,
         limits=BUILD,
     )
-    with launch(command, spec) as process:
+    with launch(command, spec, preload=PRELOAD) as process:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode
     if ending is not Ending.EXITED or status != 0:

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TextIO
 
 from autograder import probes
-from autograder.grading import worker
+from autograder.grading import colcon, worker
 from autograder.grading.job import Job
 from autograder.lockstep import stepper
 from autograder.sandbox.launcher import warm_up
@@ -76,7 +76,7 @@ def main() -> None:
     assignment, scratch = sys.argv[1], Path(sys.argv[2])
     suite = worker.prepare(assignment)
     assert suite.version  # read once for all, too
-    for preload in (stepper.PRELOAD, probes.PRELOAD):
+    for preload in (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD):
         warm_up(preload)
     runpy.run_path(str(probes.PRELOAD))  # a worker needs most of that, too
     gc.collect()

@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from autograder.grading.colcon import HOST, PRELOAD
 from autograder.lab.workspace import Workspace
 from autograder.probes import junit
 from autograder.probes.junit import Claims
@@ -32,11 +33,10 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
 
 
 def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
-    colcon = str(Path(sys.executable).with_name("colcon"))
-    command = [sys.executable, colcon, "--log-base", str(workspace.scratch / "colcon-log"), "test"]
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "test"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
     command += ["--packages-select", package, "--return-code-on-test-failure", *arguments]
-    plain = sandboxed(workspace, limits=BUILD)
+    plain = sandboxed(workspace, HOST, limits=BUILD)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
     mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)
@@ -46,7 +46,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     report = workspace.root / "build" / package / "pytest.xml"
     if _inside(report, workspace.root):
         report.unlink(missing_ok=True)
-    with launch(command, spec) as process:
+    with launch(command, spec, preload=PRELOAD) as process:
         process.wait(BUILD.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
     claims = junit.read(report) if _inside(report, workspace.root) else None

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from autograder import probes
+from autograder.grading import colcon
 from autograder.lockstep import stepper
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Mount, Process, Sandbox
@@ -166,6 +167,7 @@ def imports(scratch: Path, preload: str, code: str) -> list[str]:
         (PROBES, "import rclpy\nrclpy.node.Node"),
         (LOCKSTEP, "import sensor_msgs\nsensor_msgs.msg.LaserScan"),
         (LOCKSTEP, "import std_srvs\nstd_srvs.srv"),
+        (colcon.PRELOAD, "import setuptools\nsetuptools.no_such_thing"),
     ],
 )
 def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(preload: Path, code: str) -> None:

@@ -1,0 +1,146 @@
+"""colcon with forked children builds what colcon builds, and a setup.py sees and says the same in both."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import layout
+from autograder.grading.colcon import HOST
+from autograder.lab import Workspace
+from autograder.ros import environment
+
+PLAIN = Path(sys.executable).with_name("colcon")
+SPIES = """
+import atexit, json, logging, os, signal, sys, sysconfig, warnings
+from pathlib import Path
+
+seen = {
+    'argv': sys.argv, 'path': sys.path, 'executable': sys.executable, 'prefix': sys.prefix, 'name': __name__,
+    'file': globals().get('__file__'), 'cwd': os.getcwd(), 'environment': dict(os.environ),
+    'descriptors': sorted(name for name in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{name}')),
+    'streams': [os.path.basename(os.readlink(f'/proc/self/fd/{n}')).split(':')[0] for n in (0, 1, 2)],
+    'signals': [str(signal.getsignal(n)) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGCHLD)],
+    'handlers': len(logging.root.handlers), 'level': logging.root.level, 'main': sorted(vars(sys.modules['__main__'])),
+    'encodings': [sys.stdout.encoding, sys.stderr.encoding, sys.stderr.errors],
+    'purelib': sysconfig.get_paths()['purelib'], 'warned': warnings.filters[0][0],
+}
+with open(Path.home() / 'seen', 'a') as log:
+    print(json.dumps(seen), file=log)
+atexit.register(lambda: open(Path.home() / 'ended', 'a').write('ended\\n'))
+if 'install' in sys.argv:
+    print('a word to stdout')
+    print('a word to stderr', file=sys.stderr)
+"""
+AT_INSTALL = "if 'install' in sys.argv:"
+FROM_RUN_TO_RUN = re.compile(r"\[[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
+
+Build = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+def bring(workspace: Workspace, package: str, *lines: str) -> None:
+    """Put a reference package there, and lines at the beginning of its setup.py."""
+    folder = workspace.root / "src" / package
+    shutil.copytree(layout.SOLUTIONS / package, folder, ignore=layout.NOT_COPIED)
+    setup = folder / "setup.py"
+    setup.write_text("\n".join([*lines, setup.read_text()]))
+
+
+def build(workspace: Workspace, colcon: Path) -> subprocess.CompletedProcess[str]:
+    """Build with one of the two; the spaces are left."""
+    for space in ("build", "install"):
+        shutil.rmtree(workspace.root / space, ignore_errors=True)
+    for left in workspace.scratch.iterdir():
+        shutil.rmtree(left) if left.is_dir() else left.unlink()
+    command = [sys.executable, str(colcon), "--log-base", str(workspace.scratch / "log"), "build"]
+    command += ["--executor", "sequential", "--event-handlers", "console_cohesion+", "desktop_notification-"]
+    return subprocess.run(
+        command,
+        cwd=workspace.root,
+        env=workspace.environment(),
+        text=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+
+
+def said(process: subprocess.CompletedProcess[str]) -> list[str]:
+    """What a build has printed, but for times; two streams of one program come in any order."""
+    return sorted(FROM_RUN_TO_RUN.sub("", line) for line in process.stdout.splitlines())
+
+
+def files(folder: Path) -> dict[str, tuple[int, bytes]]:
+    """Return mode and content of each file."""
+    return {
+        str(path.relative_to(folder)): (path.stat().st_mode, path.read_bytes())
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_reference_packages_are_installed_alike(workspace: Workspace) -> None:
+    for package in ("my_robot_package", "my_robot_bringup", "speed_guard"):
+        bring(workspace, package)
+    plain = build(workspace, PLAIN)
+    installed = files(workspace.install)
+    hosted = build(workspace, HOST)
+    assert (plain.returncode, hosted.returncode) == (0, 0), hosted.stdout
+    assert len(installed) > 100
+    assert files(workspace.install) == installed
+    assert said(hosted) == said(plain)
+
+
+def test_a_setup_py_sees_the_same(workspace: Workspace) -> None:
+    bring(workspace, "speed_guard", SPIES)
+
+    def seen(colcon: Path) -> list[dict[str, Any]]:
+        built = build(workspace, colcon)
+        assert built.returncode == 0, built.stdout
+        assert "a word to stderr" in built.stdout
+        runs = [json.loads(line) for line in (workspace.scratch / "seen").read_text().splitlines()]
+        assert (workspace.scratch / "ended").read_text() == "ended\n" * len(runs)
+        for run in runs:
+            run["path"] = [path for path in run["path"] if Path(path).name != "_vendor"]  # setuptools adds it
+            # The wheels' hook writes these folders in any order.
+            run["environment"]["LD_LIBRARY_PATH"] = sorted(run["environment"]["LD_LIBRARY_PATH"].split(":"))
+        return runs
+
+    plain, hosted = seen(PLAIN), seen(HOST)
+    assert len(plain) == 3
+    assert hosted == plain
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import no_such_module",
+        "this is no Python",
+        f"{AT_INSTALL} raise RuntimeError('no such thing')",
+        f"{AT_INSTALL} sys.exit(3)",
+        f"{AT_INSTALL} exit('so it ends')",
+        f"{AT_INSTALL} os._exit(7)",
+        f"{AT_INSTALL} os.kill(os.getpid(), 9)",
+        f"{AT_INSTALL} print(colcon_core)",
+    ],
+)
+def test_a_setup_py_that_fails_is_told_alike(workspace: Workspace, line: str) -> None:
+    bring(workspace, "speed_guard", "import os, sys", line)
+    plain, hosted = build(workspace, PLAIN), build(workspace, HOST)
+    assert plain.returncode != 0
+    assert hosted.returncode == plain.returncode
+    assert said(hosted) == said(plain)
