@@ -27,10 +27,11 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 import autograder
 from autograder.exceptions import StudentError
 from autograder.lab import hold
-from autograder.lab.meeting import DEPTH, DOMAINS, NAME
+from autograder.lab.meeting import DEPTH, NAME
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import diagnose_ending
 from autograder.ros.discovery import announcing_often
+from autograder.ros.domains import Domain
 from autograder.sandbox import Limits, Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.process import measure
@@ -39,7 +40,7 @@ LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _STEP = 0.05  # s between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
-_LABS = itertools.count(1)
+_LABS = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -107,10 +108,8 @@ class LaunchLab:
         listens: Mapping[str, type] | None = None,
     ) -> None:
         self._anew = partial(LaunchLab, workspace, package, file, arguments, listens=listens)
-        # Other labs count their domains upwards: the two kinds can be open at once.
-        workspace = replace(workspace, domain=(workspace.domain - next(_LABS)) % DOMAINS)
-        self._domain = workspace.domain
-        self._sandbox = sandbox(workspace)
+        self._domain = Domain(workspace.domain + next(_LABS))
+        self._sandbox = sandbox(replace(workspace, domain=self._domain.number))
         words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
         self._command = command("launch", "--noninteractive", package, file, *words)
@@ -121,7 +120,7 @@ class LaunchLab:
     def __enter__(self) -> LaunchLab:
         self._context = Context()
         with announcing_often():  # launched nodes come when they come
-            rclpy.init(args=[], context=self._context, domain_id=self._domain)
+            rclpy.init(args=[], context=self._context, domain_id=self._domain.number)
             self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
@@ -256,6 +255,7 @@ class LaunchLab:
         self._executor.shutdown(timeout_sec=0)
         self.node.destroy_node()
         self._context.try_shutdown()
+        self._domain.close()
 
     def _ask(self, node: str, names: Collection[str], seconds: float) -> dict[str, Any] | None:
         client = self.node.create_client(GetParameters, f"{node}/get_parameters")

@@ -20,12 +20,12 @@ from autograder.lab.programs import Program, lay_down
 from autograder.lab.station import DEPTH, NAME, Handler, Station
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.lockstep_host.channels import type_name
+from autograder.ros.domains import Domain
 from autograder.sandbox import Process
 
-__all__ = ["DEPTH", "DOMAINS", "MEETING_SECONDS", "NAME", "Lab", "Program", "Stamped"]
+__all__ = ["DEPTH", "MEETING_SECONDS", "NAME", "Lab", "Program", "Stamped"]
 
 MEETING_SECONDS = 30.0  # real time for the two sides to find each other
-DOMAINS = 100  # beyond about that number, DDS ports reach into the ephemeral ones
 
 _LABS = itertools.count()
 
@@ -77,7 +77,8 @@ class Lab(ABC):
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
         # Two labs may be open at once, with programs that have the same names: each pair meets in a domain of its own.
-        self._workspace = replace(workspace, domain=(workspace.domain + next(_LABS)) % DOMAINS)
+        self._domain = Domain(workspace.domain + next(_LABS))
+        self._workspace = replace(workspace, domain=self._domain.number)
         self._sandbox = self._workspace.sandbox()
         self._offers, self._listens = dict(offers or {}), dict(listens or {})
         self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
@@ -125,7 +126,7 @@ class Lab(ABC):
     # What they share.
 
     def __enter__(self: AnyLab) -> AnyLab:
-        self._station = Station(self._workspace.domain)
+        self._station = Station(self._domain.number)
         self._actions = Actions(self._station, lambda: self.seconds)
         self.node = self._station.node
         self._inside = True
@@ -145,6 +146,7 @@ class Lab(ABC):
     ) -> None:
         self._inside = False
         self._station.close()
+        self._domain.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     @property
