@@ -122,12 +122,14 @@ def _run(command: list[str]) -> None:
     sys.argv[:] = words if script else ["-c", *words[2:]]
     given = os.environ.get("PYTHONPATH")
     modules = [str(Path(part).absolute()) for part in given.split(os.pathsep)] if given else []
-    sys.path[:] = [str(script.parent) if script else "", *modules, *_BASE, *([str(_VENDORED)] * _VENDORED.is_dir())]
+    sys.path[:] = [*modules, *_BASE]
     sys.path_importer_cache.clear()
     sys.modules.pop("sitecustomize", None)
     if any(Path(folder, "sitecustomize.py").exists() for folder in modules):
         importlib.import_module("sitecustomize")
         importlib.reload(sysconfig)  # it has noted down the prefix that colcon's sitecustomize takes away
+    # What stands beside the script is found from now on: no sitecustomize is looked for there.
+    sys.path[:] = [str(script.parent) if script else "", *sys.path, *([str(_VENDORED)] * _VENDORED.is_dir())]
     # setuptools asks nine times in a run, and each time all packages' metadata are read.
     everything = lru_cache(metadata.entry_points)
     metadata.entry_points = lambda **chosen: everything().select(**chosen)  # type: ignore[assignment]
