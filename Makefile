@@ -33,12 +33,12 @@ test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not tour and not classes" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder -m "not tour and not classes" $(PYTEST_ARGS)
 
 check:          ## the fast part of the tests
 	@$(BOOTSTRAP) --dev
 	@$(MAKE) --no-print-directory lint
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not slow and not browser" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder -m "not slow and not browser" $(PYTEST_ARGS)
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
 LINTED := autograder sim tests assets nbgrader_config.py
@@ -60,7 +60,7 @@ tour:           ## solve each chapter's release in JupyterLab, keep screenshots 
 
 classes:        ## a class of five hands in each chapter, graded through nbgrader and without
 	@$(BOOTSTRAP) --dev
-	$(BIN)/python -m pytest tests/e2e/test_classes.py -n $(WORKERS) --dist loadgroup $(PYTEST_ARGS)
+	$(BIN)/python -m pytest tests/e2e/test_classes.py -n $(WORKERS) --dist loadscope --no-loadscope-reorder $(PYTEST_ARGS)
 
 bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev

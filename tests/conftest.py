@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ import hypothesis
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from xdist.remote import Producer
+from xdist.scheduler import LoadScopeScheduling
 
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import Diagnosis, Kind
@@ -32,16 +35,21 @@ activate(domain=_OURS.number)
 heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Keep a file's tests on one worker; the long ones that go through every chapter, a chapter's."""
-    for item in items:
-        group = str(item.path)
-        if item.get_closest_marker("slow") is not None:
-            given = item.callspec.params if hasattr(item, "callspec") else {}
-            chapter = given.get("assignment") or getattr(given.get("chapter"), "assignment", "")
-            group += f" {chapter}" if chapter else ""
-        item.add_marker(pytest.mark.xdist_group(group))
+_CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
+
+
+class ByFile(LoadScopeScheduling):
+    """Keeps a file's tests, or its tests of one chapter, on one worker, which makes what they share once."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file, _, test = nodeid.partition("::")
+        chapter = _CHAPTER.search(test)
+        return f"{file} {chapter[0]}" if chapter else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile:
+    return ByFile(config, log)
 
 
 @pytest.fixture(autouse=True)
