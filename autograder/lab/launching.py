@@ -9,7 +9,7 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -26,7 +26,6 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 import autograder
 from autograder.exceptions import StudentError
-from autograder.lab import hold
 from autograder.lab.meeting import DEPTH, NAME
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import diagnose_ending
@@ -36,6 +35,7 @@ from autograder.sandbox import Limits, Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.process import measure
 
+HOST = Path(__file__).with_name("launch_host")
 LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _STEP = 0.05  # s between two looks at a condition while nothing arrives
@@ -65,9 +65,16 @@ class Stop:
     left: tuple[str, ...]
 
 
-def command(*words: str) -> list[str]:
-    """Return the command line of `ros2 WORDS...`, the real one where there is one, else the stand-in."""
-    return [sys.executable, "-m", "autograder.ros.ros2", *words]
+def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
+    """Start `ros2 WORDS...`, the real one where there is one, else the stand-in.
+
+    Args:
+        words: the arguments.
+        spec: from `sandbox`.
+        status: a descriptor that gets the exit status, as a line; what is started then outlives `ros2`.
+    """
+    command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
+    return launch(command, spec, pass_fds=() if status is None else (status,), preload=HOST / "preload.py")
 
 
 def sandbox(workspace: Workspace) -> Sandbox:
@@ -112,7 +119,7 @@ class LaunchLab:
         self._sandbox = sandbox(replace(workspace, domain=self._domain.number))
         words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
-        self._command = command("launch", "--noninteractive", package, file, *words)
+        self._words = ("launch", "--noninteractive", package, file, *words)
         self._listens = dict(listens or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._listens}
         self._said = b""
@@ -130,8 +137,7 @@ class LaunchLab:
         self._pipe, theirs = os.pipe()
         os.set_blocking(self._pipe, False)
         try:
-            holder = [sys.executable, "-I", "-S", str(Path(hold.__file__)), str(theirs)]
-            self.process: Process = launch([*holder, *self._command], self._sandbox, pass_fds=(theirs,))
+            self.process: Process = start(self._words, self._sandbox, theirs)
         except BaseException:
             self._leave()
             raise
@@ -217,7 +223,7 @@ class LaunchLab:
     def programs(self) -> list[Program]:
         """Return the running executables of packages, in the order of their process ids."""
         found = []
-        for pid in sorted(measure(self.process.pid).pids):
+        for pid in sorted(measure(self.process.innermost()).pids):
             # A script is the second word, behind its interpreter; a process that has ended has no words.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             found += [Program(pid, match["package"], match["name"]) for match in matches if match is not None]
@@ -282,9 +288,10 @@ def _others(endpoints: list[Any]) -> list[str]:
 
 def _command_of(pid: int) -> list[str]:
     try:
-        return Path(f"/proc/{pid}/cmdline").read_text(errors="replace").split("\0")[:-1]
+        text = Path(f"/proc/{pid}/cmdline").read_text(errors="replace").rstrip("\0")
     except OSError:
         return []
+    return text.split("\0") if text else []
 
 
 def _first_child(pid: int) -> int:

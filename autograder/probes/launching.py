@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.lab.launching import LaunchLab, Stop, command, sandbox
+from autograder.lab.launching import LaunchLab, Stop, sandbox, start
 from autograder.lab.workspace import Workspace
-from autograder.sandbox.launcher import launch
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
 QUIET_SECONDS = 1.5  # real time without a change, once each program that runs has its node
@@ -68,7 +67,7 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
     Raises:
         CheckFailed: the file is not installed, or cannot be read.
     """
-    with launch(command("launch", "--show-args", package, file), sandbox(workspace)) as process:
+    with start(("launch", "--show-args", package, file), sandbox(workspace)) as process:
         process.wait(SHOW_SECONDS)
         output, status = process.output, process.returncode
     require_written(output)

@@ -24,6 +24,7 @@ from autograder.sandbox.spec import Sandbox
 HOST = Path(__file__).with_name("zygote_host")
 # In the program's place: says that the sandbox stands, and ends as the program does.
 HOLDER = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
+_ROOM = 2048  # bytes of command line, in which a program's own child can be called what it is
 PATIENCE = 60.0  # s for a zygote's imports, or for one fork, on a machine that is busy
 
 
@@ -42,7 +43,7 @@ class Zygote:
         self._orders.settimeout(PATIENCE)
         with theirs:
             self._popen = subprocess.Popen(
-                [sys.executable, str(HOST), str(theirs.fileno()), str(preload)],
+                [sys.executable, str(HOST), str(theirs.fileno()), str(preload), " " * _ROOM],
                 stdin=subprocess.DEVNULL,
                 env=dict(environment),
                 pass_fds=(theirs.fileno(),),

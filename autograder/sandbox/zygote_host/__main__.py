@@ -1,18 +1,18 @@
 """The zygote's process: it waits for orders, and forks for each.
 
-    python zygote_host SOCKET_FD PRELOAD
+    python zygote_host SOCKET_FD PRELOAD ROOM
 
 It is trusted, lives outside every sandbox, and runs no line of a student's: PRELOAD is a script of the grader's. For
 each order a child, the attendant, joins the sandbox that bubblewrap has made, forks the program's process into it, and
 gives its exit status to the process there that bubblewrap waits for. The program's process gives up whatever is left of
-the outside (see `confinement`) before it reads anything of a student's, and then becomes the program.
+the outside (see `confinement`) before it reads anything of a student's, and then becomes the program. Nobody reads
+ROOM: it makes the command line long enough for that of a program's own child (see `nursery`).
 
 Descriptors that come with an order are the line to the process that bubblewrap waits for, then the program's.
 """
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import json
 import os
@@ -23,12 +23,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from autograder.sandbox.zygote_host import confinement
+    from autograder.sandbox.zygote_host import becoming, confinement
 else:
+    import becoming
     import confinement
 
 MAX_ORDER = 1024 * 1024  # bytes
@@ -111,62 +111,6 @@ def _confine(orders: socket.socket, order: dict[str, Any], fds: list[int]) -> No
         kept.send(b'{"entered": true}')
 
 
-def become(order: dict[str, Any], base: dict[str, bool]) -> tuple[Any, dict[str, Any]]:
-    """Make this interpreter like one that was started for a program; return the program's code and its namespace.
-
-    Args:
-        order: what is to be run, and with which environment.
-        base: where Python finds modules without any PYTHONPATH, and whether that is there outside.
-    """
-    before = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
-    os.environ.clear()
-    os.environ.update(order["environment"], PWD=order["workdir"])  # bubblewrap tells it, too
-    script = Path(order["command"][0])
-    file, folder = (script / "__main__.py", script) if script.is_dir() else (script, script.parent)
-    modules = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
-    if _shadowed(modules):  # such a program would have another module than the one that is loaded
-        os.execve(sys.executable, [sys.executable, *order["command"]], os.environ)
-    hidden = {path for path, there in base.items() if there and not Path(path).exists()}
-    sys.path[:] = [str(folder), *modules, *(path for path in base if path not in hidden)]
-    sys.path_importer_cache.clear()  # it knows the folders of the outside
-    sys.argv[:] = order["command"]
-    sys.orig_argv[:] = [sys.executable, *order["command"]]
-    _load([part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in before])
-    del sys.modules[confinement.__name__]
-    main = sys.modules["__main__"] = ModuleType("__main__")
-    main.__dict__.update(__file__=str(file), __builtins__=__builtins__)
-    return compile(file.read_bytes(), str(file), "exec"), main.__dict__
-
-
-def _shadowed(folders: list[str]) -> bool:
-    """Return whether a folder has a module of its own that is called as one that is loaded."""
-    loaded = {name.partition(".")[0] for name in sys.modules}
-    own = {entry.partition(".")[0] for folder in folders if Path(folder).is_dir() for entry in os.listdir(folder)}
-    return bool(own & loaded)
-
-
-def _load(folders: list[str]) -> None:
-    """Load the libraries of the sandbox's own packages.
-
-    The dynamic linker has read LD_LIBRARY_PATH when this process was started, and looks nowhere else. It does take what
-    is loaded already. A library that needs another one of them is tried again.
-    """
-    waiting = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
-    while waiting:
-        left = [path for path in waiting if not _loads(path)]
-        if len(left) == len(waiting):
-            return
-        waiting = left
-
-
-def _loads(path: Path) -> bool:
-    try:
-        ctypes.CDLL(str(path))
-    except OSError:
-        return False
-    return True
-
-
 def main() -> tuple[Any, dict[str, Any]] | None:
     """Serve until there are no more orders, or this is the process of a program."""
     sys.path.remove(str(SELF))
@@ -177,7 +121,12 @@ def main() -> tuple[Any, dict[str, Any]] | None:
     gc.collect()
     gc.freeze()  # what the programs share is not theirs to look through
     order = serve(orders)
-    return None if order is None else become(order, base)
+    if order is None:
+        return None
+    for module in (becoming, confinement):
+        del sys.modules[module.__name__]
+    environment = {**order["environment"], "PWD": order["workdir"]}  # bubblewrap tells it, too
+    return becoming.become(order["command"], environment, base)
 
 
 if __name__ == "__main__":

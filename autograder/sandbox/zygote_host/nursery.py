@@ -1,0 +1,193 @@
+"""Python programs that a forked program starts, forked as well.
+
+    if program := nursery.open_here():
+        exec(*program)  # the process of one that was started
+
+What `ros2 launch` starts are ROS programs, each of which would import all that the launch was forked with. The launch
+must not fork them itself: it is about to have threads, and things of its own in memory. So before it does anything it
+forks the nursery, which stays as it is, and forks for each command that `subprocess` is given. Python scripts with this
+interpreter in their first line are forked, anything else is started as ever, and so is everything where this Python's
+`subprocess` is another than this knows.
+
+A program's parent is the one who asked: the nursery's child makes it and ends, and then it is adopted (`prctl(2)`,
+PR_SET_CHILD_SUBREAPER). All of it runs inside the sandbox, and is no less the student's to harm.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from autograder.sandbox.zygote_host import becoming
+else:
+    import becoming
+
+Program = tuple[Any, dict[str, Any]]
+
+_PR_SET_CHILD_SUBREAPER = 36
+_MAX_ORDER = 1024 * 1024  # bytes
+_ARG_START, _ARG_END = 45, 46  # among the fields of /proc/self/stat behind the name, proc_pid_stat(5)
+_STARTED: Any = getattr(subprocess.Popen, "_execute_child", None)
+_KNOWN = [
+    *("self", "args", "executable", "preexec_fn", "close_fds", "pass_fds", "cwd", "env", "startupinfo"),
+    *("creationflags", "shell", "p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite"),
+    *("restore_signals", "gid", "gids", "uid", "umask", "start_new_session"),
+]
+_PLAIN: dict[str, Any] = {
+    "executable": None,
+    "preexec_fn": None,
+    "close_fds": True,
+    "shell": False,
+    "gid": None,
+    "gids": None,
+}
+_PLAIN |= {"uid": None, "umask": -1, "restore_signals": True}
+
+
+def open_here(forget: Sequence[str] = ()) -> Program | None:
+    """Fork the nursery of this process, which from now on has its Python programs forked there.
+
+    Call it while the process has one thread, and has read nothing of the student's.
+
+    Args:
+        forget: top-level modules that this process has imported and its programs have not.
+
+    Returns:
+        None here; in the process of a program what that is to run: its code, and the namespace for it.
+    """
+    if not _STARTED or list(inspect.signature(_STARTED).parameters)[: len(_KNOWN)] != _KNOWN:
+        return None
+    ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    sys.stdout.flush()
+    if os.fork() == 0:
+        line.close()
+        for name in [name for name in sys.modules if name.partition(".")[0] in forget]:
+            del sys.modules[name]
+        return _serve(theirs)
+    theirs.close()
+    _Popen.line, _Popen.owner = line, os.getpid()
+    subprocess.Popen = _Popen  # type: ignore[misc]
+    return None
+
+
+def be_called(words: Sequence[str]) -> None:
+    """Let /proc/self/cmdline say `words`, as much of them as there is room for."""
+    start, end = map(int, Path("/proc/self/stat").read_text().rpartition(")")[2].split()[_ARG_START:][:2])
+    text = b"".join(os.fsencode(word) + b"\0" for word in words)[: end - start - 1]
+    ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
+
+
+class _Popen(subprocess.Popen):  # type: ignore[type-arg]
+    """A child process: forked in the nursery, if it may be, and otherwise started."""
+
+    line: socket.socket
+    owner = 0
+    lock = threading.Lock()
+
+    def _execute_child(self, args: Any, *more: Any) -> None:
+        given = dict(zip(_KNOWN[2:], more, strict=False))
+        order = _order(args, given) if os.getpid() == self.owner else None
+        streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
+        pid = self._ask(order, streams) if order is not None else 0
+        if not pid:
+            _STARTED(self, args, *more)
+            return
+        self.pid = pid
+        self._child_created = True
+        ends = [given[name] for name in ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")]
+        self._close_pipe_fds(*ends)  # type: ignore[attr-defined]
+
+    def _ask(self, order: dict[str, Any], streams: tuple[int, int, int]) -> int:
+        """Order a program; return its process id, 0 if the nursery is no more."""
+        fds = [number if descriptor == -1 else descriptor for number, descriptor in enumerate(streams)]
+        with self.lock:
+            try:
+                socket.send_fds(self.line, [json.dumps(order).encode()], fds)
+                return int(self.line.recv(64) or b"0")
+            except OSError:
+                return 0
+
+
+def _order(args: Any, given: dict[str, Any]) -> dict[str, Any] | None:
+    """Return what the nursery is to do; None where it is better left to `subprocess`."""
+    plain = all(given[name] == value for name, value in _PLAIN.items()) and not given["pass_fds"]
+    if not plain or isinstance(args, str | bytes):
+        return None
+    words = [os.fsdecode(word) for word in args]
+    words = words[1:] if words[:1] == [sys.executable] else words
+    environment = {os.fsdecode(k): os.fsdecode(v) for k, v in (given["env"] or os.environ).items()}
+    cwd = os.fsdecode(given["cwd"] or ".")
+    if (
+        not words
+        or not Path(cwd).is_dir()
+        or not _is_ours(Path(cwd, words[0]))
+        or _interpreter(environment) != _interpreter(dict(os.environ))
+    ):
+        return None
+    return {"words": words, "environment": environment, "cwd": cwd, "session": bool(given["start_new_session"])}
+
+
+def _is_ours(script: Path) -> bool:
+    """Return whether the kernel would start this interpreter, with no option, for a script."""
+    try:
+        with script.open("rb") as file:
+            return file.readline(4096).rstrip() == b"#!" + os.fsencode(sys.executable) and os.access(script, os.X_OK)
+    except OSError:
+        return False
+
+
+def _interpreter(environment: dict[str, str]) -> dict[str, str]:
+    """Return what an interpreter reads of its environment when it starts, but for where modules are."""
+    return {k: v for k, v in environment.items() if k.startswith(("PYTHON", "LC_", "LANG")) and k != "PYTHONPATH"}
+
+
+def _serve(line: socket.socket) -> Program | None:
+    """Fork for each order, until there are no more; returns in the process of a program only."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # this process ends with the one that it serves
+    be_called([])
+    while True:
+        data, fds, _, _ = socket.recv_fds(line, _MAX_ORDER, 3)
+        if not data:
+            os._exit(0)
+        told, tell = os.pipe()
+        middle = os.fork()
+        if middle == 0:
+            child = os.fork()
+            if child == 0:
+                line.detach()
+                return _child(json.loads(data), fds)
+            os.write(tell, b"%d" % child)
+            os._exit(0)
+        os.waitpid(middle, 0)  # from now on the program has its new parent
+        line.send(os.read(told, 64))
+        for descriptor in (*fds, told, tell):
+            os.close(descriptor)
+
+
+def _child(order: dict[str, Any], fds: list[int]) -> Program:
+    """Take a child's place, and become its program."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if order["session"]:
+        os.setsid()
+    for number, descriptor in enumerate(fds):
+        os.dup2(descriptor, number)
+    os.closerange(len(fds), os.sysconf("SC_OPEN_MAX"))
+    given = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
+    base = {path: False for path in sys.path[1:] if path not in given}
+    os.chdir(order["cwd"])
+    be_called([sys.executable, *order["words"]])
+    out: Any = sys.stdout
+    out.reconfigure(line_buffering=os.isatty(1) and not out.write_through)
+    return becoming.become(order["words"], order["environment"], base)
