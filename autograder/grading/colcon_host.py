@@ -4,8 +4,9 @@
 
 To build one Python package, colcon starts Python three times for its setup.py, and most of what those do is to import
 setuptools, which colcon has imported, too. Here they are forked from colcon's process, and become what a new
-interpreter would be: the same command line, environment, module path, sitecustomize and streams. Whatever else colcon
-starts, and every child where this Python's `subprocess` is another than this knows, is started as ever.
+interpreter would be: the same command line, environment, module path, sitecustomize and streams. The pytest of
+`colcon test` is forked from a nursery, if pytest came from the zygote. Whatever else colcon starts, and every child
+where this Python's `subprocess` is another than this knows, is started as ever.
 
 It runs inside the sandbox of a build, as colcon does, and is no less the student's to harm.
 """
@@ -30,7 +31,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-_STARTED: Any = getattr(subprocess.Popen, "_execute_child", None)
+_start_child: Any = getattr(subprocess.Popen, "_execute_child", None)
 _KNOWN = [
     *("self", "args", "executable", "preexec_fn", "close_fds", "pass_fds", "cwd", "env", "startupinfo"),
     *("creationflags", "shell", "p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite"),
@@ -38,26 +39,24 @@ _KNOWN = [
 sys.path[0] = str(Path(sys.executable).parent)  # where colcon's own script is, and no module of this folder
 _GIVEN = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
 _BASE = [path for path in sys.path[1:] if path not in _GIVEN]
+ZYGOTE_HOST = Path(__file__).parents[1] / "sandbox" / "zygote_host"
 _VENDORED = Path(str(importlib.import_module("setuptools").__file__)).parent / "_vendor"  # which it adds to the path
 
 
-class Popen(subprocess.Popen):  # type: ignore[type-arg]
-    """A child process: forked, if it is a setup.py, and otherwise started."""
-
-    def _execute_child(self, args: Sequence[str], *more: Any) -> None:
-        given = dict(zip(_KNOWN[2:], more, strict=False))
-        if not _is_setup(args) or given["shell"]:
-            _STARTED(self, args, *more)
-            return
-        sys.stdout.flush()
-        sys.stderr.flush()
-        self.pid = os.fork()
-        if self.pid == 0:
-            streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
-            _become([os.fsdecode(word) for word in args], streams, given["cwd"], given["env"])
-        self._child_created = True
-        ends = [given[name] for name in _KNOWN[-6:]]
-        self._close_pipe_fds(*ends)  # type: ignore[attr-defined]
+def _execute_child(self: Any, args: Sequence[str], *more: Any) -> None:
+    """Do what `Popen` does, but fork what is a setup.py."""
+    given = dict(zip(_KNOWN[2:], more, strict=False))
+    if not _is_setup(args) or given["shell"]:
+        _start_child(self, args, *more)
+        return
+    sys.stdout.flush()
+    sys.stderr.flush()
+    self.pid = os.fork()
+    if self.pid == 0:
+        streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
+        _become([os.fsdecode(word) for word in args], streams, given["cwd"], given["env"])
+    self._child_created = True
+    self._close_pipe_fds(*[given[name] for name in _KNOWN[-6:]])
 
 
 def _is_setup(args: Sequence[Any]) -> bool:
@@ -140,14 +139,27 @@ def _run(command: list[str]) -> None:
     exec(compile(code, str(script or "<string>"), "exec"), main.__dict__)
 
 
+def open_nursery() -> Any:
+    """Let pytest be forked, and what that starts; in their processes, return what is to be run."""
+    sys.path.insert(1, str(ZYGOTE_HOST))
+    nursery = importlib.import_module("nursery")
+    del sys.path[1]
+    return nursery.open_here(forget=("autograder",), modules=("pytest",))
+
+
 def main() -> int | str | None:
     """Run colcon."""
-    if _STARTED and list(inspect.signature(_STARTED).parameters)[: len(_KNOWN)] == _KNOWN:
-        subprocess.Popen = Popen  # type: ignore[misc]
+    global _start_child
+    if _start_child and list(inspect.signature(_start_child).parameters)[: len(_KNOWN)] == _KNOWN:
+        _start_child = subprocess.Popen._execute_child  # type: ignore[attr-defined]
+        subprocess.Popen._execute_child = _execute_child  # type: ignore[attr-defined]
     sys.argv[0] = "colcon"
     status: int | str | None = importlib.import_module("colcon_core.command").main()
     return status
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    if program := open_nursery() if "pytest" in sys.modules else None:
+        exec(*program)
+    else:
+        sys.exit(main())

@@ -36,6 +36,7 @@ from autograder.sandbox.launcher import launch
 from autograder.sandbox.process import measure
 
 HOST = Path(__file__).with_name("launch_host")
+PRELOAD = HOST / "preload.py"
 LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _STEP = 0.05  # s between two looks at a condition while nothing arrives
@@ -74,7 +75,7 @@ def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Pro
         status: a descriptor that gets the exit status, as a line; what is started then outlives `ros2`.
     """
     command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
-    return launch(command, spec, pass_fds=() if status is None else (status,), preload=HOST / "preload.py")
+    return launch(command, spec, pass_fds=() if status is None else (status,), preload=PRELOAD)
 
 
 def sandbox(workspace: Workspace) -> Sandbox:

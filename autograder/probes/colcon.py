@@ -6,14 +6,17 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from autograder.grading.colcon import HOST, PRELOAD
+from autograder.grading.colcon import HOST
 from autograder.lab.workspace import Workspace
 from autograder.probes import junit
 from autograder.probes.junit import Claims
-from autograder.probes.testing import Report, sandboxed
+from autograder.probes.reports import Report
+from autograder.probes.testing import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
+
+PRELOAD = Path(__file__).with_name("colcon_preload.py")
 
 
 def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:

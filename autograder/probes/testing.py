@@ -31,13 +31,15 @@ import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.grading.intake import take_source
+from autograder.lab.launching import PRELOAD as LAUNCH_PRELOAD
 from autograder.lab.workspace import Workspace
 from autograder.probes import PRELOAD, junit
-from autograder.probes.junit import Claims, Verdict
+from autograder.probes.junit import Claims
 from autograder.probes.overhearing import Ear
-from autograder.probes.versions import Version, lay_down
+from autograder.probes.reports import Order, Report
+from autograder.probes.versions import lay_down
 from autograder.ros.domains import Domain
-from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
+from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, zygote
 from autograder.sandbox.launcher import current_tier, launch
 from autograder.sandbox.limits import MIB
 
@@ -48,68 +50,6 @@ LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB
 LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
 HEADER = 32  # bytes of an answer's first line, at most
-
-
-@dataclass(frozen=True)
-class Order:
-    """One run of a student's tests.
-
-    Attributes:
-        files: test files, by their paths below the package's folder `test`.
-        version: the package under test; None for the student's own, as it was built.
-        backwards: whether the tests run in the opposite order.
-        first_failure: whether the run ends with the first test that fails.
-        overheard: whether somebody listens in the default domain.
-        conftest: whether pytest reads the conftest.py that is there.
-    """
-
-    files: tuple[str, ...]
-    version: Version | None = None
-    backwards: bool = False
-    first_failure: bool = False
-    overheard: bool = False
-    conftest: bool = True
-
-
-@dataclass(frozen=True)
-class Report:
-    """What became of a run; all of it but `ending`, `left` and `heard` is the run's own claim.
-
-    Attributes:
-        ending: how its process ended; None when the grader ended it after pytest was done.
-        status: pytest's exit status, None when it never came to that.
-        claims: what it says of its tests.
-        left: UDP sockets that were still open after the last test: each ROS context that is not ended holds some.
-        output: what it printed.
-        heard: whether it was overheard, and has joined the default domain.
-    """
-
-    ending: Ending | None
-    status: int | None
-    claims: Claims
-    left: int
-    output: str
-    heard: bool = False
-
-    @property
-    def passed(self) -> bool:
-        """Whether tests ran and each one passed."""
-        return self.status == 0 and bool(self.executed) and not self.failed
-
-    @property
-    def executed(self) -> tuple[str, ...]:
-        """The tests that ran and were not skipped."""
-        return tuple(name for name, verdict in self.claims.verdicts.items() if verdict is not Verdict.SKIPPED)
-
-    @property
-    def failed(self) -> tuple[str, ...]:
-        """The tests that failed, in themselves or in a fixture."""
-        bad = (Verdict.FAILED, Verdict.ERROR)
-        return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
-
-    def objects(self, right: Report) -> bool:
-        """Whether a test fails here that passed on a right version. A file that cannot be read does not count."""
-        return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
 
 
 @dataclass(frozen=True)
@@ -189,7 +129,7 @@ def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: in
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, network: bool = False) -> Sandbox:
     """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
-    mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
+    mounts = (*workspace.sandbox().mounts, Mount(STANDINS), Mount(zygote.HOST), *map(Mount, readable))
     plain = workspace.sandbox(limits)
     environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     return replace(plain, mounts=mounts, environment=environment, network=network)
@@ -206,11 +146,13 @@ def _run(workspace: Workspace, source: Source, order: Order, lane: int) -> Repor
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
+    launches = _launches(source, order)
+    arguments = _arguments(source, folder, order, launches)
     if not order.overheard:
-        return _host(_confined(there, folder, order, place / "home"), order, _arguments(source, folder, order))
+        return _host(_confined(there, folder, order, place / "home"), order, arguments, launches)
     with Ear() as ear:
         spec = _confined(replace(there, domain=ear.domain), folder, order, place / "home")
-        report = _host(spec, order, _arguments(source, folder, order))
+        report = _host(spec, order, arguments, launches)
         return replace(report, heard=ear.heard())
 
 
@@ -223,9 +165,7 @@ def _confined(workspace: Workspace, folder: Path, order: Order, home: Path) -> S
     return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
 
 
-def _arguments(source: Source, folder: Path, order: Order) -> list[str]:
-    read = [*order.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
-    launches = any(b"launch" in source.tests.get(name, b"") for name in read)  # a plug-in takes time to import
+def _arguments(source: Source, folder: Path, order: Order, launches: bool) -> list[str]:
     files = [str(folder / "test" / name) for name in order.files]
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
     plain += ["-p", "launch_pytest.plugin"] if launches else []
@@ -234,13 +174,24 @@ def _arguments(source: Source, folder: Path, order: Order) -> list[str]:
     return [*plain, *quiet, *asked, *files]
 
 
-def _host(spec: Sandbox, order: Order, arguments: list[str]) -> Report:
+def _launches(source: Source, order: Order) -> bool:
+    """Return whether tests may launch something, for which there is more to import."""
+    read = [*order.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
+    return any(b"launch" in source.tests.get(name, b"") for name in read)
+
+
+def _host(spec: Sandbox, order: Order, arguments: list[str], launches: bool) -> Report:
     answer_read, answer_write = os.pipe()
     go_read, go_write = os.pipe()
     report = Path(spec.environment["HOME"]) / "report.xml"
     command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(order.backwards)), str(report)]
     try:
-        process = launch([*command, *arguments], spec, pass_fds=(answer_write, go_read), preload=PRELOAD)
+        process = launch(
+            [*command, *arguments],
+            spec,
+            pass_fds=(answer_write, go_read),
+            preload=LAUNCH_PRELOAD if launches else PRELOAD,
+        )
     finally:
         os.close(answer_write)
         os.close(go_read)

@@ -12,7 +12,7 @@ from typing import Any
 
 
 def become(
-    command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool]
+    command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], first: str | None = None
 ) -> tuple[CodeType, dict[str, Any]]:
     """Make this interpreter like one that was started for a program; return the program's code and its namespace.
 
@@ -20,6 +20,7 @@ def become(
         command: the program's script and its arguments.
         environment: all its environment variables.
         base: where Python finds modules without any PYTHONPATH, and whether that is there outside the sandbox.
+        first: where it looks before that, if not in the script's folder.
     """
     before = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     os.environ.clear()
@@ -27,10 +28,12 @@ def become(
     script = Path(command[0])
     file, folder = (script / "__main__.py", script) if script.is_dir() else (script, script.parent)
     modules = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
-    if _shadowed(modules):  # such a program would have another module than the one that is loaded
+    if _shadowed(
+        [first, *modules] if first else modules
+    ):  # such a program would have another module than the one that is loaded
         os.execve(sys.executable, [sys.executable, *command], os.environ)
     hidden = {path for path, there in base.items() if there and not Path(path).exists()}
-    sys.path[:] = [str(folder), *modules, *(path for path in base if path not in hidden)]
+    sys.path[:] = [first or str(folder), *modules, *(path for path in base if path not in hidden)]
     sys.path_importer_cache.clear()  # it knows the folders of the outside
     sys.argv[:] = command
     sys.orig_argv[:] = [sys.executable, *command]
@@ -44,11 +47,15 @@ def _shadowed(folders: Sequence[str]) -> bool:
     """Return whether a folder has a module of its own that is called as one that is loaded from elsewhere."""
     loaded = {name.partition(".")[0] for name in sys.modules}
     return any(
-        (name := entry.partition(".")[0]) in loaded and not _is_from(folder, name)
+        (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)
         for folder in folders
         if Path(folder).is_dir()
-        for entry in os.listdir(folder)
+        for entry in Path(folder).iterdir()
     )
+
+
+def _is_module(entry: Path) -> bool:
+    return entry.suffix in (".py", ".pyc", ".so") or (entry / "__init__.py").exists()
 
 
 def _is_from(folder: str, name: str) -> bool:

@@ -16,6 +16,7 @@ PR_SET_CHILD_SUBREAPER). All of it runs inside the sandbox, and is no less the s
 from __future__ import annotations
 
 import ctypes
+import importlib
 import inspect
 import json
 import os
@@ -38,10 +39,11 @@ Program = tuple[Any, dict[str, Any]]
 _PR_SET_CHILD_SUBREAPER = 36
 _MAX_ORDER = 1024 * 1024  # bytes
 _ARG_START, _ARG_END = 45, 46  # among the fields of /proc/self/stat behind the name, proc_pid_stat(5)
-_STARTED: Any = getattr(subprocess.Popen, "_execute_child", None)
+_start_child: Any = getattr(subprocess.Popen, "_execute_child", None)
+_PIPES = ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")
 _KNOWN = [
     *("self", "args", "executable", "preexec_fn", "close_fds", "pass_fds", "cwd", "env", "startupinfo"),
-    *("creationflags", "shell", "p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite"),
+    *("creationflags", "shell", *_PIPES),
     *("restore_signals", "gid", "gids", "uid", "umask", "start_new_session"),
 ]
 _PLAIN: dict[str, Any] = {
@@ -55,18 +57,19 @@ _PLAIN: dict[str, Any] = {
 _PLAIN |= {"uid": None, "umask": -1, "restore_signals": True}
 
 
-def open_here(forget: Sequence[str] = ()) -> Program | None:
+def open_here(forget: Sequence[str] = (), modules: Sequence[str] = ()) -> Program | None:
     """Fork the nursery of this process, which from now on has its Python programs forked there.
 
     Call it while the process has one thread, and has read nothing of the student's.
 
     Args:
         forget: top-level modules that this process has imported and its programs have not.
+        modules: what is forked when it is run by `python -m`; such a program gets a nursery of its own.
 
     Returns:
         None here; in the process of a program what that is to run: its code, and the namespace for it.
     """
-    if not _STARTED or list(inspect.signature(_STARTED).parameters)[: len(_KNOWN)] != _KNOWN:
+    if not _start_child or list(inspect.signature(_start_child).parameters)[: len(_KNOWN)] != _KNOWN:
         return None
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -77,8 +80,8 @@ def open_here(forget: Sequence[str] = ()) -> Program | None:
             del sys.modules[name]
         return _serve(theirs)
     theirs.close()
-    _Popen.line, _Popen.owner = line, os.getpid()
-    subprocess.Popen = _Popen  # type: ignore[misc]
+    orders = _Orders(line, modules)
+    subprocess.Popen._execute_child = lambda popen, args, *more: orders.start(popen, args, *more)  # type: ignore[attr-defined]
     return None
 
 
@@ -89,38 +92,37 @@ def be_called(words: Sequence[str]) -> None:
     ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
 
 
-class _Popen(subprocess.Popen):  # type: ignore[type-arg]
-    """A child process: forked in the nursery, if it may be, and otherwise started."""
+class _Orders:
+    """The line to a nursery, as `subprocess` uses it."""
 
-    line: socket.socket
-    owner = 0
-    lock = threading.Lock()
+    def __init__(self, line: socket.socket, modules: Sequence[str]) -> None:
+        self._line, self._modules = line, modules
+        self._owner, self._lock = os.getpid(), threading.Lock()
 
-    def _execute_child(self, args: Any, *more: Any) -> None:
+    def start(self, popen: Any, args: Any, *more: Any) -> None:
+        """Do what `Popen._execute_child` does: have the program forked, if it may be, or else start it."""
         given = dict(zip(_KNOWN[2:], more, strict=False))
-        order = _order(args, given) if os.getpid() == self.owner else None
+        order = _order(args, given, self._modules) if os.getpid() == self._owner else None
         streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
         pid = self._ask(order, streams) if order is not None else 0
         if not pid:
-            _STARTED(self, args, *more)
+            _start_child(popen, args, *more)
             return
-        self.pid = pid
-        self._child_created = True
-        ends = [given[name] for name in ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")]
-        self._close_pipe_fds(*ends)  # type: ignore[attr-defined]
+        popen.pid, popen._child_created = pid, True
+        popen._close_pipe_fds(*[given[name] for name in _PIPES])
 
     def _ask(self, order: dict[str, Any], streams: tuple[int, int, int]) -> int:
         """Order a program; return its process id, 0 if the nursery is no more."""
         fds = [number if descriptor == -1 else descriptor for number, descriptor in enumerate(streams)]
-        with self.lock:
+        with self._lock:
             try:
-                socket.send_fds(self.line, [json.dumps(order).encode()], fds)
-                return int(self.line.recv(64) or b"0")
+                socket.send_fds(self._line, [json.dumps(order).encode()], fds)
+                return int(self._line.recv(64) or b"0")
             except OSError:
                 return 0
 
 
-def _order(args: Any, given: dict[str, Any]) -> dict[str, Any] | None:
+def _order(args: Any, given: dict[str, Any], modules: Sequence[str]) -> dict[str, Any] | None:
     """Return what the nursery is to do; None where it is better left to `subprocess`."""
     plain = all(given[name] == value for name, value in _PLAIN.items()) and not given["pass_fds"]
     if not plain or isinstance(args, str | bytes):
@@ -128,15 +130,13 @@ def _order(args: Any, given: dict[str, Any]) -> dict[str, Any] | None:
     words = [os.fsdecode(word) for word in args]
     words = words[1:] if words[:1] == [sys.executable] else words
     environment = {os.fsdecode(k): os.fsdecode(v) for k, v in (given["env"] or os.environ).items()}
-    cwd = os.fsdecode(given["cwd"] or ".")
-    if (
-        not words
-        or not Path(cwd).is_dir()
-        or not _is_ours(Path(cwd, words[0]))
-        or _interpreter(environment) != _interpreter(dict(os.environ))
-    ):
+    cwd = Path(os.fsdecode(given["cwd"] or ".")).absolute()
+    module = words[1] if words[:1] == ["-m"] and words[1] in modules else ""
+    known = module or (words and _is_ours(cwd / words[0]))
+    if not known or not cwd.is_dir() or _interpreter(environment) != _interpreter(dict(os.environ)):
         return None
-    return {"words": words, "environment": environment, "cwd": cwd, "session": bool(given["start_new_session"])}
+    order = {"environment": environment, "cwd": str(cwd), "session": bool(given["start_new_session"])}
+    return {**order, "words": words[2:] if module else words, "module": module}
 
 
 def _is_ours(script: Path) -> bool:
@@ -187,7 +187,12 @@ def _child(order: dict[str, Any], fds: list[int]) -> Program:
     given = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
     base = {path: False for path in sys.path[1:] if path not in given}
     os.chdir(order["cwd"])
-    be_called([sys.executable, *order["words"]])
     out: Any = sys.stdout
     out.reconfigure(line_buffering=os.isatty(1) and not out.write_through)
-    return becoming.become(order["words"], order["environment"], base)
+    words, module = order["words"], order["module"]
+    be_called([sys.executable, *(["-m", module] if module else []), *words])
+    if not module:
+        return becoming.become(words, order["environment"], base)
+    script = str(importlib.import_module(f"{module}.__main__").__file__)
+    program = becoming.become([script, *words], order["environment"], base, first=order["cwd"])
+    return open_here() or program

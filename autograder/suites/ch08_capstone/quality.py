@@ -9,7 +9,8 @@ from autograder.lab import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon import colcon_test
 from autograder.probes.junit import Verdict
-from autograder.probes.testing import Report, take
+from autograder.probes.reports import Report
+from autograder.probes.testing import take
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import PACKAGE
 

@@ -10,7 +10,7 @@ import pytest
 from autograder.checks import CheckFailed, check, expect
 from autograder.lab import Workspace
 from autograder.probes import testing
-from autograder.probes.testing import Order, Report
+from autograder.probes.reports import Order, Report
 from autograder.suites.ch08_capstone.versions import FAULTS, Fault, faulty, right
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import PACKAGE

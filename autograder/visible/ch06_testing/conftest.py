@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder.lab import Workspace
-from autograder.probes.testing import Order, Report, Source, run, take
+from autograder.probes.reports import Order, Report
+from autograder.probes.testing import Source, run, take
 from autograder.probes.versions import Version
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
 

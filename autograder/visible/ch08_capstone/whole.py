@@ -13,7 +13,7 @@ from autograder.lab.launching import LaunchLab
 from autograder.probes import launching, testing
 from autograder.probes.installed import look
 from autograder.probes.parameters import for_node, read_file
-from autograder.probes.testing import Order, Report
+from autograder.probes.reports import Order, Report
 from autograder.visible.ch08_capstone import contract
 from autograder.visible.ch08_capstone.contract import CONFIG, LAUNCH_FILE, PACKAGE, PARAMETERS, PROGRAMS, name_of
 from autograder.visible.ch08_capstone.sources import source_of

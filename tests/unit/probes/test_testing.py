@@ -15,7 +15,8 @@ import pytest
 from autograder.exceptions import StudentError
 from autograder.lab import Workspace
 from autograder.probes import testing
-from autograder.probes.testing import Order, Report, run, take
+from autograder.probes.reports import Order, Report
+from autograder.probes.testing import run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
 from autograder.sandbox import Ending
