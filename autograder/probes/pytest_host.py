@@ -30,7 +30,6 @@ gc.freeze()
 gc.enable()
 sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
 
-
 ZYGOTE_HOST = Path(__file__).parents[1] / "sandbox" / "zygote_host"
 
 

@@ -13,9 +13,12 @@ from typing import Any
 import pytest
 
 from autograder import layout
+from autograder.grading.build import build as build_for_grading
 from autograder.grading.colcon import HOST
 from autograder.lab import Workspace
+from autograder.probes import colcon
 from autograder.ros import environment
+from tests.e2e.cell_support import in_cell
 
 PLAIN = Path(sys.executable).with_name("colcon")
 SPIES = """
@@ -142,3 +145,67 @@ def test_a_setup_py_that_fails_is_told_alike(workspace: Workspace, line: str) ->
     assert plain.returncode != 0
     assert hosted.returncode == plain.returncode
     assert told(hosted) ^ told(plain) == set()
+
+
+ODD_TESTS = """
+import json, os, sys, warnings
+from pathlib import Path
+import pytest
+
+def test_where(request):
+    assert __name__ == "test_odd"
+    seen = [sys.argv, sys.path, os.getcwd(), sys.orig_argv[:3], sys.executable, sorted(os.environ)]
+    plugins = sorted({type(p).__name__ if not hasattr(p, "__name__") else p.__name__
+                      for p in request.config.pluginmanager.get_plugins()})
+    Path("seen").write_text(json.dumps([seen, plugins, os.getppid() > 1]))
+
+def test_fails():
+    left = {"speed": 0.3}
+    assert left == {"speed": 0.4}, "too slow"
+
+def test_warns():
+    warnings.warn("look at this")
+
+@pytest.fixture
+def broken():
+    yield
+    raise RuntimeError("not cleaned up")
+
+def test_broken(broken):
+    os.write(1, b"said by the descriptor")
+
+@pytest.mark.skip(reason="not today")
+def test_skipped():
+    pass
+"""
+STRICT = "[pytest]\nfilterwarnings =\n    error::pytest.PytestAssertRewriteWarning\njunit_family = xunit2\n"
+
+
+def tests_of(scratch: Path) -> list[Any]:
+    """Return what `colcon test` makes of a package whose pytest is started, and forked."""
+    workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
+    workspace.scratch.mkdir()
+    bring(workspace, "speed_guard")
+    folder = workspace.root / "src/speed_guard"
+    (folder / "test/test_odd.py").write_text(ODD_TESTS)
+    (folder / "pytest.ini").write_text(STRICT)
+    build_for_grading(workspace, ("speed_guard",))
+    found = []
+    preload, colcon_test = colcon.PRELOAD, colcon.colcon_test
+    for way in (None, preload):
+        colcon.PRELOAD = way  # type: ignore[assignment]
+        report = colcon_test(workspace, "speed_guard")
+        said = (line for line in report.output.splitlines() if re.search("passed|failed|[Ww]arn|[Ee]rror", line))
+        verdicts = {name: verdict.value for name, verdict in report.claims.verdicts.items()}
+        lines = [re.sub("=+|[0-9.]+s", "", FROM_RUN_TO_RUN.sub("", line)) for line in said]
+        seen = json.loads((folder / "seen").read_text())
+        found.append([report.status, verdicts, dict(report.claims.messages), sorted(lines), seen])
+    return found
+
+
+@pytest.mark.usefixtures("forks")
+def test_colcon_test_says_the_same_of_a_pytest_that_is_forked() -> None:
+    started, forked = in_cell(tests_of)
+    assert started[1]["test_launch::test_the_launched_guard_has_its_name_and_configuration"] == "passed", started
+    assert {"passed", "failed", "error", "skipped"} == set(started[1].values())
+    assert forked == started

@@ -24,6 +24,7 @@ def become(
     """
     before = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     os.environ.clear()
+    ctypes.CDLL(None).clearenv()  # libraries that were loaded have set some, of which `os` does not know
     os.environ.update(environment)
     script = Path(command[0])
     file, folder = (script / "__main__.py", script) if script.is_dir() else (script, script.parent)

@@ -46,15 +46,8 @@ _KNOWN = [
     *("creationflags", "shell", *_PIPES),
     *("restore_signals", "gid", "gids", "uid", "umask", "start_new_session"),
 ]
-_PLAIN: dict[str, Any] = {
-    "executable": None,
-    "preexec_fn": None,
-    "close_fds": True,
-    "shell": False,
-    "gid": None,
-    "gids": None,
-}
-_PLAIN |= {"uid": None, "umask": -1, "restore_signals": True}
+_PLAIN: dict[str, Any] = {"preexec_fn": None, "close_fds": True, "shell": False, "restore_signals": True, "umask": -1}
+_PLAIN |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
 
 def open_here(forget: Sequence[str] = (), modules: Sequence[str] = ()) -> Program | None:
@@ -164,16 +157,20 @@ def _serve(line: socket.socket) -> Program | None:
         told, tell = os.pipe()
         middle = os.fork()
         if middle == 0:
-            child = os.fork()
+            try:
+                child = os.fork()
+            except OSError:  # there is no room for more processes
+                os._exit(1)
             if child == 0:
                 line.detach()
                 return _child(json.loads(data), fds)
             os.write(tell, b"%d" % child)
             os._exit(0)
         os.waitpid(middle, 0)  # from now on the program has its new parent
-        line.send(os.read(told, 64))
-        for descriptor in (*fds, told, tell):
+        for descriptor in (*fds, tell):
             os.close(descriptor)
+        line.send(os.read(told, 64) or b"0")
+        os.close(told)
 
 
 def _child(order: dict[str, Any], fds: list[int]) -> Program:
@@ -190,9 +187,11 @@ def _child(order: dict[str, Any], fds: list[int]) -> Program:
     out: Any = sys.stdout
     out.reconfigure(line_buffering=os.isatty(1) and not out.write_through)
     words, module = order["words"], order["module"]
-    be_called([sys.executable, *(["-m", module] if module else []), *words])
+    command = [sys.executable, *(["-m", module] if module else []), *words]
+    be_called(command)
     if not module:
         return becoming.become(words, order["environment"], base)
     script = str(importlib.import_module(f"{module}.__main__").__file__)
     program = becoming.become([script, *words], order["environment"], base, first=order["cwd"])
+    sys.orig_argv[:] = command
     return open_here() or program
