@@ -23,7 +23,7 @@ from typing import TextIO
 
 from autograder import probes
 from autograder.grading import colcon, worker
-from autograder.grading.job import Job
+from autograder.grading.job import MEMORY, Job
 from autograder.lockstep import stepper
 from autograder.sandbox.launcher import warm_up
 from autograder.suites import Suite
@@ -32,7 +32,7 @@ OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
 
 
 def serve(suite: Suite, scratch: Path, orders: TextIO, replies: TextIO) -> None:
-    """Carry orders out until there are no more, each in a child of its own that leaves no file in `scratch`."""
+    """Carry orders out until there are no more, each in a child of its own that leaves no file but MEMORY's."""
     for line in orders:
         said = scratch / "said.log"
         child = os.fork()
@@ -40,7 +40,7 @@ def serve(suite: Suite, scratch: Path, orders: TextIO, replies: TextIO) -> None:
             _work(Job.from_json(line), suite, said)
         _, status = os.waitpid(child, 0)
         reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
-        for left in scratch.iterdir():
+        for left in (left for left in scratch.iterdir() if left.name != MEMORY):
             subprocess.run(["rm", "-rf", "--", left], check=True)
         replies.write(json.dumps(reply) + "\n")
         replies.flush()

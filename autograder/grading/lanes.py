@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from autograder.grading.job import Job
+from autograder.grading.job import MEMORY, Job
 from autograder.sandbox.cell import WORKER, CellReport, in_cell
 from autograder.sandbox.process import Ending
 from autograder.sandbox.tiers import Tier, require
@@ -57,7 +57,7 @@ class Lanes:
         lane = self._idle.get()
         try:
             lane = lane or self._new()
-            report = lane.grade(job_in(lane.scratch / "job"))
+            report = lane.grade(replace(job_in(lane.scratch / "job"), memory=lane.scratch / MEMORY))
             if report.ending is not Ending.EXITED:
                 lane.close()
                 lane = None

@@ -29,6 +29,7 @@ class Workspace:
         scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
         underlays: install folders of workspaces below this one, such as given message packages.
         domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
+        memory: where the proof keeps what it has found; None where anybody gets marks.
     """
 
     root: Path
@@ -36,6 +37,7 @@ class Workspace:
     scratch: Path
     underlays: tuple[Path, ...] = ()
     domain: int = 0
+    memory: Path | None = None
 
     @property
     def install(self) -> Path:

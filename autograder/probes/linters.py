@@ -12,8 +12,7 @@ from dataclasses import replace
 from autograder.checks import CheckFailed
 from autograder.lab.workspace import Workspace
 from autograder.probes import testing
-from autograder.probes.reports import Order
-from autograder.probes.testing import Source
+from autograder.probes.reports import Order, Source
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 
 # How each linter writes what it found.

@@ -1,7 +1,8 @@
-"""One run of a student's tests: what was ordered, and what became of it."""
+"""One run of a student's tests: of what, what was ordered, and what became of it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from autograder.probes.junit import Claims, Verdict
@@ -69,3 +70,21 @@ class Report:
     def objects(self, right: Report) -> bool:
         """Whether a test fails here that passed on a right version. A file that cannot be read does not count."""
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
+
+
+@dataclass(frozen=True)
+class Source:
+    """A student's package as plain files; its tests are those below `test`.
+
+    Attributes:
+        package: its name.
+        files: by path below its folder.
+    """
+
+    package: str
+    files: Mapping[str, bytes]
+
+    @property
+    def tests(self) -> dict[str, bytes]:
+        """The files below `test`, by their paths there."""
+        return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}

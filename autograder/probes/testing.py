@@ -21,10 +21,10 @@ import selectors
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import autograder.ros
@@ -35,8 +35,9 @@ from autograder.lab.launching import PRELOAD as LAUNCH_PRELOAD
 from autograder.lab.workspace import Workspace
 from autograder.probes import PRELOAD, junit
 from autograder.probes.junit import Claims
+from autograder.probes.memory import Memory
 from autograder.probes.overhearing import Ear
-from autograder.probes.reports import Order, Report
+from autograder.probes.reports import Order, Report, Source
 from autograder.probes.versions import lay_down
 from autograder.ros.domains import Domain
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, zygote
@@ -50,24 +51,6 @@ LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB
 LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
 HEADER = 32  # bytes of an answer's first line, at most
-
-
-@dataclass(frozen=True)
-class Source:
-    """A student's package as plain files; its tests are those below `test`.
-
-    Attributes:
-        package: its name.
-        files: by path below its folder.
-    """
-
-    package: str
-    files: Mapping[str, bytes]
-
-    @property
-    def tests(self) -> dict[str, bytes]:
-        """The files below `test`, by their paths there."""
-        return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
 
 
 def take(workspace: Workspace, package: str) -> Source:
@@ -97,6 +80,17 @@ def run(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: in
         StudentError: there is no room left on the disk.
         GraderError: there is no domain left to listen in.
     """
+    memory = Memory(workspace.memory)
+    recalled = [memory.recall(source, order) for order in orders]
+    wanted = [order for order, report in zip(orders, recalled, strict=True) if report is None]
+    made = _carry_out(workspace, source, wanted, lanes)
+    for order, report in zip(wanted, made, strict=True):
+        memory.keep(source, order, report)
+    new = iter(made)
+    return [report or next(new) for report in recalled]
+
+
+def _carry_out(workspace: Workspace, source: Source, orders: Sequence[Order], lanes: int) -> list[Report]:
     free: queue.SimpleQueue[int] = queue.SimpleQueue()
     for lane in range(lanes):
         free.put(lane)

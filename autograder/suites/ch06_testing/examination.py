@@ -15,8 +15,7 @@ from autograder.checks import CheckFailed, expect
 from autograder.lab import Workspace
 from autograder.probes import testing
 from autograder.probes.colcon import colcon_test
-from autograder.probes.reports import Order, Report
-from autograder.probes.testing import Source
+from autograder.probes.reports import Order, Report, Source
 from autograder.sandbox import Ending
 from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults, right
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder.lab import Workspace
-from autograder.probes.reports import Order, Report
-from autograder.probes.testing import Source, run, take
+from autograder.probes.reports import Order, Report, Source
+from autograder.probes.testing import run, take
 from autograder.probes.versions import Version
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
 

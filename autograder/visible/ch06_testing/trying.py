@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import Visibility, check, expect
-from autograder.probes.reports import Report
-from autograder.probes.testing import Source
+from autograder.probes.reports import Report, Source
 from autograder.visible.ch06_testing import contract
 from autograder.visible.ch06_testing.conftest import MUTANT, RIGHT
 from autograder.visible.ch06_testing.contract import GUARD, LAUNCH, LIMITS

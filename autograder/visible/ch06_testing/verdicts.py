@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import CheckFailed, expect
-from autograder.probes.reports import Report
+from autograder.probes.reports import Report, Source
 from autograder.probes.sleeping import sleeps
-from autograder.probes.testing import Source
 from autograder.sandbox import Ending
 from autograder.visible.ch06_testing.contract import LEAST, PACKAGE
 

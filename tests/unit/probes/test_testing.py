@@ -297,3 +297,26 @@ def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: py
     monkeypatch.setattr(testing, "lay_down", full)
     with pytest.raises(StudentError, match="no room left on the disk"):
         runs(workspace, Order(("test_half.py",), RIGHT))
+
+
+def test_what_is_remembered_is_not_run_again_and_all_else_is(
+    workspace: Workspace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    remembering = replace(workspace, memory=tmp_path / "memory")
+    write(workspace, GOOD)
+    first = runs(remembering, Order(("test_half.py",), WRONG), Order(("test_half.py",), RIGHT))
+    ran: list[Order] = []
+    really = testing._run
+
+    def watched(place: Workspace, source: Any, order: Order, lane: int) -> Report:
+        ran.append(order)
+        return really(place, source, order, lane)
+
+    monkeypatch.setattr(testing, "_run", watched)
+    backwards = Order(("test_half.py",), RIGHT, backwards=True)
+    again = runs(remembering, Order(("test_half.py",), RIGHT), backwards, Order(("test_half.py",), WRONG))
+    assert ran == [backwards]
+    assert [again[2], again[0]] == first
+    assert again[1].executed == ("test_half::test_even", "test_half::test_odd")
+    runs(workspace, Order(("test_half.py",), RIGHT))
+    assert len(ran) == 2

@@ -9,8 +9,7 @@ import pytest
 from autograder.checks import CheckFailed
 from autograder.lab import Workspace
 from autograder.probes.junit import Claims, Verdict
-from autograder.probes.reports import Report
-from autograder.probes.testing import Source
+from autograder.probes.reports import Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
 from autograder.suites.ch06_testing.examination import BACKWARDS, SECOND, Examination

@@ -12,8 +12,7 @@ from autograder import layout
 from autograder.lab import Workspace
 from autograder.probes import testing
 from autograder.probes.junit import Claims, Verdict
-from autograder.probes.reports import Order, Report
-from autograder.probes.testing import Source
+from autograder.probes.reports import Order, Report, Source
 from autograder.ros import environment
 from autograder.suites.ch06_testing.examination import FILES, Examination
 from autograder.suites.ch06_testing.faults import faults
