@@ -155,6 +155,7 @@ def _serve(line: socket.socket) -> Program | None:
         if not data:
             os._exit(0)
         told, tell = os.pipe()
+        adopted, adopts = os.pipe()
         middle = os.fork()
         if middle == 0:
             try:
@@ -163,11 +164,13 @@ def _serve(line: socket.socket) -> Program | None:
                 os._exit(1)
             if child == 0:
                 line.detach()
+                os.close(adopts)
+                os.read(adopted, 1)
                 return _child(json.loads(data), fds)
             os.write(tell, b"%d" % child)
             os._exit(0)
         os.waitpid(middle, 0)  # from now on the program has its new parent
-        for descriptor in (*fds, tell):
+        for descriptor in (*fds, tell, adopted, adopts):
             os.close(descriptor)
         line.send(os.read(told, 64) or b"0")
         os.close(told)
