@@ -80,8 +80,9 @@ def build(workspace: Workspace, colcon: Path) -> subprocess.CompletedProcess[str
 
 def told(process: subprocess.CompletedProcess[str]) -> set[str]:
     """What a build says of packages and errors; colcon mixes its children's streams in any order."""
-    lines = (FROM_RUN_TO_RUN.sub("", line) for line in (process.stdout + process.stderr).splitlines())
-    return {line for line in lines if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line)}
+    lines = [*process.stdout.splitlines(), *process.stderr.splitlines()]  # the last one may have no end
+    told = (FROM_RUN_TO_RUN.sub("", line) for line in lines)
+    return {line for line in told if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line)}
 
 
 def files(folder: Path) -> dict[str, tuple[int, bytes]]:
