@@ -12,7 +12,7 @@ BOOTSTRAP = $(PYTHON) -I autograder/bootstrap.py
 WITH_ROS := $(BIN)/python -m autograder.ros
 
 # More than the two cores of a small machine: much of a test is waiting.
-WORKERS ?= 3
+WORKERS ?= 4
 PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
@@ -29,7 +29,7 @@ demo:           ## set up, grade the reference and flawed submissions, write .bu
 	@$(BOOTSTRAP)
 	@$(BIN)/autograder demo
 
-test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=3 PYTEST_ARGS=)
+test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=4 PYTEST_ARGS=)
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
@@ -66,7 +66,7 @@ bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/python -m tests.benchmarks
 
-verify:         ## prove the grader: reference, release and mutants (WORKERS=3 VERIFY_ARGS=--quick)
+verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
 
