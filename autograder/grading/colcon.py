@@ -11,7 +11,7 @@ from autograder.exceptions import StudentError
 from autograder.grading.slim import slim_interfaces
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import tail
-from autograder.sandbox import Ending, Mount, Sandbox
+from autograder.sandbox import Ending, Mount, Sandbox, zygote
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 
@@ -43,7 +43,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, (HOST, *workspace.underlays)),
+            *map(Mount, (HOST, zygote.HOST, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),

@@ -15,11 +15,9 @@ from __future__ import annotations
 
 import atexit
 import importlib
-import inspect
 import logging
 import os
 import signal
-import subprocess
 import sys
 import sysconfig
 import traceback
@@ -29,34 +27,31 @@ from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
-_start_child: Any = getattr(subprocess.Popen, "_execute_child", None)
-_KNOWN = [
-    *("self", "args", "executable", "preexec_fn", "close_fds", "pass_fds", "cwd", "env", "startupinfo"),
-    *("creationflags", "shell", "p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite"),
-]
+sys.path[0] = str(Path(__file__).parents[1] / "sandbox" / "zygote_host")
+if TYPE_CHECKING:
+    from autograder.sandbox.zygote_host import children, nursery
+else:
+    import children
+    import nursery
+nursery.forget_these()
 sys.path[0] = str(Path(sys.executable).parent)  # where colcon's own script is, and no module of this folder
 _GIVEN = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
 _BASE = [path for path in sys.path[1:] if path not in _GIVEN]
-ZYGOTE_HOST = Path(__file__).parents[1] / "sandbox" / "zygote_host"
 _VENDORED = Path(str(importlib.import_module("setuptools").__file__)).parent / "_vendor"  # which it adds to the path
 
 
-def _execute_child(self: Any, args: Sequence[str], *more: Any) -> None:
-    """Do what `Popen` does, but fork what is a setup.py."""
-    given = dict(zip(_KNOWN[2:], more, strict=False))
+def _fork(args: Any, given: dict[str, Any]) -> int:
+    """Fork a setup.py; return its process id, 0 for any other command."""
     if not _is_setup(args) or given["shell"]:
-        _start_child(self, args, *more)
-        return
+        return 0
     sys.stdout.flush()
     sys.stderr.flush()
-    self.pid = os.fork()
-    if self.pid == 0:
-        streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
-        _become([os.fsdecode(word) for word in args], streams, given["cwd"], given["env"])
-    self._child_created = True
-    self._close_pipe_fds(*[given[name] for name in _KNOWN[-6:]])
+    pid = os.fork()
+    if pid == 0:
+        _become([os.fsdecode(word) for word in args], children.streams(given), given["cwd"], given["env"])
+    return pid
 
 
 def _is_setup(args: Sequence[Any]) -> bool:
@@ -141,19 +136,13 @@ def _run(command: list[str]) -> None:
 
 def open_nursery() -> Any:
     """Let pytest be forked, and what that starts; in their processes, return what is to be run."""
-    sys.path.insert(1, str(ZYGOTE_HOST))
-    nursery = importlib.import_module("nursery")
-    del sys.path[1]
     own = [name for name in sys.modules if name.partition("_")[0] == "colcon" or name == "autograder"]
     return nursery.open_here(forget=own, modules=("pytest",))
 
 
 def main() -> int | str | None:
     """Run colcon."""
-    global _start_child
-    if _start_child and list(inspect.signature(_start_child).parameters)[: len(_KNOWN)] == _KNOWN:
-        _start_child = subprocess.Popen._execute_child  # type: ignore[attr-defined]
-        subprocess.Popen._execute_child = _execute_child  # type: ignore[attr-defined]
+    children.made_by(_fork)
     sys.argv[0] = "colcon"
     status: int | str | None = importlib.import_module("colcon_core.command").main()
     return status

@@ -26,4 +26,4 @@ class Imports:
 
 runpy.run_path(str(AUTOGRADER / "grading" / "preload.py"))
 with Path(os.devnull).open("w") as nothing, redirect_stdout(nothing), redirect_stderr(nothing):
-    pytest.main(["--help"], plugins=[Imports()])
+    pytest.main(["--help", "-c", os.devnull], plugins=[Imports()])

@@ -182,7 +182,7 @@ def test_skipped():
 STRICT = "[pytest]\nfilterwarnings =\n    error::pytest.PytestAssertRewriteWarning\njunit_family = xunit2\n"
 
 
-def tests_of(scratch: Path) -> list[Any]:
+def run_of(scratch: Path) -> list[Any]:
     """Return what `colcon test` makes of a package whose pytest is started, and forked."""
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     workspace.scratch.mkdir()
@@ -206,7 +206,7 @@ def tests_of(scratch: Path) -> list[Any]:
 
 @pytest.mark.usefixtures("forks")
 def test_colcon_test_says_the_same_of_a_pytest_that_is_forked() -> None:
-    started, forked = in_cell(tests_of)
+    started, forked = in_cell(run_of)
     assert started[1]["test_launch::test_the_launched_guard_has_its_name_and_configuration"] == "passed", started
     assert {"passed", "failed", "error", "skipped"} == set(started[1].values())
     assert forked == started

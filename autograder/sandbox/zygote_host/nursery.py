@@ -17,12 +17,10 @@ from __future__ import annotations
 
 import ctypes
 import importlib
-import inspect
 import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import threading
 from collections.abc import Sequence
@@ -30,22 +28,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from autograder.sandbox.zygote_host import becoming
+    from autograder.sandbox.zygote_host import becoming, children
 else:
     import becoming
+    import children
 
 Program = tuple[Any, dict[str, Any]]
 
 _PR_SET_CHILD_SUBREAPER = 36
 _MAX_ORDER = 1024 * 1024  # bytes
 _ARG_START, _ARG_END = 45, 46  # among the fields of /proc/self/stat behind the name, proc_pid_stat(5)
-_start_child: Any = getattr(subprocess.Popen, "_execute_child", None)
-_PIPES = ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")
-_KNOWN = [
-    *("self", "args", "executable", "preexec_fn", "close_fds", "pass_fds", "cwd", "env", "startupinfo"),
-    *("creationflags", "shell", *_PIPES),
-    *("restore_signals", "gid", "gids", "uid", "umask", "start_new_session"),
-]
 _PLAIN: dict[str, Any] = {"preexec_fn": None, "close_fds": True, "shell": False, "restore_signals": True, "umask": -1}
 _PLAIN |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
@@ -62,8 +54,9 @@ def open_here(forget: Sequence[str] = (), modules: Sequence[str] = ()) -> Progra
     Returns:
         None here; in the process of a program what that is to run: its code, and the namespace for it.
     """
-    if not _start_child or list(inspect.signature(_start_child).parameters)[: len(_KNOWN)] != _KNOWN:
+    if not children.KNOWN:
         return None
+    forget_these()
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     sys.stdout.flush()
@@ -73,9 +66,14 @@ def open_here(forget: Sequence[str] = (), modules: Sequence[str] = ()) -> Progra
             del sys.modules[name]
         return _serve(theirs)
     theirs.close()
-    orders = _Orders(line, modules)
-    subprocess.Popen._execute_child = lambda popen, args, *more: orders.start(popen, args, *more)  # type: ignore[attr-defined]
+    children.made_by(_Orders(line, modules).make)
     return None
+
+
+def forget_these() -> None:
+    """Let nobody else import the modules of this folder: a student's may be called the same."""
+    for name in ("becoming", "children", "nursery"):
+        sys.modules.pop(name, None)
 
 
 def be_called(words: Sequence[str]) -> None:
@@ -92,17 +90,10 @@ class _Orders:
         self._line, self._modules = line, modules
         self._owner, self._lock = os.getpid(), threading.Lock()
 
-    def start(self, popen: Any, args: Any, *more: Any) -> None:
-        """Do what `Popen._execute_child` does: have the program forked, if it may be, or else start it."""
-        given = dict(zip(_KNOWN[2:], more, strict=False))
+    def make(self, args: Any, given: dict[str, Any]) -> int:
+        """Have the program forked, if it may be; return its process id, or 0."""
         order = _order(args, given, self._modules) if os.getpid() == self._owner else None
-        streams = (given["p2cread"], given["c2pwrite"], given["errwrite"])
-        pid = self._ask(order, streams) if order is not None else 0
-        if not pid:
-            _start_child(popen, args, *more)
-            return
-        popen.pid, popen._child_created = pid, True
-        popen._close_pipe_fds(*[given[name] for name in _PIPES])
+        return 0 if order is None else self._ask(order, children.streams(given))
 
     def _ask(self, order: dict[str, Any], streams: tuple[int, int, int]) -> int:
         """Order a program; return its process id, 0 if the nursery is no more."""
