@@ -97,6 +97,7 @@ def reports(scratch: Path) -> list[dict[str, Any]]:
             ("session", [family, "--flag"], {"input": "", "start_new_session": True, "cwd": "below"}),
             ("by the interpreter", [sys.executable, family], {"input": ""}),
             ("relative", ["../family"], {"input": "", "cwd": "below"}),
+            ("no environment", [family], {"input": "", "env": {}}),
         ],
         spec,
     )
@@ -108,7 +109,7 @@ def test_a_program_that_is_forked_for_another_finds_itself_where_a_started_one_d
         for name in ("plain", "environment"):
             report = found[name] = json.loads(found[name][1])
             del report["rights"]["NSpid"], report["rights"]["SigCgt"], report["oom"]
-        for name in ("family", "session", "by the interpreter", "relative"):
+        for name in ("family", "session", "by the interpreter", "relative", "no environment"):
             found[name] = json.loads(found[name][1])
     shown = forked["family"][0]
     assert shown[:2] == started["family"][0][:2]
@@ -136,6 +137,7 @@ def endings(scratch: Path) -> list[dict[str, Any]]:
             ("an option", [program(spec.workdir, "option", "import sys\nprint(sys.flags.isolated)", _ISOLATED)], {}),
             ("a variable", [program(spec.workdir, "flags", "import sys\nprint(sys.flags.optimize)")], {"env": _PLAIN}),
             ("by name", ["true"], {}),
+            ("by a name that is only here", ["plain"], {}),
             ("a shell's", "echo shell", {"shell": True}),
         ],
         spec,

@@ -112,8 +112,9 @@ def _order(args: Any, given: dict[str, Any], modules: Sequence[str]) -> dict[str
     if not plain or isinstance(args, str | bytes):
         return None
     words = [os.fsdecode(word) for word in args]
-    words = words[1:] if words[:1] == [sys.executable] else words
-    environment = {os.fsdecode(k): os.fsdecode(v) for k, v in (given["env"] or os.environ).items()}
+    words = words[1:] if words[:1] == [sys.executable] else words if "/" in words[0] else []  # not one of the PATH
+    environment = os.environ if given["env"] is None else given["env"]
+    environment = {os.fsdecode(name): os.fsdecode(value) for name, value in environment.items()}
     cwd = Path(os.fsdecode(given["cwd"] or ".")).absolute()
     module = words[1] if words[:1] == ["-m"] and words[1] in modules else ""
     known = module or (words and _is_ours(cwd / words[0]))
