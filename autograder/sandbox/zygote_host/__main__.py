@@ -26,14 +26,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from autograder.sandbox.zygote_host import becoming, confinement
+    from autograder.sandbox.zygote_host import becoming, confinement, leaving
 else:
     import becoming
     import confinement
+    import leaving
 
 MAX_ORDER = 1024 * 1024  # bytes
 MAX_FDS = 16
 SELF = Path(__file__).parent
+ENDING = leaving.Leaving(globals())
 
 
 def serve(orders: socket.socket) -> dict[str, Any] | None:
@@ -123,7 +125,7 @@ def main() -> tuple[Any, dict[str, Any]] | None:
     order = serve(orders)
     if order is None:
         return None
-    for module in (becoming, confinement):
+    for module in (becoming, confinement, leaving):
         del sys.modules[module.__name__]
     environment = {**order["environment"], "PWD": order["workdir"]}  # bubblewrap tells it, too
     return becoming.become(order["command"], environment, base)
@@ -132,4 +134,5 @@ def main() -> tuple[Any, dict[str, Any]] | None:
 if __name__ == "__main__":
     # The program is run from here, and ends as any does: nothing of the zygote is on its stack but this line.
     if program := main():
-        exec(*program)
+        with ENDING:
+            exec(*program)
