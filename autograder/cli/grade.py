@@ -85,10 +85,10 @@ class Progress:
         if self._bar is not None:
             self._bar.render_finish()
 
-    def show(self, result: Result) -> None:
-        """Count one more result."""
+    def show(self, result: Result, name: str = "") -> None:
+        """Count one more result, of the student or of what else is named."""
         self._done += 1
         if self._bar is not None:
             self._bar.update(1)
         else:
-            click.echo(f"[{self._done}/{self._total}] {result.student}: {marks(result)}")
+            click.echo(f"[{self._done}/{self._total}] {name or result.student}: {marks(result)}")

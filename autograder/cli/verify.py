@@ -11,6 +11,7 @@ import click
 from autograder import layout, suites
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
+from autograder.grading.lanes import Lanes
 from autograder.proof import Claim, Kind, cases, holds, prove, summary
 from autograder.result import write_json
 from autograder.sandbox import Tier
@@ -47,21 +48,16 @@ def verify(
     Exit status: 0 when the proof stands, 1 otherwise.
     """
     began = time.monotonic()
-    claims: list[Claim] = []
-    for assignment in assignments or tuple(suites.graded()):
-        chosen = [case for case in cases(assignment, quick=quick) if not names or case.name in names]
-        with Progress(len(chosen)) as progress:
-            claims += prove(
-                assignment,
-                chosen,
-                seed=seed,
-                out=out / assignment,
-                jobs=jobs,
-                isolation=Tier(isolation),
-                on_result=progress.show,
-            )
-    if not claims:
+    proof = [case for name in assignments or suites.graded() for case in cases(name, quick=quick)]
+    chosen = [case for case in proof if not names or case.name in names]
+    if not chosen:
         raise click.UsageError(f"the proof has no submission called {' or '.join(names)}")
+    with Progress(len(chosen)) as progress, Lanes(Tier(isolation), jobs) as lanes:
+
+        def show(claim: Claim) -> None:
+            progress.show(claim.result, _name(claim))
+
+        claims = prove(chosen, seed=seed, out=out, lanes=lanes, on_claim=show)
     click.echo("\n" + table([(_name(claim), marks(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     counted = summary(claims, time.monotonic() - began)
     click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))

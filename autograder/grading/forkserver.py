@@ -1,6 +1,6 @@
 """A fork server: a worker that has imported everything once, and forks for each submission.
 
-    python -m autograder.grading.forkserver ASSIGNMENT SCRATCH ORDERS_FD REPLIES_FD
+    python -m autograder.grading.forkserver SCRATCH ORDERS_FD REPLIES_FD
 
 Starting a worker costs about a core-second, as much as many a submission's checks. The proof grades hundreds of
 submissions of its own, so it lets each lane's share one cell, one after another. Whoever grades students' submissions
@@ -21,7 +21,7 @@ import traceback
 from pathlib import Path
 from typing import TextIO
 
-from autograder import probes
+from autograder import probes, suites
 from autograder.grading import colcon, worker
 from autograder.grading.job import MEMORY, Job
 from autograder.lockstep import stepper
@@ -31,13 +31,15 @@ from autograder.suites import Suite
 OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
 
 
-def serve(suite: Suite, scratch: Path, orders: TextIO, replies: TextIO) -> None:
+def serve(scratch: Path, orders: TextIO, replies: TextIO) -> None:
     """Carry orders out until there are no more, each in a child of its own that leaves no file but MEMORY's."""
     for line in orders:
-        said = scratch / "said.log"
+        said, job = scratch / "said.log", Job.from_json(line)
+        suite = suites.load(job.assignment)
+        assert suite.version  # read once for all, too
         child = os.fork()
         if child == 0:
-            _work(Job.from_json(line), suite, said)
+            _work(job, suite, said)
         _, status = os.waitpid(child, 0)
         reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
         for left in (left for left in scratch.iterdir() if left.name != MEMORY):
@@ -72,17 +74,16 @@ def _end_of(log: Path) -> str:
 
 
 def main() -> None:
-    """Serve the assignment that the command line names."""
-    assignment, scratch = sys.argv[1], Path(sys.argv[2])
-    suite = worker.prepare(assignment)
-    assert suite.version  # read once for all, too
+    """Serve in the folder and on the descriptors that the command line names."""
+    scratch, orders, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    worker.prepare()
     for preload in (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD):
         warm_up(preload)
     runpy.run_path(str(probes.PRELOAD))  # a worker needs most of that, too
     gc.collect()
     gc.freeze()  # what the children share is not theirs to look through
-    with os.fdopen(int(sys.argv[3])) as orders, os.fdopen(int(sys.argv[4]), "w") as replies:
-        serve(suite, scratch, orders, replies)
+    with os.fdopen(orders) as lines, os.fdopen(replies, "w") as answers:
+        serve(scratch, lines, answers)
 
 
 if __name__ == "__main__":

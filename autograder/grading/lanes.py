@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from autograder.grading.job import MEMORY, Job
@@ -24,12 +23,11 @@ _TICK = 0.25  # s between two looks at whether a silent server still lives
 
 
 class Lanes:
-    """Grades submissions of one assignment in a few cells that are used again and again; a context manager.
+    """Grades submissions in a few cells that are used again and again; a context manager.
 
     It is called as `pipeline.in_own_cell` is. For submissions that are the course's own, see `forkserver`.
 
     Args:
-        assignment: which assignment they answer.
         tier: how strongly a cell is kept apart.
         count: how many there are, for as many calls at once.
 
@@ -37,10 +35,9 @@ class Lanes:
         IsolationError: this machine cannot give the tier.
     """
 
-    def __init__(self, assignment: str, tier: Tier, count: int) -> None:
-        self._new = partial(_Lane, assignment, require(tier))
+    def __init__(self, tier: Tier, count: int) -> None:
+        self.tier, self.count = require(tier), count
         self._idle: queue.SimpleQueue[_Lane | None] = queue.SimpleQueue()
-        self._count = count
         for _ in range(count):
             self._idle.put(None)
 
@@ -48,7 +45,7 @@ class Lanes:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for lane in [self._idle.get() for number in range(self._count)]:
+        for lane in [self._idle.get() for number in range(self.count)]:
             if lane is not None:
                 lane.close()
 
@@ -56,7 +53,7 @@ class Lanes:
         """Grade one submission; `job_in` makes its job from a scratch folder."""
         lane = self._idle.get()
         try:
-            lane = lane or self._new()
+            lane = lane or _Lane(self.tier)
             report = lane.grade(replace(job_in(lane.scratch / "job"), memory=lane.scratch / MEMORY))
             if report.ending is not Ending.EXITED:
                 lane.close()
@@ -69,7 +66,7 @@ class Lanes:
 class _Lane:
     """A fork server in a cell."""
 
-    def __init__(self, assignment: str, tier: Tier) -> None:
+    def __init__(self, tier: Tier) -> None:
         self._stack = ExitStack()
         their_orders, self._orders = os.pipe()
         self._replies, their_replies = os.pipe()
@@ -78,7 +75,7 @@ class _Lane:
         theirs = (their_orders, their_replies)
 
         def command(scratch: Path) -> list[str]:
-            server = [sys.executable, "-m", "autograder.grading.forkserver", assignment, str(scratch)]
+            server = [sys.executable, "-m", "autograder.grading.forkserver", str(scratch)]
             return [*server, *map(str, theirs)]
 
         try:

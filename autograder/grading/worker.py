@@ -157,11 +157,10 @@ class Grading:
             self._phases[name] = round(time.monotonic() - began, 3)
 
 
-def prepare(assignment: str) -> Suite:
-    """Import what grading an assignment takes; return its suite."""
+def prepare() -> None:
+    """Make this process a worker's: interrupts reach it, and ROS is there to be imported."""
     heed_interrupts()
     activate()
-    return suites.load(assignment)
 
 
 def work(job: Job, suite: Suite) -> None:
@@ -173,7 +172,8 @@ def work(job: Job, suite: Suite) -> None:
 def main() -> None:
     """Grade the job that the command line holds."""
     job = Job.from_json(sys.argv[1])
-    work(job, prepare(job.assignment))
+    prepare()
+    work(job, suites.load(job.assignment))
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ class Case:
     """One submission of the proof.
 
     Attributes:
+        assignment: whose suite grades it.
         kind: what it is.
         name: unique in its assignment.
         write: writes it to a folder.
@@ -33,6 +34,7 @@ class Case:
         scope: how much of the suite is run.
     """
 
+    assignment: str
     kind: Kind
     name: str
     write: Callable[[Path], None]
@@ -50,16 +52,16 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """
     sources = suites.load(assignment).sources
     found = [
-        Case(Kind.REFERENCE, "reference", partial(lay_down_reference, sources), full),
-        Case(Kind.RELEASE, "release", partial(write_release, assignment), nothing),
+        Case(assignment, Kind.REFERENCE, "reference", partial(lay_down_reference, sources), full),
+        Case(assignment, Kind.RELEASE, "release", partial(write_release, assignment), nothing),
         *_variants(assignment, sources),
     ]
     if quick:
-        found += [_mutant(mutant, sources, only) for mutant, only in one_a_check(assignment)]
+        found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_a_check(assignment)]
     else:
-        found += [_mutant(mutant, sources) for mutant in mutants(assignment)]
-        found += [_generated(made, sources) for made in generated(assignment)]
-        found += [_attack(attack) for attack in attacks(assignment)]
+        found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
+        found += [_generated(assignment, made, sources) for made in generated(assignment)]
+        found += [_attack(assignment, attack) for attack in attacks(assignment)]
     return tuple(found)
 
 
@@ -101,9 +103,9 @@ def write_release(assignment: str, folder: Path) -> None:
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
 
 
-def _mutant(mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
-    judge = partial(as_named, mutant, only=frozenset(only))
-    return Case(Kind.MUTANT, mutant.id, partial(lay_down, mutant, sources), judge, scope=replace(UNSEEN, only=only))
+def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
+    write, judge = partial(lay_down, mutant, sources), partial(as_named, mutant, only=frozenset(only))
+    return Case(assignment, Kind.MUTANT, mutant.id, write, judge, scope=replace(UNSEEN, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
@@ -115,17 +117,17 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
             lay_down_reference(sources, target)
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
-        yield Case(Kind.VARIANT, variant.name, write, full)
+        yield Case(assignment, Kind.VARIANT, variant.name, write, full)
 
 
-def _generated(made: Generated, sources: tuple[str, ...]) -> Case:
+def _generated(assignment: str, made: Generated, sources: tuple[str, ...]) -> Case:
     def write(folder: Path) -> None:
         lay_down_reference(sources, folder)
         (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
 
     # One lost check kills it: the others would say nothing more.
-    return Case(Kind.GENERATED, made.id, write, killed, made.reason, replace(UNSEEN, first_loss=True))
+    return Case(assignment, Kind.GENERATED, made.id, write, killed, made.reason, replace(UNSEEN, first_loss=True))
 
 
-def _attack(attack: Attack) -> Case:
-    return Case(Kind.ATTACK, attack.id.replace(" ", "-"), attack.make, attack.judge)
+def _attack(assignment: str, attack: Attack) -> Case:
+    return Case(assignment, Kind.ATTACK, attack.id.replace(" ", "-"), attack.make, attack.judge)

@@ -4,56 +4,55 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
-from autograder.grading.batch import Entry, grade_all
 from autograder.grading.lanes import Lanes
+from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
-from autograder.result import Result
-from autograder.sandbox import Tier
 
 SUBMISSION = "submission"
 
 
 def prove(
-    assignment: str,
-    cases: Sequence[Case],
-    *,
-    seed: int,
-    out: Path,
-    jobs: int,
-    isolation: Tier = Tier.BUBBLEWRAP,
-    on_result: Callable[[Result], None] = lambda result: None,
+    proof: Sequence[Case], *, seed: int, out: Path, lanes: Lanes, on_claim: Callable[[Claim], None] = lambda claim: None
 ) -> tuple[Claim, ...]:
-    """Grade the submissions of a proof.
+    """Grade the submissions of a proof, all lanes at work until there are no more.
 
     Args:
-        assignment: whose suite is proved.
-        cases: from `cases`.
+        proof: from `cases`, of one assignment or of several.
         seed: every hidden input is drawn from it.
-        out: gets each submission's result.
-        jobs: how many are graded at once.
-        isolation: the sandbox's tier.
-        on_result: called for each result as it comes.
+        out: `out`/ASSIGNMENT/NAME gets each submission's result.
+        lanes: where they are graded.
+        on_claim: called for each claim as it comes, in any order.
+
+    Returns:
+        The claims, in the order of `proof`.
     """
-    with tempfile.TemporaryDirectory(prefix="proof-") as name:
-        entries = tuple(Entry(case.name, _written(case, Path(name) / case.name), case.scope) for case in cases)
-        with Lanes(assignment, isolation, jobs) as lanes:
-            results = grade_all(
-                entries,
-                assignment,
+    with tempfile.TemporaryDirectory(prefix="proof-") as name, ThreadPoolExecutor(lanes.count) as pool:
+
+        def judged(case: Case) -> Claim:
+            submission = _written(case, Path(name) / case.assignment / case.name)
+            result = grade_submission(
+                submission,
+                case.assignment,
+                student=case.name,
                 seed=seed,
-                out=out,
-                jobs=jobs,
-                isolation=isolation,
+                out=out / case.assignment / case.name,
+                isolation=lanes.tier,
+                scope=case.scope,
                 run_job=lanes,
-                on_result=on_result,
-            )
-    return tuple(
-        Claim(assignment, case.kind, case.name, result, case.judge(result), case.reason)
-        for case, result in zip(cases, results, strict=True)
-    )
+            ).result
+            return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
+
+        running = [pool.submit(judged, case) for case in proof]
+        try:
+            for future in as_completed(running):
+                on_claim(future.result())
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+        return tuple(future.result() for future in running)
 
 
 def _written(case: Case, folder: Path) -> Path:

@@ -61,7 +61,7 @@ def _servers() -> list[int]:
 
 
 def test_one_cell_for_many_gives_the_results_of_a_cell_each(reference: Path, half: Path, tmp_path: Path) -> None:
-    with Lanes(ASSIGNMENT, Tier.BUBBLEWRAP, 1) as lanes:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         shared = [_grade(path, tmp_path / "shared", lanes, SOME) for path in (reference, half, reference)]
         assert len(_servers()) == 1
     assert _servers() == []
@@ -74,7 +74,7 @@ def test_one_cell_for_many_gives_the_results_of_a_cell_each(reference: Path, hal
 def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
     reference: Path, half: Path, tmp_path: Path
 ) -> None:
-    with Lanes(ASSIGNMENT, Tier.BUBBLEWRAP, 1) as lanes:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         failed = _grade(reference, tmp_path / "failed", lanes, Scope(only=("no_such_check",)))
         graded = _grade(half, tmp_path / "graded", lanes)
         assert len(_servers()) == 1
@@ -87,7 +87,7 @@ def test_a_server_that_dies_is_replaced_and_nothing_of_it_stays(
     half: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    with Lanes(ASSIGNMENT, Tier.PROCESS, 1) as lanes:
+    with Lanes(Tier.PROCESS, 1) as lanes:
         assert _grade(half, tmp_path / "one", lanes, tier=Tier.PROCESS).status is Status.GRADED
         (cell,) = tmp_path.glob("cell-*")
         assert list(cell.iterdir()) == []

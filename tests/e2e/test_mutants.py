@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from autograder import suites
+from autograder.grading.lanes import Lanes
 from autograder.proof import Case, cases, prove
+from autograder.sandbox import Tier
 
-PROOF = [(name, case) for name in suites.graded() for case in cases(name, quick=True)]
+PROOF = [case for name in suites.graded() for case in cases(name, quick=True)]
+
+
+@pytest.fixture(scope="session")
+def lanes() -> Iterator[Lanes]:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lane:
+        yield lane
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("assignment", "case"), PROOF, ids=[f"{name}-{case.kind.value}-{case.name}" for name, case in PROOF]
-)
-def test_grading_makes_of_a_submission_what_is_claimed(assignment: str, case: Case, tmp_path: Path) -> None:
-    (claim,) = prove(assignment, [case], seed=2026, out=tmp_path / "out", jobs=1)
-    log = tmp_path / "out" / case.name / "grader.log"
+@pytest.mark.parametrize("case", PROOF, ids=[f"{case.assignment}-{case.kind.value}-{case.name}" for case in PROOF])
+def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes, tmp_path: Path) -> None:
+    (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
+    log = tmp_path / case.assignment / case.name / "grader.log"
     assert claim.holds, f"{claim.wrong}\n{log.read_text() if log.is_file() else ''}"
