@@ -161,6 +161,7 @@ ENDS = {
     "true": "import sys\nsys.exit(True)",
     "child's": "import os, sys\nif os.fork() == 0:\n    sys.exit(5)\nsys.exit(os.waitstatus_to_exitcode(os.wait()[1]))",
     "unwritten": "import os\nprint('lost')\nos.close(1)",
+    "a library's": "import ctypes\nctypes.CDLL(None).printf(b'from C')",
     "left open": LEFT_OPEN,
     "destroyed": DESTROYED,
     "held": HELD,

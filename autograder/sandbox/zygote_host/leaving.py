@@ -7,6 +7,7 @@ of the zygote's memory for that, page by page, which costs more than the program
 from __future__ import annotations
 
 import atexit
+import ctypes
 import gc
 import os
 import signal
@@ -55,6 +56,7 @@ class Leaving:
         _take_apart(self._inherited, id(vars(sys.modules["__main__"])))
         if not _flushed():
             return
+        ctypes.CDLL(None).fflush(None)  # what libraries have written
         if self._interrupted:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
             os.kill(os.getpid(), signal.SIGINT)

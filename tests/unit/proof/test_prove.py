@@ -1,0 +1,67 @@
+"""How the submissions of a proof come to be graded: all lanes at work, and every result in its own place."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from autograder.grading.job import Job
+from autograder.grading.lanes import Lanes
+from autograder.proof import Case, Kind, prove
+from autograder.result import Result
+from autograder.sandbox import Tier
+from autograder.sandbox.cell import CellReport
+from autograder.sandbox.process import Ending
+
+LANES = 3
+CHAPTERS = ("01_package_structure", "02_nodes", "03_interfaces")
+
+
+class NoGrader:
+    """Lanes in which every grading fails, and none before as many as there are lanes have begun."""
+
+    tier, count = Tier.PROCESS, LANES
+
+    def __init__(self) -> None:
+        self._together = threading.Barrier(LANES, timeout=60.0)
+
+    def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
+        self._together.wait()
+        return CellReport(Ending.EXITED, 1, f"nobody grades {job_in(Path()).student}")
+
+
+def case(assignment: str, write: Callable[[Path], object] = Path.mkdir) -> Case:
+    def made(folder: Path) -> None:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        write(folder)
+
+    def judge(result: Result) -> str:
+        return f"{result.assignment} is {result.status.value}"
+
+    return Case(assignment, Kind.REFERENCE, "reference", made, judge)
+
+
+def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
+    claims = prove(proof, seed=1, out=out, lanes=cast(Lanes, NoGrader()), **options)
+    return [claim.wrong for claim in claims]
+
+
+def test_submissions_of_several_chapters_may_have_one_name(tmp_path: Path) -> None:
+    came: list[str] = []
+    said = run([case(name) for name in CHAPTERS], tmp_path, on_claim=lambda claim: came.append(claim.assignment))
+    assert said == [f"{name} is not_graded" for name in CHAPTERS]
+    assert sorted(came) == list(CHAPTERS)
+    logs = [(tmp_path / name / "reference" / "grader.log").read_text() for name in CHAPTERS]
+    assert all("nobody grades reference" in log for log in logs)
+
+
+def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None:
+    def fails(folder: Path) -> None:
+        raise FileNotFoundError("no such reference")
+
+    with pytest.raises(FileNotFoundError, match="no such reference"):
+        run([case(CHAPTERS[0], fails)], tmp_path)
