@@ -11,8 +11,7 @@ from pathlib import Path
 from autograder import suites
 from autograder.exceptions import AutograderError, UsageError
 from autograder.grading import intake
-from autograder.grading.job import ALL, Scope
-from autograder.grading.pipeline import RESULT, RunJob, grade_submission, in_own_cell
+from autograder.grading.pipeline import RESULT, grade_submission
 from autograder.result import Result, Status, from_json
 from autograder.sandbox import Tier
 
@@ -21,11 +20,10 @@ ARCHIVES = (".zip", ".ipynb")
 
 @dataclass(frozen=True)
 class Entry:
-    """One submission of a class: whose it is, where it lies, and how much of the suite is run."""
+    """One submission of a class: whose it is, and where it lies."""
 
     student: str
     path: Path
-    scope: Scope = ALL
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
@@ -62,7 +60,6 @@ def grade_all(
     jobs: int,
     isolation: Tier = Tier.BUBBLEWRAP,
     resume: bool = False,
-    run_job: RunJob = in_own_cell,
     on_result: Callable[[Result], None] = lambda result: None,
 ) -> tuple[Result, ...]:
     """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
@@ -75,7 +72,6 @@ def grade_all(
         jobs: how many are graded at once; the results do not depend on it.
         isolation: the sandbox's tier.
         resume: keep a stored result whose submission, suite, seed and isolation are the same.
-        run_job: runs one's job in a cell.
         on_result: called for each result as it comes, in any order.
 
     Returns:
@@ -94,8 +90,6 @@ def grade_all(
             seed=seed,
             out=out / entry.student,
             isolation=isolation,
-            scope=entry.scope,
-            run_job=run_job,
         )
         return graded.result
 

@@ -30,12 +30,11 @@ def prove(
     Returns:
         The claims, in the order of `proof`.
     """
-    with tempfile.TemporaryDirectory(prefix="proof-") as name, ThreadPoolExecutor(lanes.count) as pool:
 
-        def judged(case: Case) -> Claim:
-            submission = _written(case, Path(name) / case.assignment / case.name)
+    def judged(case: Case) -> Claim:
+        with tempfile.TemporaryDirectory(prefix="proof-") as name:
             result = grade_submission(
-                submission,
+                _written(case, Path(name) / case.name),
                 case.assignment,
                 student=case.name,
                 seed=seed,
@@ -44,8 +43,9 @@ def prove(
                 scope=case.scope,
                 run_job=lanes,
             ).result
-            return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
+        return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
 
+    with ThreadPoolExecutor(lanes.count) as pool:
         running = [pool.submit(judged, case) for case in proof]
         try:
             for future in as_completed(running):

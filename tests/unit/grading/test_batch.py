@@ -89,8 +89,6 @@ class Grader:
         seed: int,
         out: Path,
         isolation: object,
-        scope: object,
-        run_job: object,
     ) -> Graded:
         self._meeting.wait(60)
         self.graded.append(student)

@@ -45,8 +45,6 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
         seed: int,
         out: Path,
         isolation: str,
-        scope: object,
-        run_job: object,
     ) -> Graded:
         seen.append((path, assignment, student, seed, out, isolation))
         return verdict()
