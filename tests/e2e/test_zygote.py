@@ -132,9 +132,7 @@ module = types.ModuleType("mine")
 module.held, sys.modules["mine"] = Thing("in my module"), module
 first, _last = Thing("global"), Thing("private")
 ring = Thing("in a ring")
-ring.ring, error = ring, Thing("of the error")
-def fail(local):
-    raise ValueError(local)
+ring.ring, last = ring, Thing("last")
 print("said", end="; ")
 """
 HELD = """

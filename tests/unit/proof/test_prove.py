@@ -34,15 +34,11 @@ class NoGrader:
         return CellReport(Ending.EXITED, 1, f"nobody grades {job_in(Path()).student}")
 
 
-def case(assignment: str, write: Callable[[Path], object] = Path.mkdir) -> Case:
-    def made(folder: Path) -> None:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        write(folder)
-
+def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
     def judge(result: Result) -> str:
         return f"{result.assignment} is {result.status.value}"
 
-    return Case(assignment, Kind.REFERENCE, "reference", made, judge)
+    return Case(assignment, Kind.REFERENCE, "reference", write, judge)
 
 
 def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
