@@ -78,6 +78,7 @@ def _started(
     group: ControlGroup | None,
     pass_fds: tuple[int, ...] = (),
     stdin: int = subprocess.DEVNULL,
+    held: bool = False,
 ) -> Process:
     contained = current_tier() is Tier.BUBBLEWRAP
     command = bubblewrap.sandbox(command, spec) if contained else [*bubblewrap.rlimits(spec.limits), *command]
@@ -90,6 +91,7 @@ def _started(
         contained=contained,
         at_end=group.close if group else None,
         stdin=stdin,
+        held=held,
     )
 
 
@@ -103,7 +105,7 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], preloa
     line, theirs = socket.socketpair()
     with line:
         with theirs:
-            process = _started(HOLDER, spec, group, stdin=theirs.fileno())
+            process = _started(HOLDER, spec, group, stdin=theirs.fileno(), held=True)
         try:
             line.settimeout(PATIENCE)
             if not line.recv(1):

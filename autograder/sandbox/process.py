@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import selectors
 import signal
@@ -104,6 +105,7 @@ class Process:
         contained: the end of the outermost process takes the whole tree with it, as in a pid namespace.
         at_end: is called once, after its end; leaving the block waits for it.
         stdin: its standard input.
+        held: the command only holds the place of a program that will be `entered`, whose time counts from then.
     """
 
     def __init__(
@@ -117,6 +119,7 @@ class Process:
         contained: bool = False,
         at_end: Callable[[], None] | None = None,
         stdin: int = subprocess.DEVNULL,
+        held: bool = False,
     ) -> None:
         self._at_end = at_end
         self._contained = contained
@@ -125,7 +128,7 @@ class Process:
         self._ending: Ending | None = None
         self._lock = threading.Lock()
         self._entered: tuple[int, ...] = ()
-        self._started = time.monotonic()
+        self._started = math.inf if held else time.monotonic()
         self._popen = subprocess.Popen(
             command,
             stdin=stdin,
@@ -172,6 +175,7 @@ class Process:
     def entered(self, pid: int) -> None:
         """Take in a process that has joined the sandbox from outside: from now on it is the student's own."""
         self._entered = (pid,)
+        self._started = time.monotonic()
 
     def innermost(self) -> int:
         """Return the process id of the student's own process below the sandbox's helpers."""

@@ -79,10 +79,12 @@ def build(workspace: Workspace, colcon: Path) -> subprocess.CompletedProcess[str
 
 
 def told(process: subprocess.CompletedProcess[str]) -> set[str]:
-    """What a build says of packages and errors; colcon mixes its children's streams in any order."""
-    lines = [*process.stdout.splitlines(), *process.stderr.splitlines()]  # the last one may have no end
-    told = (FROM_RUN_TO_RUN.sub("", line) for line in lines)
-    return {line for line in told if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line)}
+    """What a build says of packages and errors; colcon mixes its children's streams in any order.
+
+    Its own threads share stderr, too: what one logs may come before another's end of line.
+    """
+    text = FROM_RUN_TO_RUN.sub("", f"{process.stdout}\n{process.stderr}").replace(" ERROR:", "\nERROR:")
+    return {line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line)}
 
 
 def files(folder: Path) -> dict[str, tuple[int, bytes]]:

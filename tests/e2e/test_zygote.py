@@ -16,7 +16,7 @@ from autograder import probes
 from autograder.grading import colcon
 from autograder.lockstep import stepper
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
-from autograder.sandbox import Mount, Process, Sandbox
+from autograder.sandbox import Limits, Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.spec import INTERPRETER
 from tests.e2e.cell_support import in_cell, is_forked
@@ -283,6 +283,23 @@ def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
     own, other = (int(count) for count in in_cell(remembered))
     assert own >= 1
     assert other == 0
+
+
+def late(scratch: Path) -> list[Any]:
+    """Fork from what takes longer to import than the program may take; return whether it was, and how it ended."""
+    slow = scratch / "slow.py"
+    slow.write_text("import threading; threading.Event().wait(2.0)")
+    spec = workplace(scratch, limits=Limits(wall_seconds=1.0))
+    (spec.workdir / "program.py").write_text("import signal; signal.pause()")
+    with launch([sys.executable, str(spec.workdir / "program.py")], spec, preload=slow) as process:
+        forked = is_forked(process)
+        process.wait(LONG)
+    assert process.ending is not None
+    return [forked, process.ending.value]
+
+
+def test_the_imports_of_the_zygote_are_not_of_the_program_s_time() -> None:
+    assert in_cell(late) == [True, "wall_time"]
 
 
 def without(scratch: Path) -> list[Any]:

@@ -71,7 +71,7 @@ def _reporting(orders: socket.socket) -> Iterator[None]:
     try:
         yield
     except BaseException as error:
-        orders.send(json.dumps({"failed": repr(error)}).encode())
+        orders.send(json.dumps({"failed": f"{type(error).__name__}: {error}"}).encode())
         os._exit(1)
 
 

@@ -66,6 +66,14 @@ def test_time_is_limited() -> None:
         assert process.ending is Ending.WALL_TIME
 
 
+def test_the_time_of_a_program_whose_place_is_held_counts_from_its_coming() -> None:
+    with Process(_python("import signal; signal.pause()"), Limits(wall_seconds=0.2), held=True) as process:
+        assert not process.wait(1.0)
+        process.entered(process.pid)
+        assert process.wait(LONG)
+        assert process.ending is Ending.WALL_TIME
+
+
 def test_output_is_limited_and_only_so_much_is_kept() -> None:
     with Process(_python("while True: print('x' * 999)"), Limits(output=10_000)) as process:
         assert process.wait(LONG)
