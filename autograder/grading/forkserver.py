@@ -24,11 +24,15 @@ from typing import TextIO
 from autograder import probes, suites
 from autograder.grading import colcon, worker
 from autograder.grading.job import MEMORY, Job
+from autograder.lab import launching
 from autograder.lockstep import stepper
+from autograder.probes import colcon as colcon_test
 from autograder.sandbox.launcher import warm_up
 from autograder.suites import Suite
 
 OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
+# All that a submission's programs are forked from: what a child warms up ends with it.
+PRELOADS = (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD, launching.PRELOAD, colcon_test.PRELOAD)
 
 
 def serve(scratch: Path, orders: TextIO, replies: TextIO) -> None:
@@ -77,7 +81,7 @@ def main() -> None:
     """Serve in the folder and on the descriptors that the command line names."""
     scratch, orders, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     worker.prepare()
-    for preload in (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD):
+    for preload in PRELOADS:
         warm_up(preload)
     runpy.run_path(str(probes.PRELOAD))  # a worker needs most of that, too
     gc.collect()
