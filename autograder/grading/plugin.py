@@ -83,6 +83,9 @@ class GradingPlugin:
             item.session.shouldstop = "a check did not pass"
         return (yield)
 
+    def pytest_configure(self, config: pytest.Config) -> None:
+        config.option.tbstyle = "native"  # nobody reads the other, for which whole files are parsed at every failure
+
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         if only := self._scope.only:
             items[:] = [item for item in items if (check := _declared_by(item)) and check.id in only]

@@ -17,7 +17,7 @@ from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
 OFFERS = {"/scan": LaserScan, "/odom": Odometry}
 LISTENS = {"/cmd_vel": Twist}
-PHYSICS_NS = 50_000_000  # between two rows of the recording: 15 mm at 0.3 m/s
+PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
 SCAN_NS = 100_000_000
 
 Tamper = Callable[[Scan, float], Scan | None]

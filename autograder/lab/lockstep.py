@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from types import TracebackType
@@ -38,6 +38,7 @@ class Player:
         self.reads: frozenset[str] = frozenset()
         self.mail: Counter[str] = Counter()
         self.wake: int | None = None
+        self.idle: int | None = None
 
     def describe(self) -> Description:
         """Ask what the program's nodes look like now."""
@@ -122,11 +123,11 @@ class LockstepLab(Lab):
     def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
         if dt_ns and len(self._players) == 1:
-            self._turn(self._players[0], [self._now_ns - 1, self._now_ns])
+            self._let_live(self._players[0], [self._now_ns - 1, self._now_ns])
         elif dt_ns:
             self._settle(self._now_ns - 1)
             for player in self._players:
-                self._turn(player, [self._now_ns])
+                self._let_live(player, [self._now_ns])
         self._settle(self._now_ns)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
@@ -160,6 +161,12 @@ class LockstepLab(Lab):
         )
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
+    def _let_live(self, player: Player, instants: list[int]) -> None:
+        """Let one program live through instants, if it has anything to do then."""
+        self._post(self._station.sent)
+        if player.mail or player.idle is None or player.idle <= instants[-1]:
+            self._turn(player, instants)
+
     def _turn(self, player: Player, instants: list[int]) -> None:
         """Let one program live through instants, and deliver what it sends."""
         if player not in self._players:
@@ -171,7 +178,7 @@ class LockstepLab(Lab):
                 reply = player.stepper.step(instants, mail)
         except _Spared:
             return
-        player.wake = reply.wake
+        player.wake, player.idle = reply.wake, reply.idle
         for reason in reply.notes:
             if reason not in self.notes:
                 self.notes.append(reason)
@@ -206,16 +213,13 @@ class LockstepLab(Lab):
         A count that is never reached is forged, or the student's own QoS dropped a message. Only what arrived counts,
         and all waiting in vain has one bound.
         """
-        while not self._all_heard() and self._patience > 0.0:
+        while not self._station.hear() and self._patience > 0.0:
             began = time.monotonic()
             self._spin(0.05)
-            if not self._all_heard():
+            if not self._station.hear():
                 self._patience -= time.monotonic() - began
         for ear in self._station.ears:
             ear.expected = ear.count
-
-    def _all_heard(self) -> bool:
-        return all(ear.count >= ear.expected for ear in self._station.ears)
 
     # Meeting.
 
@@ -235,6 +239,7 @@ class LockstepLab(Lab):
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
+            player.idle = None  # there may be something for it to take
         for ear in self._station.ears:
             if ear.new:
                 ear.new = False
@@ -264,8 +269,9 @@ class LockstepLab(Lab):
         return found
 
     def _reach(self, client: Any, seconds: float) -> bool:
+        channel = channels.request(client.srv_name, client.srv_type)
+
         def there() -> bool:
-            channel = channels.request(client.srv_name, client.srv_type)
             return any(channel in player.description.servers for player in self._players)
 
         if not there() and not self.until(there, seconds):
@@ -289,8 +295,5 @@ class LockstepLab(Lab):
             raise StudentError(replace(error.diagnosis, sentence=sentence)) from None
 
 
-def _sum(counts: Any) -> Counter[str]:
-    total: Counter[str] = Counter()
-    for count in counts:
-        total.update(count)
-    return total
+def _sum(counts: Iterable[dict[str, int]]) -> Counter[str]:
+    return sum(map(Counter, counts), Counter[str]())

@@ -8,7 +8,7 @@
                       {"event": "description", ...}
                       {"event": "met"}
                       {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "late": [CHANNEL, ...], "changed": BOOL,
-                       "wake": NANOSECONDS, "notes": [REASON, ...]}
+                       "wake": NANOSECONDS, "idle": NANOSECONDS, "notes": [REASON, ...]}
                       {"event": "unsteppable", "reason": ...}
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
@@ -78,6 +78,7 @@ class Reply:
         late: channels on which the nodes gave up waiting for messages that they were told of.
         changed: whether there are endpoints or timers that the last description did not name.
         wake: the next instant at which something in the program wants to go on, besides its timers.
+        idle: the instant before which the program does nothing unless it is sent something; None if it cannot tell.
         notes: why steps are not all that moves the program; see `Unsteppable`.
     """
 
@@ -85,6 +86,7 @@ class Reply:
     late: tuple[str, ...] = ()
     changed: bool = False
     wake: int | None = None
+    idle: int | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -157,12 +159,13 @@ def description(data: dict[str, Any]) -> Description:
 
 def reply(data: dict[str, Any]) -> Reply:
     """Read a `done` event, dropping what is not of the right type."""
-    wake = data.get("wake")
+    wake, idle = data.get("wake"), data.get("idle")
     return Reply(
         sent=_counts(data.get("sent")),
         late=tuple(_texts(data.get("late"))),
         changed=data.get("changed") is True,
         wake=wake if type(wake) is int else None,
+        idle=idle if type(idle) is int else None,
         notes=tuple(reason for reason in _texts(data.get("notes")) if reason in REASONS),
     )
 

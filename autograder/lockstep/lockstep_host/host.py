@@ -28,6 +28,7 @@ from .clocks import Clocks
 from .crew import Worker
 from .executors import CrewExecutor, spin_until_future_complete
 from .hooks import Hooks
+from .idleness import idle_until
 from .link import Link
 from .survey import survey
 from .tasks import where
@@ -67,12 +68,11 @@ class Host:
         self._instants: list[int] = []  # of the present step, still to come
         self._positions: dict[Any, int] = {}  # where coroutines stood when they were last resumed
         self._seen: weakref.WeakSet[Any] = weakref.WeakSet()  # tasks that have been resumed
-        self._worked = self._stale = False
-        self._stepping = False
+        self._worked = self._stale = self._stepping = self._quit = False
+        self._idle: int | None = None  # see `idle_until`; None while a callback waits
         self._late: list[str] = []
         self._notes: list[str] = []
         self._main = threading.current_thread()
-        self._quit = False
         self._progress = 0.0
 
     def install(self) -> None:
@@ -144,10 +144,12 @@ class Host:
             self.blocking.check(executor, end)
             wake = end if timeout else None
             self.wakes.append(wake)
+            self._idle = None if timeout == 0 else idle_until(executor, self._alive(), self.time, wake)
             try:
                 self.pass_time()
             finally:
                 self.wakes.remove(wake)
+                self._idle = None
             self._stale = False
 
     def ours(self) -> bool:
@@ -250,7 +252,7 @@ class Host:
             self._stepping = False
             wake = min((wake for wake in self.wakes if wake is not None), default=None)
             state = {"late": self._late, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
-            self.link.send(event="done", sent=self.ledger.flush(), **state)
+            self.link.send(event="done", sent=self.ledger.flush(), idle=None if self._notes else self._idle, **state)
         while True:
             order: dict[str, Any] = {"op": "quit"} if self._quit else self.link.receive()
             if order["op"] == "quit":
