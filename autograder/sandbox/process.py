@@ -139,6 +139,8 @@ class Process:
             cwd=cwd,
             start_new_session=True,
         )
+        assert self._popen.stdout is not None
+        os.set_blocking(self._popen.stdout.fileno(), False)
         self._ended = threading.Event()
         self._watcher = threading.Thread(target=self._watch, name=f"watch-{self._popen.pid}", daemon=True)
         self._watcher.start()
@@ -151,6 +153,7 @@ class Process:
     @property
     def output(self) -> str:
         """What it has written so far, at most `Limits.output` bytes; bytes that are no UTF-8 are replaced."""
+        self._read()  # the watcher may not have come to what is in the pipe by now
         with self._lock:
             return self._output.decode("utf-8", errors="replace")
 
@@ -226,16 +229,14 @@ class Process:
 
     def _watch(self) -> None:
         assert self._popen.stdout is not None
-        stream = self._popen.stdout.fileno()
-        os.set_blocking(stream, False)
         measured = 0.0
         with selectors.DefaultSelector() as selector:
-            selector.register(stream, selectors.EVENT_READ)
+            selector.register(self._popen.stdout, selectors.EVENT_READ)
             open_stream = True
             while self._popen.poll() is None:
                 if open_stream:
                     if selector.select(_TICK):
-                        open_stream = self._read(stream)
+                        open_stream = self._read()
                 else:
                     self._wait_for_exit(_TICK)
                 now = time.monotonic()
@@ -250,8 +251,9 @@ class Process:
                         self._end(Ending.THREADS)
             # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
             while open_stream and selector.select(0):
-                open_stream = self._read(stream)
-        self._popen.stdout.close()
+                open_stream = self._read()
+        with self._lock:
+            self._popen.stdout.close()
         self._popen.wait()
         self._ending = self._ending or Ending.EXITED
         self._ended.set()
@@ -264,20 +266,22 @@ class Process:
         except subprocess.TimeoutExpired:
             return
 
-    def _read(self, stream: int) -> bool:
-        try:
-            chunk = os.read(stream, 65536)
-        except BlockingIOError:
-            return True
-        if not chunk:
-            return False
+    def _read(self) -> bool:
+        """Take in what is in the pipe, all that it can hold; return whether more may come."""
+        assert self._popen.stdout is not None
         with self._lock:
+            if self._popen.stdout.closed:
+                return False
+            try:
+                chunk = os.read(self._popen.stdout.fileno(), 65536)
+            except BlockingIOError:
+                return True
             room = self._limits.output - len(self._output)
             self._output += chunk[: max(room, 0)]
         if len(chunk) > room:
             self._end(Ending.OUTPUT)
             return self._popen.poll() is None
-        return True
+        return bool(chunk)
 
 
 def _children(pid: int) -> list[int]:

@@ -46,6 +46,22 @@ def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
         assert (process.ending, process.returncode, process.output) == (Ending.EXITED, 3, "hello\n")
 
 
+def test_what_is_written_can_be_read_at_once() -> None:
+    """A program that says that it has written something has: nobody need wait for the watcher."""
+    code = "import os, sys\nfor n in range(3000):\n    print(n, flush=True); os.write(int(sys.argv[1]), b'x')"
+    said, tell = os.pipe()
+    try:
+        with Process(_python(code, str(tell)), Limits(), pass_fds=(tell,)) as process:
+            os.close(tell)
+            number = 0
+            while os.read(said, 1):
+                assert process.output.splitlines()[number:], number
+                number += 1
+        assert number == 3000
+    finally:
+        os.close(said)
+
+
 def test_while_it_runs_it_has_neither_status_nor_ending() -> None:
     with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
         assert _until(lambda: process.output == "up\n")
