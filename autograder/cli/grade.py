@@ -13,6 +13,8 @@ from autograder.grading.batch import discover, grade_all
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
+INTERRUPTED = 130  # as a shell tells it
+
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -43,21 +45,27 @@ def grade(
 ) -> None:
     """Grade PATHS: each a submission (folder, zip, notebook), or a folder of them, one a student.
 
-    Exit status: 0 when every submission was graded, 1 when one was not (or is below --require), 2 for a wrong call.
+    Exit status: 0 when every submission was graded, 1 when one was not (or is below --require), 2 for a wrong call,
+    130 after Ctrl-C, which lets end what has begun.
     """
     suites.load(assignment)
     entries = discover(paths, assignment)
     with Progress(len(entries)) as progress:
-        results = grade_all(
-            entries,
-            assignment,
-            seed=seed,
-            out=out,
-            jobs=jobs,
-            isolation=Tier(isolation),
-            resume=resume,
-            on_result=progress.show,
-        )
+        try:
+            results = grade_all(
+                entries,
+                assignment,
+                seed=seed,
+                out=out,
+                jobs=jobs,
+                isolation=Tier(isolation),
+                resume=resume,
+                on_result=progress.show,
+            )
+        except KeyboardInterrupt:
+            said = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
+            click.echo(f"\n{said}", err=True)
+            sys.exit(INTERRUPTED)
     for result in results:
         feedback.write(result, out / result.student)
     feedback.write_summary(results, out)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from autograder import suites
 from autograder.exceptions import AutograderError, UsageError
 from autograder.grading import intake
 from autograder.grading.pipeline import RESULT, grade_submission
+from autograder.grading.together import together
 from autograder.result import Result, Status, from_json
 from autograder.sandbox import Tier
 
@@ -75,9 +75,8 @@ def grade_all(
         on_result: called for each result as it comes, in any order.
 
     Returns:
-        The results, in the order of `entries`.
+        The results, in the order of `entries`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
     """
-    results: dict[str, Result] = {}
 
     def one(entry: Entry) -> Result:
         stored = _stored(entry, assignment, seed, isolation, out / entry.student) if resume else None
@@ -93,13 +92,7 @@ def grade_all(
         )
         return graded.result
 
-    # Threads suffice: each only waits for the worker process of its submission.
-    with ThreadPoolExecutor(max_workers=jobs) as pool:
-        running = {pool.submit(one, entry): entry for entry in entries}
-        for future in as_completed(running):
-            results[running[future].student] = future.result()
-            on_result(future.result())
-    return tuple(results[entry.student] for entry in entries)
+    return together(one, entries, jobs=jobs, on_done=on_result)
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:

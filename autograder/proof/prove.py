@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from autograder.grading.lanes import Lanes
 from autograder.grading.pipeline import grade_submission
+from autograder.grading.together import together
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
 
@@ -45,14 +45,7 @@ def prove(
             ).result
         return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
 
-    with ThreadPoolExecutor(lanes.count) as pool:
-        running = [pool.submit(judged, case) for case in proof]
-        try:
-            for future in as_completed(running):
-                on_claim(future.result())
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-        return tuple(future.result() for future in running)
+    return together(judged, proof, jobs=lanes.count, on_done=on_claim)
 
 
 def _written(case: Case, folder: Path) -> Path:

@@ -1,0 +1,34 @@
+"""Doing one thing for many submissions at once; when it is broken off, what has not begun is left alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from typing import TypeVar
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def together(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
+    """Call `do` with each item, in `jobs` threads: enough for what only waits for a worker process.
+
+    The first exception, or Ctrl-C, comes out once what has begun is done; nothing more is begun.
+
+    Args:
+        do: is called with an item.
+        items: the items.
+        jobs: how many are done at once.
+        on_done: called with each result as it comes, in any order.
+
+    Returns:
+        The results, in the order of the items.
+    """
+    with ThreadPoolExecutor(jobs) as pool:
+        running = [pool.submit(do, item) for item in items]
+        try:
+            for future in as_completed(running):
+                on_done(future.result())
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+        return tuple(future.result() for future in running)

@@ -1,0 +1,50 @@
+"""Ctrl-C while a class is graded: what has begun is graded to its end, the rest is left for `--resume`."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+STUDENTS = ("alice", "bob", "carol")
+
+
+def grade(folder: Path, *options: str) -> subprocess.Popen[str]:
+    """Begin to grade the class in `folder`, one at a time."""
+    command = [sys.executable, "-u", "-m", "autograder", "grade", "class", "--assignment", "01_package_structure"]
+    return subprocess.Popen(
+        [*command, "-j", "1", *options],
+        cwd=folder,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        # Whoever runs the tests in the background has it ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
+def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
+    for student in STUDENTS:
+        package = tmp_path / "class" / student / "src" / "my_robot_package"
+        package.mkdir(parents=True)
+        (package / "package.xml").write_text("<package/>")
+
+    def graded() -> int:
+        return len(list(tmp_path.glob("results/*/result.json")))
+
+    with grade(tmp_path) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("[1/3] alice")
+        process.send_signal(signal.SIGINT)
+        said = process.stdout.read()
+    assert process.returncode == 130
+    assert said.endswith("\nStopped. What is graded is in results: the same command with --resume grades the rest.\n")
+    assert 1 <= (before := graded()) < len(STUDENTS)
+    kept = (tmp_path / "results/alice/result.json").stat().st_mtime_ns
+    with grade(tmp_path, "--resume") as process:
+        said = process.communicate()[0]
+    assert process.returncode == 0
+    assert "[3/3]" in said
+    assert before < graded() == len(STUDENTS)
+    assert (tmp_path / "results/alice/result.json").stat().st_mtime_ns == kept
