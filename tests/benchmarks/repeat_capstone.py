@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.repeat_capstone -n 200
 
-The first half is graded one at a time; the second half under load: three at a time for each core of the machine. A
+The first half is graded by as many at once as the machine has cores; the second half under load: three for each. A
 trace is the fingerprint of a run in a hidden world: what the robot sensed, was told and did, at every instant. Exit
 status: 0 when all gradings agree.
 """
@@ -48,10 +48,10 @@ def grade(folder: Path, at_once: int, number: int) -> Grading:
 
 
 def gradings(folder: Path, times: int) -> Iterator[Grading]:
-    """Yield the gradings as they come: the first half alone, the others under load."""
-    crowd = CROWD * (os.cpu_count() or 1)
-    alone = range(1, times // 2 + 1)
-    for numbers, at_once in ((alone, 1), (range(alone.stop, times + 1), crowd)):
+    """Yield the gradings as they come: the first half on a machine that has room for them, the others under load."""
+    cores = os.cpu_count() or 1
+    half = range(1, times // 2 + 1)
+    for numbers, at_once in ((half, cores), (range(half.stop, times + 1), CROWD * cores)):
         with ThreadPoolExecutor(at_once) as pool:
             pending = [pool.submit(grade, folder, at_once, number) for number in numbers]
             for done in as_completed(pending):
