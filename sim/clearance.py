@@ -73,14 +73,13 @@ def around(simulation: Simulation, time_ns: int, poses: list[Pose], index: int, 
     """Return what may be within `within` metres of the centre of a robot, with movers as they are at that time."""
     scene, world = simulation.scene, simulation.world
     here = poses[index]
-    walls = scene.walls
-    x1, x2, y1, y2 = walls[:4]
+    least_x, most_x, least_y, most_y = scene.boxes
     # each wall's box is enough: a few too many do no harm
-    dx = np.maximum(np.maximum(np.minimum(x1, x2) - here.x, here.x - np.maximum(x1, x2)), 0.0)
-    dy = np.maximum(np.maximum(np.minimum(y1, y2) - here.y, here.y - np.maximum(y1, y2)), 0.0)
+    dx = np.maximum(np.maximum(least_x - here.x, here.x - most_x), 0.0)
+    dy = np.maximum(np.maximum(least_y - here.y, here.y - most_y), 0.0)
     near = np.flatnonzero(dx * dx + dy * dy <= within * within).tolist()
     names = [world.segment_names[k] or f"wall {k}" for k in near]
-    chosen = walls[:, near]
+    chosen = scene.walls[:, near]
     circles, circle_names = [], []
     for k, (x, y, radius) in enumerate(scene.circles.tolist()):
         if math.hypot(x - here.x, y - here.y) - radius <= within:

@@ -75,10 +75,11 @@ class Track:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """What an engine needs to know about a run."""
+    """What an engine needs to know about a run; `boxes` (4, K) holds each wall's least x, most x, least y, most y."""
 
     engine: Any
     walls: Floats
+    boxes: Floats
     circles: Floats
     grid: Grid | None
     tracks: tuple[Track, ...]
@@ -95,9 +96,11 @@ def build(world: World, robots: tuple[RobotSpec, ...], seed: int, name: EngineNa
     """Lay a run out for the engine of that name."""
     walls = layout(world.segments)
     chosen = engine(name)
+    x1, x2, y1, y2 = walls[:4]
     return Scene(
         engine=chosen,
         walls=walls,
+        boxes=np.array((np.minimum(x1, x2), np.maximum(x1, x2), np.minimum(y1, y2), np.maximum(y1, y2))),
         circles=world.circles.copy(),
         grid=grid_of(walls) if walls.shape[1] > WORTH_A_GRID and hasattr(chosen, "fan_in_grid") else None,
         tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),

@@ -10,6 +10,7 @@ import array
 import math
 from typing import Any
 
+import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Twist, TwistStamped
 from nav_msgs.msg import Odometry
@@ -22,8 +23,8 @@ from sim.robot import RobotState
 
 NANOSECONDS = 1_000_000_000
 
-_PLANAR = (0, 1, 5)
-"""Where x, y and yaw stand among the six axes of a ROS covariance."""
+_PLANAR = np.array([row * 6 + column for row in (0, 1, 5) for column in (0, 1, 5)])
+"""Where the covariance of x, y and yaw stands in that of ROS's six axes, row by row."""
 
 
 def time_to_msg(time_ns: int) -> Any:
@@ -70,10 +71,8 @@ def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_f
     msg.pose.pose.position.x = float(robot.odometry.x)
     msg.pose.pose.position.y = float(robot.odometry.y)
     msg.pose.pose.orientation = yaw_to_quaternion(robot.odometry.theta)
-    msg.twist.twist = command_to_twist(robot.velocity)
-    for row, six_row in enumerate(_PLANAR):
-        for column, six_column in enumerate(_PLANAR):
-            msg.pose.covariance[six_row * 6 + six_column] = float(robot.covariance[row * 3 + column])
+    msg.pose.covariance[_PLANAR] = robot.covariance
+    _put(robot.velocity, msg.twist.twist)
     return msg
 
 
@@ -95,9 +94,13 @@ def twist_to_command(msg: Any) -> Command:
 def command_to_twist(command: Command) -> Any:
     """Return `command` as geometry_msgs/Twist."""
     msg = Twist()
-    msg.linear.x = float(command.linear)
-    msg.angular.z = float(command.angular)
+    _put(command, msg)
     return msg
+
+
+def _put(command: Command, twist: Any) -> None:
+    twist.linear.x = float(command.linear)
+    twist.angular.z = float(command.angular)
 
 
 def yaw_to_quaternion(yaw: float) -> Any:
