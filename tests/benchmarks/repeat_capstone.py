@@ -21,6 +21,7 @@ from pathlib import Path
 
 from autograder import suites
 from autograder.grading import grade_submission
+from autograder.result import Outcome
 from autograder.suites.mutants import lay_down_reference
 
 ASSIGNMENT = "08_capstone"
@@ -30,9 +31,10 @@ CROWD = 3
 
 @dataclass(frozen=True)
 class Grading:
-    """One grading: its percentage, the fingerprint of each hidden run, how long it took, and with how many others."""
+    """One grading: its percentage, what was lost, each hidden run's fingerprint, how long it took, among how many."""
 
     percent: float
+    lost: tuple[str, ...]
     traces: dict[str, str]
     seconds: float
     at_once: int
@@ -44,7 +46,8 @@ def grade(folder: Path, at_once: int, number: int) -> Grading:
     out = folder / str(number)
     result = grade_submission(folder / "reference", ASSIGNMENT, student="reference", seed=SEED, out=out).result
     traces = {artifact.name: artifact.sha256[:16] for artifact in result.artifacts}
-    return Grading(100.0 * result.score / result.max_score, traces, time.monotonic() - began, at_once)
+    lost = tuple(f"{check.id}: {check.message}" for check in result.checks if check.outcome is not Outcome.PASSED)
+    return Grading(100.0 * result.score / result.max_score, lost, traces, time.monotonic() - began, at_once)
 
 
 def gradings(folder: Path, times: int) -> Iterator[Grading]:
@@ -74,7 +77,9 @@ def main() -> int:
             alike += grading.percent == 100.0 and bool(grading.traces) and not different
             said = f"differs in {', '.join(different)}" if different else "the same traces"
             took = f"{grading.at_once} at once: {grading.seconds:5.1f} s"
-            print(f"{number:4} of {times}, {took}, {grading.percent:g} %, {said}", flush=True)
+            print(
+                f"{number:4} of {times}, {took}, {grading.percent:g} %, {said}", *grading.lost, sep="\n  ", flush=True
+            )
     print(f"{alike} of {times} with all points and the same traces: {first}")
     return 0 if alike == times else 1
 
