@@ -48,7 +48,7 @@ def test_once_broken_off_nothing_more_is_begun(error: type[BaseException]) -> No
     assert 1 <= len(begun) <= 3
 
 
-def test_a_failure_comes_out_and_the_rest_is_left() -> None:
+def test_a_failure_of_what_is_done_comes_out() -> None:
     begun: list[int] = []
 
     def do(item: int) -> int:
