@@ -24,7 +24,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
 from robot_navigation_interfaces.msg import Clearance, Health
-from robot_navigation_tutorial.navigation_controller import NavigationController
+from robot_navigation_tutorial.navigation_controller import CONTROL_PERIOD, NavigationController
 from robot_navigation_tutorial.sensor_processor import SensorProcessor
 from robot_navigation_tutorial.status_monitor import HEALTH_QOS, StatusMonitor
 from sensor_msgs.msg import LaserScan
@@ -35,23 +35,43 @@ STOP, FORWARD, LEFT, RIGHT = (0.0, 0.0), (0.3, 0.0), (0.0, 0.8), (0.0, -0.8)
 
 
 @pytest.fixture
+def simulated(world):
+    """
+    Return a function that adds a node in simulated time.
+
+    It stands still, however long a busy computer takes, until later() lets some of it pass.
+    """
+
+    def add(make):
+        override = Parameter('use_sim_time', value=True)
+        return world.add(make(context=world.context, parameter_overrides=[override]))
+
+    return add
+
+
+def later(node, seconds):
+    """Let time pass for a node: of its timers, each that is due ticks once."""
+    clock = node.get_clock()
+    clock.set_ros_time_override(clock.now() + Duration(seconds=seconds))
+
+
+@pytest.fixture
 def peer(world):
     """Return a node that stands at the other end of the topics."""
     return world.add(Node('peer', context=world.context))
 
 
-def seen(controller, age=0.0, **content):
-    """Return a clearance of `age` seconds ago: nothing around, but for what is given."""
+def seen(controller, **content):
+    """Return a clearance of this moment: nothing around, but for what is given."""
     clearance = Clearance(**{'valid': True, 'front': 3.0, 'left': 3.0, 'right': 3.0, **content})
-    then = controller.get_clock().now() - Duration(seconds=age)
-    clearance.header.stamp = then.to_msg()
+    clearance.header.stamp = controller.get_clock().now().to_msg()
     return clearance
 
 
 @pytest.fixture
-def controller(world):
+def controller(simulated):
     """Return a controller."""
-    return world.add(NavigationController(context=world.context))
+    return simulated(NavigationController)
 
 
 @pytest.fixture
@@ -59,11 +79,13 @@ def command(world, peer, controller):
     """Return a function that lets the controller decide, and gives speed and turn rate."""
     commands = []
     peer.create_subscription(Twist, 'cmd_vel', commands.append, 10)
+    world.until(controller.publisher.get_subscription_count)
 
-    def decide():
-        del commands[:]
+    def decide(after=CONTROL_PERIOD):
+        later(controller, after)
         world.until(lambda: commands)
-        return commands[0].linear.x, commands[0].angular.z
+        twist = commands.pop()
+        return twist.linear.x, twist.angular.z
 
     return decide
 
@@ -74,14 +96,19 @@ def command(world, peer, controller):
     ({'front': 0.5, 'left': 1.0, 'right': 2.0}, RIGHT),
     ({'front': -math.inf}, LEFT),
     ({'valid': False}, STOP),
-    ({'age': 1.0}, STOP),
 ])
 def test_the_controller_decides_by_the_newest_clearance(controller, command, content, expected):
     """Forward, a turn, or a stop when it cannot be trusted."""
-    controller.control()
     assert command() == STOP  # nothing has been seen yet
     controller.clearance_callback(seen(controller, **content))
     assert command() == expected
+
+
+def test_the_controller_stops_when_the_clearance_is_old(controller, command):
+    """As old as data_timeout is new enough."""
+    controller.clearance_callback(seen(controller))
+    assert command(after=0.5) == FORWARD
+    assert command() == STOP
 
 
 def test_the_clearance_comes_over_its_topic(world, peer, controller, command):
@@ -89,7 +116,8 @@ def test_the_clearance_comes_over_its_topic(world, peer, controller, command):
     publisher = peer.create_publisher(Clearance, 'clearance', 10)
     world.until(publisher.get_subscription_count)
     publisher.publish(seen(controller))
-    world.until(lambda: command() == FORWARD)
+    world.until(lambda: controller.clearance)
+    assert command() == FORWARD
 
 
 def test_driving_can_be_switched_off_and_on(world, peer, controller, command):
@@ -148,9 +176,9 @@ def test_a_late_watcher_gets_the_last_report(world):
 @pytest.mark.parametrize(('valid', 'silent', 'level'), [
     (True, None, Health.OK), (False, None, Health.DEGRADED), (True, 'scan', Health.FAILED),
 ])
-def test_the_level_follows_what_is_heard(world, peer, valid, silent, level):
+def test_the_level_follows_what_is_heard(world, peer, simulated, valid, silent, level):
     """One silent topic is worse than a blocked lidar."""
-    monitor = world.add(StatusMonitor(context=world.context))
+    monitor = simulated(StatusMonitor)
     monitor.clearance_callback(Clearance(valid=valid))
     for topic in ('scan', 'cmd_vel'):
         if topic != silent:
@@ -159,8 +187,8 @@ def test_the_level_follows_what_is_heard(world, peer, valid, silent, level):
     peer.create_subscription(Health, 'health', heard.append, HEALTH_QOS)
     monitor.report()
     world.until(lambda: heard)
-    assert heard[-1].level == level
-    assert list(heard[-1].silent) == ([silent] if silent else [])
+    assert heard[0].level == level
+    assert list(heard[0].silent) == ([silent] if silent else [])
 
 
 @pytest.mark.parametrize('make', [SensorProcessor, NavigationController, StatusMonitor])
