@@ -22,6 +22,13 @@ STATE = 14
 SKIN = 1e-6
 # How far a robot may move between two looks at what is around it, where something is near.
 STRIDE = 1e-3
+# How often the stretch in which a contact is, is halved; and the shares of it at which a robot is already stopped if it
+# leans on what it met before.
+HALVINGS = 39
+AT_ONCE = (0.5**39, 0.5**26, 0.5**13)
+
+Motion = tuple[float, float, float, float]
+"""Speeds v, m/s, and w, rad/s, along an arc, and besides a slip in x and in y, m/s."""
 
 
 def approach(value: float, target: float, most: float) -> float:
@@ -83,50 +90,48 @@ def coast(
         measure(robot, robot[3] * dt, robot[4] * dt, drift, noise[tick])
 
 
+def moved(x: float, y: float, theta: float, motion: Motion, t: float) -> tuple[float, float, float]:
+    """Return the pose after `t` seconds of a motion."""
+    a, b, c = along_arc(x, y, theta, motion[0], motion[1], t)
+    return a + motion[2] * t, b + motion[3] * t, c
+
+
 def sweep(
-    pose: Floats,
-    v: float,
-    w: float,
-    sx: float,
-    sy: float,
-    dt: float,
-    keep: float,
-    body: Floats,
-    walls: Floats,
-    circles: Floats,
-    touch: Floats,
+    pose: Floats, motion: Motion, dt: float, keep: float, body: Floats, walls: Floats, circles: Floats, touch: Floats
 ) -> float:
     """Move `pose` (x, y, theta) until something is met; return the share of `dt` that went by, 1 if nothing was.
 
-    The motion is an arc at the speeds v and w and, besides, a slip at (sx, sy) m/s. The gap to what is around is
-    never let below `keep`, or below what it was. `body` is as in `shapes.gap`, which fills `touch`.
+    The gap to what is around is never let below `keep`, or below what it was. `body` is as in `shapes.gap`, which
+    fills `touch`.
     """
     x, y, theta = pose[0], pose[1], pose[2]
     left = gap(x, y, theta, body, walls, circles, touch)
     keep = min(keep, left)
-    most = (abs(v) + abs(sx) + abs(sy) + abs(w) * body[0, 1]) * dt
+    most = (abs(motion[0]) + abs(motion[2]) + abs(motion[3]) + abs(motion[1]) * body[0, 1]) * dt
     done = 0.0
     while done < 1.0 and most > 0.0:
-        share = min(done + max(left - SKIN, STRIDE) / most, 1.0)
-        low, high = done, share
-        for _ in range(40):  # once if the way is free; else halve the interval in which the contact is
-            t = share * dt
-            a, b, c = along_arc(x, y, theta, v, w, t)
-            a += sx * t
-            b += sy * t
-            left = gap(a, b, c, body, walls, circles, touch)
-            if left >= keep:
-                low = share
+        high = min(done + max(left - SKIN, STRIDE) / most, 1.0)
+        a, b, c = moved(x, y, theta, motion, high * dt)
+        left = gap(a, b, c, body, walls, circles, touch)
+        if left >= keep:
+            pose[0], pose[1], pose[2] = a, b, c
+            done = high
+            continue
+        met = touch[0]
+        leans = True
+        for share in AT_ONCE:
+            a, b, c = moved(x, y, theta, motion, (done + share * (high - done)) * dt)
+            leans = leans and gap(a, b, c, body, walls, circles, touch) < keep and touch[0] == met
+        for _ in range(0 if leans else HALVINGS):
+            share = 0.5 * (done + high)
+            a, b, c = moved(x, y, theta, motion, share * dt)
+            if gap(a, b, c, body, walls, circles, touch) >= keep:
                 pose[0], pose[1], pose[2] = a, b, c
-                if share == high:
-                    break
+                done = share
             else:
                 high = share
-            share = 0.5 * (low + high)
-        else:
-            gap(pose[0], pose[1], pose[2], body, walls, circles, touch)
-            return low
-        done = high
+        gap(pose[0], pose[1], pose[2], body, walls, circles, touch)
+        return done
     return 1.0
 
 
@@ -157,12 +162,12 @@ def push(
     if gap(pose[0], pose[1], pose[2], body, walls, circles, touch) < 0.0:
         # something has run into it; it may still get away
         touch[5] = abs(v)
-        share = sweep(pose, v, w, 0.0, 0.0, dt, 0.0, body, walls, circles, np.empty(6))
+        share = sweep(pose, (v, w, 0.0, 0.0), dt, 0.0, body, walls, circles, np.empty(6))
         if share < 1.0:
             robot[3] = 0.0
         measure(robot, v * dt * share, w * dt * share, drift, noise)
         return True
-    share = sweep(pose, v, w, 0.0, 0.0, dt, 2.0 * SKIN, body, walls, circles, touch)
+    share = sweep(pose, (v, w, 0.0, 0.0), dt, 2.0 * SKIN, body, walls, circles, touch)
     if share == 1.0:
         measure(robot, v * dt, w * dt, drift, noise)
         return False
@@ -177,9 +182,9 @@ def push(
         sx = v * c - into * nx
         sy = v * s - into * ny
     spare = np.empty(6)
-    more = sweep(pose, 0.0, w, sx, sy, rest, SKIN, body, walls, circles, spare)
+    more = sweep(pose, (0.0, w, sx, sy), rest, SKIN, body, walls, circles, spare)
     if more < 1.0 and slide:  # a corner: what is left is the turn
-        more = sweep(pose, 0.0, w, 0.0, 0.0, rest * (1.0 - more), SKIN, body, walls, circles, spare)
+        more = sweep(pose, (0.0, w, 0.0, 0.0), rest * (1.0 - more), SKIN, body, walls, circles, spare)
         sx = 0.0
         sy = 0.0
     robot[3] = v if slide else 0.0

@@ -1,8 +1,8 @@
 """The simulator's speed on one core, beside ir-sim's in the same run, in a 20 m x 20 m room of 40 walls.
 
 A scan is the cast itself: exact ranges in double precision for a pose. `observe` adds what a LaserScan needs. The
-loop is 50 Hz physics and 10 Hz scans through the public functions. All subjects take turns, round after round; a
-figure is the least of the rounds' medians, so that a busy machine disturbs it little.
+loop is 50 Hz physics and 10 Hz scans through the public functions, in open space and against a wall. All subjects take
+turns, round after round; a figure is the least of the rounds' medians, so that a busy machine disturbs it little.
 """
 
 from __future__ import annotations
@@ -104,11 +104,11 @@ def ir_sim(world: World) -> Callable[[Pose], object]:
     return lambda pose: sensor.step(np.array([[pose.x], [pose.y], [pose.theta]]))
 
 
-def loop(world: World, engine: str, seconds: float) -> Callable[[], object]:
-    """Drive in a circle in open space: a scan, a command and five ticks of physics, ten times a simulated second."""
+def loop(world: World, engine: str, seconds: float, turn: float = 0.8) -> Callable[[], object]:
+    """Drive in a circle, or straight on: a scan, a command and five ticks of physics, ten times a simulated second."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     first = start(simulation)
-    command = Command(0.2, 0.8)
+    command = Command(0.2, turn)
 
     def drive() -> object:
         state = first
@@ -160,6 +160,8 @@ def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS) -> dic
         "sim.scan360_irsim_us": (ir_sim(small), 1),
     }
     loops = {f"sim.loop_{engine}_rtf": loop(small, engine, seconds) for engine in ("numpy", "numba")}
+    closet = World.from_segments(box(1.0, 1.0).tolist(), name="a closet")  # a robot soon leans on its wall
+    loops |= {f"sim.contact_{engine}_rtf": loop(closet, engine, seconds, turn=0.0) for engine in ("numpy", "numba")}
     for call, _ in subjects.values():  # compile, and warm the caches
         call(poses[0])
     best = dict.fromkeys(subjects, math.inf)

@@ -27,5 +27,7 @@ def test_the_simulator_benchmark_returns_finite_positive_figures(request: pytest
         "sim.index_cost_ratio",
         "sim.loop_numpy_rtf",
         "sim.loop_numba_rtf",
+        "sim.contact_numpy_rtf",
+        "sim.contact_numba_rtf",
     } <= set(figures)
     assert all(math.isfinite(value) and value > 0 for value in figures.values())
