@@ -58,9 +58,9 @@ class Goal:
 class Actions:
     """The action clients of a lab, made of plain services and subscriptions."""
 
-    def __init__(self, station: Any, seconds: Callable[[], float]) -> None:
+    def __init__(self, station: Any, when: Callable[[int], float]) -> None:
         self._station = station
-        self._seconds = seconds
+        self._when = when
         self._goals: dict[bytes, Goal] = {}
         self._names: set[str] = set()
         self._numbers = itertools.count(1)
@@ -102,12 +102,12 @@ class Actions:
         self._station.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, answered)
         return sent
 
-    def _hear_feedback(self, message: Any) -> None:
+    def _hear_feedback(self, message: Any, arrived_ns: int) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
-            goal.feedback.append(Stamped(self._seconds(), message.feedback))
+            goal.feedback.append(Stamped(self._when(arrived_ns), message.feedback))
 
-    def _hear_status(self, message: Any) -> None:
+    def _hear_status(self, message: Any, arrived_ns: int) -> None:
         for status in message.status_list:
             goal = self._goals.get(bytes(status.goal_info.goal_id.uuid))
             if goal is not None and goal.result is None:

@@ -17,7 +17,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.lab.goals import Actions, Goal, Stamped
 from autograder.lab.programs import Program, lay_down
-from autograder.lab.station import DEPTH, NAME, Handler, Station
+from autograder.lab.station import DEPTH, NAME, Handler, Receiver, Station
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.lockstep_host.channels import type_name
 from autograder.ros.domains import Domain
@@ -127,7 +127,7 @@ class Lab(ABC):
 
     def __enter__(self: AnyLab) -> AnyLab:
         self._station = Station(self._domain.number)
-        self._actions = Actions(self._station, lambda: self.seconds)
+        self._actions = Actions(self._station, self._when)
         self.node = self._station.node
         self._inside = True
         try:
@@ -264,9 +264,13 @@ class Lab(ABC):
     def _same_type(self, message: type, peers: list[Any]) -> bool:
         return all(peer.topic_type == type_name(message) for peer in peers)
 
-    def _receiver(self, topic: str) -> Callable[[Any], None]:
+    def _receiver(self, topic: str) -> Receiver:
         received = self._received[topic]
-        return lambda message: received.append(Stamped(self.seconds, message))
+        return lambda message, arrived_ns: received.append(Stamped(self._when(arrived_ns), message))
+
+    def _when(self, arrived_ns: int) -> float:
+        """Return the seconds of ROS time at which a message arrived that is taken now."""
+        return self.seconds
 
     def _await(self, condition: Callable[[], bool]) -> None:
         met = self.wait_for(lambda: self._is_impersonated() or condition(), MEETING_SECONDS)

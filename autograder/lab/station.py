@@ -25,6 +25,8 @@ DEPTH = 1000
 NAME = "grader"
 
 Handler = Callable[[Any], Any]
+Receiver = Callable[[Any, int], None]
+"""Gets a message, and when it arrived, in nanoseconds since the epoch."""
 
 
 @dataclass(eq=False)
@@ -85,7 +87,7 @@ class Station:
         self.publishers[topic] = self.node.create_publisher(kind, topic, qos)
         self.written[topic] = channels.written(topic, kind, qos)
 
-    def listen(self, topic: str, kind: Any, peers: list[Any], receive: Callable[[Any], None]) -> None:
+    def listen(self, topic: str, kind: Any, peers: list[Any], receive: Receiver) -> None:
         """Make a subscription that each of the publishers `peers` can serve, however little it offers."""
         qos = requested_qos(peers)
         subscription = self.node.create_subscription(kind, topic, receive, qos)
@@ -93,7 +95,7 @@ class Station:
         def take() -> bool:
             taken = subscription.handle.take_message(kind, False)
             if taken is not None:
-                receive(taken[0])
+                receive(taken[0], taken[1]["received_timestamp"])
             return taken is not None
 
         latched = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL

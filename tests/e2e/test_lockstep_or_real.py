@@ -69,18 +69,25 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
     )
 
 
-def met(scratch: Path, text: str) -> Any:
-    """Open a lab on a program twice; return how it was met, what it said, and the sentence about it."""
-    from std_msgs.msg import String
-
-    from autograder.lab import EitherLab, Workspace, either
+def workspace_of(scratch: Path, text: str) -> Any:
+    """Lay down a workspace with one program."""
+    from autograder.lab import Workspace
     from autograder.ros import activate
 
     folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
     folder.mkdir(parents=True)
     (scratch / "home").mkdir()
     (folder / "node").write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
-    workspace = Workspace(scratch / "ws", activate(), scratch / "home")
+    return Workspace(scratch / "ws", activate(), scratch / "home")
+
+
+def met(scratch: Path, text: str) -> Any:
+    """Open a lab on a program twice; return how it was met, what it said, and the sentence about it."""
+    from std_msgs.msg import String
+
+    from autograder.lab import EitherLab, either
+
+    workspace = workspace_of(scratch, text)
     ways = []
     for _ in range(2):
         with EitherLab(workspace, "pkg", "node", listens={"/said": String}) as lab:
@@ -108,18 +115,37 @@ def test_a_program_that_can_be_stepped_is_stepped() -> None:
     assert in_cell(met, ticking) == [[["lockstep", True]] * 2, ""]
 
 
+def unheard(scratch: Path) -> int:
+    """Let a program in real time say ten things while nobody listens; return how many are stamped with that time."""
+    import time
+
+    from std_msgs.msg import String
+
+    from autograder.lab import RealtimeLab
+
+    text = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
+    text += "        self.create_timer(0.05, lambda: (self.say('tick'), print('tick', flush=True)))\nspin(Tick)\n"
+    with RealtimeLab(workspace_of(scratch, text), "pkg", "node", listens={"/said": String}) as lab:
+        assert lab.until(lambda: bool(lab.messages("/said")), 10.0)
+        began, ticks, deadline = lab.seconds, lab.output.count("tick"), time.monotonic() + 30.0
+        while lab.output.count("tick") < ticks + 10 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        ended = lab.seconds
+        lab.run(0.2)
+        return len(lab.messages("/said", since=began, until=ended))
+
+
+def test_a_message_that_waits_for_the_grader_counts_when_it_arrived() -> None:
+    assert in_cell(unheard) >= 8  # one may have been taken before, one be on its way
+
+
 def refused(scratch: Path, text: str) -> list[str]:
     """Step a program that cannot be stepped; return what the student is told."""
     from autograder.exceptions import StudentError
-    from autograder.lab import LockstepLab, Workspace
-    from autograder.ros import activate
+    from autograder.lab import LockstepLab
 
-    folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
-    folder.mkdir(parents=True)
-    (scratch / "home").mkdir()
-    (folder / "node").write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
     try:
-        with LockstepLab(Workspace(scratch / "ws", activate(), scratch / "home"), "pkg", "node"):
+        with LockstepLab(workspace_of(scratch, text), "pkg", "node"):
             return ["", ""]
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
