@@ -1,8 +1,8 @@
 """The laboratory: the trusted side of grading, where a student's node meets the grader as another robot would.
 
-`Workspace` knows a built colcon workspace and how its programs are started in a sandbox. A `Lab` carries one program
-and talks with it over DDS: `LockstepLab` steps its time, `RealtimeLab` lets it run and can send it signals. `drive`
-puts the program's robot into the simulator, in either of them.
+`Workspace` knows a built colcon workspace and how its programs are started in a sandbox. A `Lab` carries programs
+and talks with them over DDS: `LockstepLab` steps their time, `RealtimeLab` lets them run and can send them signals,
+`EitherLab` finds out which it has to be. `drive` puts the programs' robot into the simulator, in any of them.
 """
 
 from autograder.lab.drive import Drive, drive

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -15,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 from autograder.exceptions import StudentError
 from autograder.lab.lockstep import LockstepLab
 from autograder.lab.realtime import RealtimeLab
-from autograder.lockstep import UnsteppableError
 from autograder.lockstep.failures import say_unsteppable
 from autograder.lockstep.protocol import REASONS
 
@@ -27,11 +28,12 @@ else:
 LOCKSTEP, REAL = "lockstep", "real"
 TIME_VARIABLE = "AUTOGRADER_TIME"  # "real" keeps every program from being stepped
 PROBE_SECONDS = 1.0
+PATIENCE = 1.0  # s for an answer in real time
 MAX_READ = 4 * 1024 * 1024  # bytes of a package's Python files that are looked through
 _WORDS = re.compile(rb"\b(threading|_?thread|asyncio|concurrent|multiprocessing|subprocess|sleep|Clock\w*|Executor)\b")
 
-_reasons: dict[tuple[Any, ...], str] = {}  # why a program cannot be stepped, empty if it can
-_met: dict[str, str] = {}  # by executable, the reason for each that was met in real time
+_reasons: dict[tuple[Any, ...], dict[str, str]] = {}  # of a lab's programs, why those that cannot be stepped cannot
+_met: dict[str, str] = {}  # by executable, the reason for each that was met in real time; empty if it is another's
 
 
 def explain() -> str:
@@ -39,8 +41,10 @@ def explain() -> str:
     said = [
         f"{name} was met in real time: {say_unsteppable(why) if why in REASONS else 'that was asked for'}."
         for name, why in sorted(_met.items())
+        if why
     ]
-    return " ".join(said)
+    beside = ", ".join(sorted(name for name, why in _met.items() if not why))
+    return " ".join([*said, f"So was what runs beside it: {beside}."] if beside else said)
 
 
 class EitherLab(Base):
@@ -48,11 +52,13 @@ class EitherLab(Base):
 
     Attributes:
         time: "lockstep" or "real".
+        spared: executables that may fail: the others live on without them.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         self._made_of = arguments, options
         self._handlers: dict[str, tuple[Any, Any]] = {}
+        self._spared: frozenset[str] = frozenset()
         self._lab: Any = None
         self.time = LOCKSTEP
 
@@ -61,12 +67,13 @@ class EitherLab(Base):
         names = tuple((program.package, program.executable) for program in lab.programs)
         key = (names, *((path, path.stat().st_mtime_ns) for path in lab._paths))
         if os.environ.get(TIME_VARIABLE) == REAL:
-            _reasons[key] = REAL
+            _reasons[key] = {executable: REAL for _, executable in names}
         if key not in _reasons:
             _reasons[key] = self._probe()
-        if _reasons[key]:
+        if reasons := _reasons[key]:
             self.time = REAL
-            _met.update({executable: _reasons[key] for _, executable in names})
+            for _, executable in names:
+                _met[executable] = reasons.get(executable) or _met.get(executable, "")
             lab = self._make(RealtimeLab)
         self._lab = lab.__enter__()
         return self
@@ -75,6 +82,26 @@ class EitherLab(Base):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._lab.__exit__(kind, error, trace)
+
+    @property
+    def spared(self) -> frozenset[str]:
+        return self._spared
+
+    @spared.setter
+    def spared(self, executables: frozenset[str]) -> None:
+        self._spared = executables
+        if self._lab is not None:
+            self._lab.spared = executables
+
+    @property
+    def next_ns(self) -> int:
+        """The ROS time at which a program takes what is published now."""
+        return int(self.now_ns) + (self.tick_ns - 1 if self.time == LOCKSTEP else 0)
+
+    def wait_for_late(self, condition: Callable[[], bool], seconds: float = PATIENCE) -> None:
+        """Wait for what a busy machine may hold up: in real time at most `seconds`, in lockstep not at all."""
+        if self.time == REAL:
+            self.until(condition, seconds)
 
     def serve(self, service_type: Any, name: str, handler: Any) -> None:
         if self._lab is None:
@@ -90,26 +117,23 @@ class EitherLab(Base):
     def _make(self, kind: Any) -> Any:
         arguments, options = self._made_of
         lab = kind(*arguments, **options)
+        lab.spared = self._spared
         for name, (service_type, handler) in self._handlers.items():
             lab.serve(service_type, name, handler)
         return lab
 
-    def _probe(self) -> str:
-        """Return why the programs cannot be stepped, or an empty string.
+    def _probe(self) -> dict[str, str]:
+        """Return by executable why a program cannot be stepped, for those that cannot.
 
         Other errors are left to the lab that is opened next.
         """
         lab = self._make(LockstepLab)
         if not any(_is_suspicious(lab._workspace.install / program.package) for program in lab.programs):
-            return ""
-        try:
-            with lab:
-                lab.run(PROBE_SECONDS)
-                return str(next(iter(lab.notes), ""))
-        except UnsteppableError as error:
-            return error.reason
-        except StudentError:
-            return ""
+            return {}
+        lab.spared = frozenset(program.executable for program in lab.programs)  # none hides another by failing
+        with suppress(StudentError), lab:
+            lab.run(PROBE_SECONDS)
+        return dict(lab.notes)
 
 
 def _is_suspicious(prefix: Path) -> bool:

@@ -8,14 +8,14 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.lab.matching import connected
-from autograder.lab.meeting import Lab, Program
+from autograder.lab.meeting import Lab
+from autograder.lab.programs import Program, error_of
 from autograder.lockstep import Description, Stepper, UnsteppableError
 from autograder.lockstep.lockstep_host import channels
 from autograder.lockstep.protocol import START
@@ -59,7 +59,7 @@ class LockstepLab(Lab):
     then their timers fire, then they take what they sent each other, until nobody has anything left to take.
 
     Attributes:
-        notes: why steps are not all that moves the programs, if so: thread, clock or sleep.
+        notes: by executable, why steps are not all that moves a program, if so: thread, clock or sleep.
         spared: executables that may fail: the others live on without them.
     """
 
@@ -68,7 +68,7 @@ class LockstepLab(Lab):
 
     def _start(self) -> None:
         self._now_ns = START
-        self.notes: list[str] = []
+        self.notes: dict[str, str] = {}
         self._patience = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
             arguments = program.words(self._folder)
@@ -180,8 +180,7 @@ class LockstepLab(Lab):
             return
         player.wake, player.idle = reply.wake, reply.idle
         for reason in reply.notes:
-            if reason not in self.notes:
-                self.notes.append(reason)
+            self.notes.setdefault(player.program.executable, reason)
         for channel in reply.late:
             # What others of the student's programs claim to have sent may be forged; what the grader sent is not.
             if mail[channel] and channel in self._station.written.values():
@@ -284,15 +283,15 @@ class LockstepLab(Lab):
         """Go on without a program that failed and may; of others say which of several it was."""
         try:
             yield
+        except UnsteppableError as error:  # not spared: no fault of the program's
+            self.notes[player.program.executable] = error.reason
+            raise
         except StudentError as error:
             if player.program.executable in self.spared:
                 self._players = [other for other in self._players if other is not player]
                 player.stepper.__exit__(None, None, None)
                 raise _Spared from None
-            if len(self._players) == 1 or isinstance(error, UnsteppableError):
-                raise
-            sentence = f"{player.program.executable}: {error.diagnosis.sentence}"
-            raise StudentError(replace(error.diagnosis, sentence=sentence)) from None
+            raise error_of(player.program, error, len(self._players)) from None
 
 
 def _sum(counts: Iterable[dict[str, int]]) -> Counter[str]:

@@ -1,4 +1,4 @@
-"""The programs of a lab, and the files that the grader gives them."""
+"""The programs of a lab, the files that the grader gives them, and which of them an error is of."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from autograder.exceptions import StudentError
 from autograder.lab.workspace import Workspace
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.sandbox import Mount, Sandbox
@@ -41,3 +42,10 @@ def lay_down(files: Mapping[str, str], workspace: Workspace, sandbox: Sandbox) -
         (folder / name).write_text(text, encoding="utf-8")
     environment = {**sandbox.environment, PROFILES_VARIABLE: str(folder / _PROFILES)}
     return replace(sandbox, mounts=(*sandbox.mounts, Mount(folder)), environment=environment), str(folder)
+
+
+def error_of(program: Program, error: StudentError, count: int) -> StudentError:
+    """Return a program's error; where there are several programs, it says which one it is of."""
+    if count == 1:
+        return error
+    return StudentError(replace(error.diagnosis, sentence=f"{program.executable}: {error.diagnosis.sentence}"))

@@ -14,37 +14,52 @@ from typing import Any
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.lab.meeting import Lab
+from autograder.lab.programs import Program, error_of
 from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 
 START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
+GRACE_NS = 300_000_000  # real time for the programs to see the grader's endpoints, too: they cannot be asked
 SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
 
 
 class RealtimeLab(Lab):
-    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes."""
+    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes.
 
-    _processes: tuple[Process, ...] = ()
+    Attributes:
+        spared: executables that may fail: the others live on without them.
+        deaf_seconds: for how long the nodes were seen before the grader could hear them.
+    """
+
+    spared: frozenset[str] = frozenset()
+    deaf_seconds = 0.0
+    _running: Sequence[tuple[Program, Process]] = ()
 
     def _start(self) -> None:
         self._began = time.monotonic()
         for program, path in zip(self.programs, self._paths, strict=True):
             command = [sys.executable, str(path), *program.words(self._folder)]
-            self._processes = (*self._processes, launch(command, self._sandbox))
-        if not self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self.programs), START_SECONDS):
+            self._running = [*self._running, (program, launch(command, self._sandbox))]
+        up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
+        if not up and len(self.nodes()) < len(self.running - self.spared):
             raise StudentError(stuck(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        for process in self._processes:
+        for process in self.processes:
             process.__exit__(kind, error, trace)
         super().__exit__(kind, error, trace)
 
     @property
     def processes(self) -> tuple[Process, ...]:
-        return self._processes
+        return tuple(process for _, process in self._running)
+
+    @property
+    def running(self) -> frozenset[str]:
+        """The executables that the lab has not lost."""
+        return frozenset(program.executable for program, _ in self._running)
 
     @property
     def now_ns(self) -> int:
@@ -69,7 +84,7 @@ class RealtimeLab(Lab):
 
     def stop(self, number: signal.Signals, seconds: float) -> int | None:
         """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""
-        for process in self._processes:
+        for process in self.processes:
             process.signal(number)
         return self.process.returncode if self.process.wait(seconds) else None
 
@@ -78,10 +93,22 @@ class RealtimeLab(Lab):
         return self.seconds - (time.time_ns() - arrived_ns) / 1e9
 
     def _alive(self) -> bool:
-        for process in self._processes:
-            if process.ending is not None:
-                raise StudentError(diagnose_output(process) or diagnose_ending(process))
+        """Go on without a program that has ended and may; of others say how they did."""
+        for program, process in self._running:
+            if process.ending is None:
+                continue
+            if program.executable not in self.spared:
+                error = StudentError(diagnose_output(process) or diagnose_ending(process))
+                raise error_of(program, error, len(self._running))
+            process.__exit__(None, None, None)
+            self._running = [other for other in self._running if other[1] is not process]
         return True
+
+    def _meet(self) -> None:
+        began = self.seconds
+        super()._meet()
+        self.deaf_seconds = max(self.deaf_seconds, self.seconds - began)
+        self.step(GRACE_NS)
 
     def _topics(self) -> tuple[set[str], set[str]]:
         def complete() -> bool:

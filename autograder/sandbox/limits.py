@@ -40,7 +40,8 @@ class Limits:
         return self.threads * 4
 
 
-NODE = Limits()
+# Whoever meets a node bounds each wait for it; the wall's time is for one that all have forgotten.
+NODE = Limits(wall_seconds=600.0)
 # The processor's time is what bounds a build; the wall's is for one that waits, and not for a machine that is busy.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from autograder import suites
 from autograder.grading.job import Scope
 from autograder.grading.pipeline import grade_submission
 from autograder.lab.either import TIME_VARIABLE
@@ -23,15 +24,21 @@ PACKAGE = "my_robot_package"
 NODE = f"src/{PACKAGE}/{PACKAGE}/nodes/robot_controller.py"
 
 
-def grade(folder: Path) -> Result:
-    """Grade a source tree by a few of the checks of 02_nodes."""
+THREADED = """thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True)
+        thread.start()
+        thread.join()
+"""
+
+
+def grade(folder: Path, assignment: str = "02_nodes", checks: tuple[str, ...] = CHECKS) -> Result:
+    """Grade a source tree by a few of its assignment's checks."""
     out = folder / "out"
-    return grade_submission(folder, "02_nodes", student="s", seed=11, out=out, scope=Scope(only=CHECKS)).result
+    return grade_submission(folder, assignment, student="s", seed=11, out=out, scope=Scope(only=checks)).result
 
 
-def outcomes(result: Result) -> dict[str, str]:
+def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]:
     """Return what became of the checks that were run."""
-    return {check.id: check.outcome.value for check in result.checks if check.id in CHECKS}
+    return {check.id: check.outcome.value for check in result.checks if check.id in checks}
 
 
 @pytest.mark.slow
@@ -69,6 +76,65 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
     )
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("assignment", "file", "checks"),
+    [
+        (
+            "05_parameters",
+            f"{PACKAGE}/{PACKAGE}/nodes/configured_node.py",
+            ("starts", "names", "overrides", "start_rate", "rate_change", "contradiction", "no_side_effects"),
+        ),
+        (
+            "07_best_practices",
+            f"{PACKAGE}/{PACKAGE}/nodes/robust_node.py",
+            ("once_a_second", "late_joiners", "unstable", "declared"),
+        ),
+        (
+            "09_assessment",
+            "motor_guard/motor_guard/running.py",
+            ("definitions", "messages_are_generated", "installs", "readings", "stamps", "average", "hysteresis"),
+        ),
+    ],
+)
+def test_a_node_that_spins_in_a_thread_earns_its_marks_in_real_time(
+    assignment: str, file: str, checks: tuple[str, ...], tmp_path: Path
+) -> None:
+    lay_down_reference(suites.load(assignment).sources, tmp_path)
+    spin_in_a_thread(tmp_path / "src" / file)
+    result = grade(tmp_path, assignment, checks)
+    assert outcomes(result, checks) == dict.fromkeys(checks, "passed")
+    assert result.time == "real"
+    assert "was met in real time: it uses rclpy in threads of its own." in result.time_note
+
+
+@pytest.mark.slow
+def test_programs_that_run_with_one_that_cannot_be_stepped_are_met_in_real_time_with_it(tmp_path: Path) -> None:
+    checks = ("build", "clearance_message", "health_message", "interface_package", "processor", "controller", "monitor")
+    checks = (*checks, "sectors", "drives", "stops", "enable", "health_levels", "declared")
+    assignment, package = "08_capstone", tmp_path / "src/robot_navigation_tutorial/robot_navigation_tutorial"
+    lay_down_reference(suites.load(assignment).sources, tmp_path)
+    (package / "threaded.py").write_text((package / "running.py").read_text())
+    spin_in_a_thread(package / "threaded.py")
+    monitor = package / "status_monitor.py"
+    monitor.write_text(monitor.read_text().replace("robot_navigation_tutorial.running", f"{package.name}.threaded"))
+    result = grade(tmp_path, assignment, checks)
+    assert outcomes(result, checks) == dict.fromkeys(checks, "passed")
+    assert (result.time, result.time_note) == (
+        "real",
+        "status_monitor was met in real time: it uses rclpy in threads of its own. "
+        "So was what runs beside it: navigation_controller, sensor_processor.",
+    )
+
+
+def spin_in_a_thread(path: Path) -> None:
+    """Let a program of the reference spin in a thread of its own."""
+    text = path.read_text()
+    assert text.count("        rclpy.spin(node)\n") == 1
+    text = text.replace("        rclpy.spin(node)\n", f"        {THREADED}")
+    path.write_text(text.replace("import rclpy\n", "import threading\n\nimport rclpy\n", 1))
+
+
 def workspace_of(scratch: Path, text: str) -> Any:
     """Lay down a workspace with one program."""
     from autograder.lab import Workspace
@@ -91,8 +157,9 @@ def met(scratch: Path, text: str) -> Any:
     ways = []
     for _ in range(2):
         with EitherLab(workspace, "pkg", "node", listens={"/said": String}) as lab:
+            began = lab.seconds
             lab.run(1.0)
-            ways.append([lab.time, 8 <= len(lab.messages("/said")) <= 12])
+            ways.append([lab.time, 8 <= len(lab.messages("/said", since=began)) <= 12])
     return ways, either.explain()
 
 

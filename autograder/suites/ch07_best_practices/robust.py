@@ -29,8 +29,10 @@ LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node says once a second on status how it goes; with a sensor that never fails, ok."""
     with Robust(workspace, failure_probability=0.0) as lab:
-        said = lab.hear(10.05)
+        said = lab.hear(10)
+        rate = lab.rate(WORDS, 0.0)
     expect(len(said) == 10, f"In 10 s it said {len(said)} times how it goes.")
+    expect(abs(rate - 1.0) < 0.1, f"It said {rate:.1f} times a second how it goes, instead of once.")
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 
@@ -62,7 +64,7 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
     seed, probability = draw.randint(1, 2**31 - 1), round(draw.uniform(0.4, 0.7), 2)
     with Robust(workspace, seed=seed, failure_probability=probability) as lab:
-        said = lab.hear(40.05)
+        said = lab.hear(40)
     wanted = expected(seed, probability, 40)
     wrong = next((i for i, (a, b) in enumerate(zip(said, wanted, strict=False)) if a != b), min(len(said), 40))
     got = said[wrong] if wrong < len(said) else "nothing"
@@ -82,7 +84,7 @@ def test_no_seed(workspace: Workspace) -> None:
     runs = []
     for _ in range(2):
         with Robust(workspace, failure_probability=0.5) as lab:
-            runs.append(lab.hear(50.05))
+            runs.append(lab.hear(50))
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
 
 
@@ -96,7 +98,7 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
     most = draw.randint(2, 5)
     with Robust(workspace, failure_probability=1.0, max_errors=most) as lab:
-        said = lab.hear(most + 3.05)
+        said = lab.hear(most + 3)
     wanted = expected(1, 1.1, most + 3, most)
     expect(said == wanted, f"With max_errors {most} and a dead sensor it said {said}, instead of {wanted}.")
 
@@ -111,7 +113,7 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
 def test_errors_throttled(workspace: Workspace) -> None:
     """It logs failures as errors, at most one line in 5 s."""
     with Robust(workspace, failure_probability=1.0) as lab:
-        lab.run(30.05)
+        lab.hear(30)
         errors = lab.output.count("[ERROR]")
     expect(errors > 0, "Its sensor failed for 30 s, and it said nothing at level ERROR.")
     expect(errors <= 8, f"Its sensor failed for 30 s, and it logged {errors} errors.", fraction=0.5)
@@ -127,9 +129,9 @@ def test_errors_throttled(workspace: Workspace) -> None:
 def test_fatal_once(workspace: Workspace) -> None:
     """That it became unstable is logged as fatal, once."""
     with Robust(workspace, failure_probability=1.0, max_errors=3) as lab:
-        lab.run(3.05)
+        lab.hear(3)
         early = lab.output.count("[FATAL]")
-        lab.run(10.0)
+        lab.hear(10)
         fatal = lab.output.count("[FATAL]")
     expect(early == 0, "It logged as fatal what max_errors still allows.")
     expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
@@ -145,7 +147,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     """Each recovery is logged with the number of errors before it."""
     seed = draw.randint(1, 2**31 - 1)
     with Robust(workspace, seed=seed, failure_probability=0.5) as lab:
-        lab.run(30.05)
+        lab.hear(30)
         output = lab.output
     said = ["ok", *expected(seed, 0.5, 30)]
     counts = [int(a.split()[1]) for a, b in itertools.pairwise(said) if b == "ok" and a != "ok"]

@@ -166,7 +166,7 @@ def test_drives(driving: System, draw: random.Random) -> None:
     began = driving.seconds
     said = driving.see(scan(fill=distance), 2.0)
     expect_driving(said.commands, f"With {distance:.2f} m of free space all around", SPEED)
-    rate = len(driving.said(began).commands) / 2.0
+    rate = driving.lab.rate("/cmd_vel", began)
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
 
 

@@ -86,6 +86,6 @@ def test_filters_scans(processor: Processor) -> None:
 def test_counts_failures(workspace: Workspace) -> None:
     """robust_node says each second how its reading went, and counts failures in a row."""
     with Robust(workspace, seed=7, failure_probability=0.5) as lab:
-        said = lab.hear(8.05)
+        said = lab.hear(8)
     wanted = expected(7, 0.5, 8)
     expect(said == wanted, f"With seed 7 it said {said}, and should have said {wanted}.")

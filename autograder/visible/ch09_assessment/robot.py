@@ -12,11 +12,22 @@ from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import load_from
-from autograder.lab import LockstepLab, Stamped, Workspace
+from autograder.lab import EitherLab, Stamped, Workspace
+from autograder.lab.either import LOCKSTEP
 from autograder.packages import find_packages
-from autograder.visible.ch09_assessment.contract import GUARD, INTERFACES, PACKAGE, SMOOTHER, THERMOMETER
+from autograder.visible.ch09_assessment.contract import (
+    GUARD,
+    INTERFACES,
+    PACKAGE,
+    PERIOD,
+    SMOOTHER,
+    THERMOMETER,
+    TOLERANCE,
+    reading,
+)
 
 STEP = 0.1  # s between two messages
+HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
 _TOPICS = {
     THERMOMETER: ({}, {"/temperature": "Temperature"}),
     SMOOTHER: ({"/temperature": "Temperature"}, {"/smoothed": "Temperature"}),
@@ -38,7 +49,7 @@ class Types:
         return cls(module.msg.Temperature, module.msg.Decision)
 
 
-class NodeLab(LockstepLab):
+class NodeLab(EitherLab):
     """The lab of one of the three nodes, started with parameters of the check's choice."""
 
     def __init__(self, workspace: Workspace, types: Types, name: str, **parameters: float) -> None:
@@ -57,13 +68,34 @@ class NodeLab(LockstepLab):
 
     def tell(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
         """Send temperatures, stamped with the seconds `first`, `first` + 1, ...; return the messages that came."""
-        began = self.seconds
-        for second, celsius in enumerate(temperatures, first):
+        began, sent = self.seconds, list(temperatures)
+        for second, celsius in enumerate(sent, first):
             message = self._types.temperature(celsius=float(celsius))
             message.stamp.sec = second
             self.publish(self._in, message)
             self.run(STEP)
+        self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))
         return [stamped.message for stamped in self.heard(began)]
+
+    def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
+        """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
+        began, seconds = self.seconds, (count + 0.5) * period
+        self.run(seconds)
+        seen = [stamped.message.celsius for stamped in self.heard()]
+        expect(bool(seen), f"In {seconds:.1f} s it published nothing.")
+        for number, celsius in enumerate(seen, self._missed(seen, period, shape)):
+            wanted = reading(number, *shape)
+            if not near(celsius, wanted):
+                raise CheckFailed(f"Reading number {number} was {celsius:.2f} °C, it should have been {wanted:.2f} °C.")
+        published = round(self.rate(self._out, began) * seconds)
+        right = abs(published - count) <= 1
+        expect(right, f"In {seconds:.1f} s it published {published} readings, instead of {count}.", fraction=0.5)
+
+    def _missed(self, seen: list[float], period: float, shape: tuple[float, ...]) -> int:
+        """Return how many readings were over before the grader listened: in lockstep none."""
+        most = 0 if self.time == LOCKSTEP else int((2 * self.deaf_seconds + HEAD_START) / period)
+        fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
+        return next(fits, 0)
 
     def expect_in_graph(self) -> None:
         """Fail the check unless the node has its name and its topics, with their types; name what it has instead."""
@@ -74,6 +106,11 @@ class NodeLab(LockstepLab):
         told, heard = _TOPICS[self._name]
         _expect_topics(self._name, "publishes", publishes, heard)
         _expect_topics(self._name, "subscribes to", subscribes, told)
+
+
+def near(one: float, other: float) -> bool:
+    """Return whether two temperatures are the same."""
+    return abs(one - other) <= TOLERANCE
 
 
 def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted: Mapping[str, str]) -> None:
