@@ -55,15 +55,16 @@ def twice(run: Any) -> Any:
     return first
 
 
-def open_lab(workspace: Any, *names: str, serves: Any = None, **options: Any) -> Any:
-    """Return a lab in lockstep with some of the programs, in which the grader hears /said."""
+def open_lab(workspace: Any, *names: str, serves: Any = None, real: bool = False, **options: Any) -> Any:
+    """Return a lab, in lockstep unless it is to be real time, with some of the programs; the grader hears /said."""
     from std_msgs.msg import String
     from std_srvs.srv import Trigger
 
-    from autograder.lab import LockstepLab, Program
+    from autograder.lab import LockstepLab, Program, RealtimeLab
 
     listens = {"/said": String, **options.pop("listens", {})}
-    lab = LockstepLab(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
+    kind = RealtimeLab if real else LockstepLab
+    lab = kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
     if serves is not None:
         lab.serve(Trigger, "/ask", serves)
     return lab
@@ -457,5 +458,34 @@ def test_the_others_live_on_without_a_program_that_may_fail(text: str) -> None:
 def test_a_program_that_may_fail_and_does_not_takes_part_until_it_must_not() -> None:
     answer, running, sentence = in_cell(sparing, CRASHING.format(period=0.7, reading="pass"))
     assert (answer, running) == ("1", ["map", "server", "spared"])
+    assert sentence.startswith("spared: ")
+    assert "out of range" in sentence
+
+
+def sparing_in_real_time(scratch: Path, text: str) -> Any:
+    from std_srvs.srv import Trigger
+
+    from autograder.exceptions import StudentError
+
+    workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
+    lab = open_lab(workspace, "server", "spared", "map", real=True)
+    lab.spared = frozenset({"spared"})
+    with lab:
+        lab.until(lambda: "spared" not in lab.running, 10.0)
+        answer, running = lab.call(Trigger, "/ask", Trigger.Request()).message, sorted(lab.running)
+    try:
+        with open_lab(workspace, "server", "spared", "map", real=True) as lab:
+            lab.run(10.0)
+    except StudentError as error:
+        return [answer, running, error.diagnosis.sentence]
+    return [answer, running, ""]
+
+
+@pytest.mark.parametrize(
+    "text", ["raise ValueError('out of range')", CRASHING.format(period=0.7, reading="pass")], ids=["start", "timer"]
+)
+def test_in_real_time_the_others_live_on_too_and_one_that_must_not_fail_is_named(text: str) -> None:
+    answer, running, sentence = in_cell(sparing_in_real_time, text)
+    assert (answer, running) == ("1", ["map", "server"])
     assert sentence.startswith("spared: ")
     assert "out of range" in sentence
