@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -10,11 +11,11 @@ from pathlib import Path
 STUDENTS = ("alice", "bob", "carol")
 
 
-def grade(folder: Path, *options: str) -> subprocess.Popen[str]:
-    """Begin to grade the class in `folder`, one at a time."""
+def resume(folder: Path) -> subprocess.Popen[str]:
+    """Begin to grade what is not graded of the class in `folder`, one at a time."""
     command = [sys.executable, "-u", "-m", "autograder", "grade", "class", "--assignment", "01_package_structure"]
     return subprocess.Popen(
-        [*command, "-j", "1", *options],
+        [*command, "-j", "1", "--resume"],
         cwd=folder,
         text=True,
         stdout=subprocess.PIPE,
@@ -29,22 +30,25 @@ def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
         package = tmp_path / "class" / student / "src" / "my_robot_package"
         package.mkdir(parents=True)
         (package / "package.xml").write_text("<package/>")
+    alice, bob, carol = (tmp_path / "results" / student / "result.json" for student in STUDENTS)
+    # Whoever reads a named pipe waits for its writer: bob has begun, and does not end before Ctrl-C.
+    bob.parent.mkdir(parents=True)
+    os.mkfifo(bob)
 
-    def graded() -> int:
-        return len(list(tmp_path.glob("results/*/result.json")))
-
-    with grade(tmp_path) as process:
+    with resume(tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("[1/3] alice")
         process.send_signal(signal.SIGINT)
+        bob.write_text("no result")
         said = process.stdout.read()
     assert process.returncode == 130
     assert said.endswith("\nStopped. What is graded is in results: the same command with --resume grades the rest.\n")
-    assert 1 <= (before := graded()) < len(STUDENTS)
-    kept = (tmp_path / "results/alice/result.json").stat().st_mtime_ns
-    with grade(tmp_path, "--resume") as process:
+    assert alice.is_file() and bob.is_file() and not carol.exists()
+    before = alice.stat().st_mtime_ns, bob.stat().st_mtime_ns
+
+    with resume(tmp_path) as process:
         said = process.communicate()[0]
     assert process.returncode == 0
     assert "[3/3]" in said
-    assert before < graded() == len(STUDENTS)
-    assert (tmp_path / "results/alice/result.json").stat().st_mtime_ns == kept
+    assert carol.is_file()
+    assert (alice.stat().st_mtime_ns, bob.stat().st_mtime_ns) == before
