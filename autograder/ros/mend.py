@@ -3,7 +3,10 @@
 Their CMake files name folders of the machine that built them: the exported targets carry `/opt/python/cp3XX-cp3XX/...`
 for Python's and numpy's headers, so no message package compiles until they point at this interpreter. And ament_flake8
 lets flake8 fork: beside tests that have used rclpy, whose threads a fork does not copy, the forked process may crash,
-and flake8 replaces it for ever. Each file is replaced atomically; mending twice changes nothing.
+and flake8 replaces it for ever. And rclpy 7.1's MultiThreadedExecutor looks again and again at the callback that it has
+given to a thread, and so keeps that thread from the interpreter: on an idle machine a 10 Hz timer beside a 10 Hz
+subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). Each file is
+replaced atomically; mending twice changes nothing.
 """
 
 from __future__ import annotations
@@ -21,6 +24,17 @@ _PREFIX = re.compile(r"/opt/python/cp\d+-cp\d+")
 
 FLAKE8_INI = Path("ament_flake8/configuration/ament_flake8.ini")
 ONE_PROCESS = "jobs = 1"
+
+EXECUTORS = Path("rclpy/executors.py")
+_SUBMIT = """\
+            self._executor.submit(handler)
+            self._futures.append(handler)
+"""
+_SUBMIT_AND_YIELD = """\
+            self._executor.submit(handler)
+            time.sleep(0.0001)  # mended: gives the interpreter to the thread that the handler waits for
+            self._futures.append(handler)
+"""
 
 STANDINS_PTH = "ros2_standins.pth"
 
@@ -64,6 +78,15 @@ def mend_flake8(site_packages: Path) -> bool:
     return True
 
 
+def mend_executor(site_packages: Path) -> bool:
+    """Let rclpy's MultiThreadedExecutor yield to its threads; return whether that was to be changed."""
+    path = site_packages / EXECUTORS
+    if not path.is_file() or _SUBMIT not in path.read_text():
+        return False
+    _replace(path, path.read_text().replace(_SUBMIT, _SUBMIT_AND_YIELD))
+    return True
+
+
 def link_standins(site_packages: Path) -> Path:
     """Put the stand-ins' folder at the end of `sys.path`, where anything real is found before them."""
     standins = Path(__file__).parent / "standins"
@@ -82,5 +105,6 @@ if __name__ == "__main__":
     count = mend_wheels(Path(sys.prefix))
     packages = Path(sysconfig.get_paths()["purelib"])
     mend_flake8(packages)
+    mend_executor(packages)
     link_standins(packages)
     print(f"mended {count} CMake files of the ROS wheels")

@@ -90,3 +90,27 @@ def test_flake8_checks_in_one_process_and_is_mended_once(tmp_path: Path) -> None
 def test_the_linter_of_this_environment_is_mended() -> None:
     path = Path(sysconfig.get_paths()["purelib"]) / mend.FLAKE8_INI
     assert not path.is_file() or mend.ONE_PROCESS in path.read_text()
+
+
+def test_the_executor_is_mended_once_and_only_if_it_is_the_one_known(tmp_path: Path) -> None:
+    assert not mend.mend_executor(tmp_path)
+    path = tmp_path / mend.EXECUTORS
+    path.parent.mkdir(parents=True)
+    known = "        else:\n            self._executor.submit(handler)\n            self._futures.append(handler)\n"
+    path.write_text(known)
+    assert mend.mend_executor(tmp_path)
+    lines = path.read_text().splitlines()
+    assert [line for line in lines if "time.sleep" not in line] == known.splitlines() and len(lines) == 4
+    assert not mend.mend_executor(tmp_path)
+    path.write_text("a version in which this is done otherwise\n")
+    assert not mend.mend_executor(tmp_path)
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_the_executor_of_this_environment_is_mended() -> None:
+    path = Path(sysconfig.get_paths()["purelib"]) / mend.EXECUTORS
+    if not path.is_file():
+        pytest.skip("rclpy is not from the wheels")
+    lines = path.read_text().splitlines()
+    after = lines[next(i for i, line in enumerate(lines) if "self._executor.submit(handler)" in line) + 1]
+    assert "time.sleep" in after
