@@ -21,6 +21,7 @@ from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import UsageError
 
 SCHEMA = "autograder-result/1"
+HARMLESS = 0.1  # s, one period at 10 Hz: no check minds if what it meets in real time is held up for that long
 
 
 class Status(str, Enum):
@@ -101,6 +102,7 @@ class Result:
     """Everything that is known about one graded submission.
 
     `time` is "real" when a program's time could not be stepped; `time_note` says which and why, in a sentence.
+    `held_up` is for how many seconds at a time, at most, a busy machine then kept it, or the grader, from running.
     """
 
     assignment: str
@@ -120,6 +122,7 @@ class Result:
     phases: Mapping[str, float] = dataclasses.field(default_factory=dict)
     time: str = "lockstep"
     time_note: str = ""
+    held_up: float = 0.0
 
     @property
     def score(self) -> float:
@@ -130,6 +133,12 @@ class Result:
     def percent(self) -> float:
         """The score as a percentage of the maximum."""
         return 100.0 * self.score / self.max_score if self.max_score else 0.0
+
+    @property
+    def in_doubt(self) -> bool:
+        """Whether points that were lost in real time may be the busy machine's fault."""
+        lost = any(check.outcome is Outcome.FAILED for check in self.checks)
+        return self.time == "real" and self.held_up > HARMLESS and lost
 
     def group(self, name: str) -> tuple[CheckResult, ...]:
         """Return the checks that count for one locked grade cell."""

@@ -1,4 +1,8 @@
-"""Grading one submission: a worker in a cell, one retry when the grader itself failed, and never a made-up zero."""
+"""Grading one submission: a worker in a cell, one retry when the grader itself failed, and never a made-up zero.
+
+What cannot be stepped lives in real time, and on a busy machine may lose a point that it deserves. Where the machine
+was seen to hold it up, and it lost one, the submission is graded once more while this process grades nothing else.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,7 @@ from autograder.checks import Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
+from autograder.grading.machine import Machine
 from autograder.result import CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
@@ -28,6 +33,8 @@ LOG = "grader.log"
 NOTEBOOK = "notebook.ipynb"
 TRIES = 2
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
+
+_machine = Machine()
 
 RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
 
@@ -69,7 +76,8 @@ def grade_submission(
         run_job: runs the job in a cell.
 
     Returns:
-        The result. `status` is `not_graded` when the grader failed twice; that is no zero.
+        The result. `status` is `not_graded` when the grader failed twice; that is no zero. It is `in_doubt` when the
+        machine held up, twice, what was met in real time.
 
     Raises:
         UsageError: there is no such path or assignment.
@@ -79,23 +87,38 @@ def grade_submission(
     if not path.exists():
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)
+
+    def job_in(scratch: Path) -> Job:
+        return Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, scope)
+
+    def grade() -> Graded | None:
+        return _grade(lambda: run_job(job_in, isolation), out)
+
+    with _machine.beside():
+        graded = grade()
+    if graded is not None and graded.result.in_doubt:
+        with _machine.alone():
+            graded = grade()
+    if graded is None:
+        graded = Graded(_not_graded(suite, student, seed, isolation), None)
+        write_json(out / RESULT, graded.result.to_json())
+    return graded
+
+
+def _grade(run: Callable[[], CellReport], out: Path) -> Graded | None:
+    """Return what a worker made of a submission; None if it failed twice, of which `out` has the log then."""
     out.mkdir(parents=True, exist_ok=True)
     for stale in (RESULT, NOTEBOOK, LOG):
         (out / stale).unlink(missing_ok=True)
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
-        report = run_job(
-            lambda scratch: Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, scope),
-            isolation,
-        )
+        report = run()
         if report.returncode == 0 and (out / RESULT).is_file():
             result = from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
             return Graded(result, _notebook(out / NOTEBOOK))
     # Never part of the result: its traceback may quote a hidden check, and results become feedback.
     (out / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
-    result = _not_graded(suite, student, seed, isolation)
-    write_json(out / RESULT, result.to_json())
-    return Graded(result, None)
+    return None
 
 
 def _worker(job: Job) -> list[str]:

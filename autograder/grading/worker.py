@@ -58,7 +58,7 @@ class Grading:
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
-        from autograder.lab import either
+        from autograder.lab import either, heldup
 
         began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
@@ -91,6 +91,7 @@ class Grading:
             phases=self._phases,
             time=either.REAL if note else either.LOCKSTEP,
             time_note=note,
+            held_up=round(heldup.longest(), 6) if note else 0.0,
         )
 
     def _prepare(self) -> Diagnosis:

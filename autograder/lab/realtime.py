@@ -13,6 +13,7 @@ from typing import Any
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
+from autograder.lab import heldup
 from autograder.lab.meeting import Lab
 from autograder.lab.programs import Program, error_of
 from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
@@ -72,9 +73,10 @@ class RealtimeLab(Lab):
     def step(self, dt_ns: int) -> None:
         """Listen for `dt_ns` nanoseconds of real time."""
         end = time.monotonic() + dt_ns / 1e9
-        while (left := end - time.monotonic()) > 0:
-            self._alive()
-            self._spin(min(left, 0.05))
+        with heldup.watch((process.innermost() for process in self.processes), dt_ns / 1e9):
+            while (left := end - time.monotonic()) > 0:
+                self._alive()
+                self._spin(min(left, 0.05))
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         return self.wait_for(lambda: self._alive() and condition(), seconds)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import CheckFailed, check, expect
+from autograder.exceptions import StudentError
+from autograder.lockstep.failures import diagnose_ending
 from autograder.visible.ch02_nodes import contract
 from autograder.visible.ch02_nodes.robot import Robot, unheard
 
@@ -20,7 +22,8 @@ GROUP = "graph"
 )
 def test_starts(robot: Robot) -> None:
     """The executable robot_controller starts and its node spins."""
-    expect(robot.process.ending is None, "The program ended by itself.")
+    if robot.process.ending is not None:
+        raise StudentError(diagnose_ending(robot.process))
 
 
 @check(points=1, group=GROUP, depends=("starts",), hints=("The name is the argument of super().__init__.",))

@@ -35,8 +35,7 @@ class Robot(EitherLab):
 
     def show(self, scan: LaserScan) -> None:
         """Show one scan, taken now, and let 0.1 s pass."""
-        stamp = self.now_ns + round(SCAN_SECONDS * 1e9) - 1
-        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(stamp, 10**9)
+        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(self.next_ns, 10**9)
         self.publish("/scan", scan)
         self.run(SCAN_SECONDS)
 

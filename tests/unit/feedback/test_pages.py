@@ -54,7 +54,11 @@ def test_a_program_that_was_met_in_real_time_is_named_and_no_word_is_lost_on_oth
     make_result: MakeResult, tmp_path: Path
 ) -> None:
     note = "robot_controller was met in real time: it uses rclpy in threads of its own."
-    assert note in Page(feedback.write(make_result(time="real", time_note=note), tmp_path)).text
+    page = Page(feedback.write(make_result(time="real", time_note=note), tmp_path))
+    assert note in page.text
+    assert "The machine was busy" not in page.text
+    page = Page(feedback.write(make_result(time="real", time_note=note, held_up=0.62), tmp_path))
+    assert f"{note} The machine was busy and kept it from running for up to 0.6 s, twice" in page.text
     assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
 
 

@@ -46,10 +46,29 @@ def test_a_group_holds_the_checks_of_one_grade_cell(make_result: MakeResult) -> 
     assert make_result().group("nothing") == ()
 
 
+@pytest.mark.parametrize(
+    ("time", "held_up", "outcome", "in_doubt"),
+    [
+        ("real", 0.4, Outcome.FAILED, True),
+        ("real", 0.4, Outcome.PASSED, False),
+        ("real", 0.4, Outcome.NOT_CHECKED, False),
+        ("real", 0.1, Outcome.FAILED, False),
+        ("lockstep", 0.4, Outcome.FAILED, False),
+    ],
+)
+def test_a_point_lost_in_real_time_on_a_busy_machine_is_in_doubt(
+    make_result: MakeResult, turns: Check, time: str, held_up: float, outcome: Outcome, in_doubt: bool
+) -> None:
+    result = make_result(checks=(CheckResult.of(turns, outcome),), time=time, held_up=held_up)
+    assert result.in_doubt is in_doubt
+
+
 def test_a_result_survives_the_way_to_json_and_back(make_result: MakeResult, broken_result: Result) -> None:
     artifact = Artifact("tracks/a.png", "track", "ab", "turns", "It hits a wall.")
     for result in (
-        make_result(artifacts=(artifact,), phases={"build": 1.5}, time="real", time_note="It has its own threads."),
+        make_result(
+            artifacts=(artifact,), phases={"build": 1.5}, time="real", time_note="It has its own threads.", held_up=0.25
+        ),
         broken_result,
         make_result(checks=(), build=None, status=Status.NOT_GRADED),
     ):
@@ -71,7 +90,7 @@ def test_the_schema_names_every_outcome_and_visibility() -> None:
 
 def test_every_field_of_a_result_is_published(make_result: MakeResult, broken_result: Result) -> None:
     plain, properties = broken_result.to_json(), schema()["properties"]
-    added = {"time", "time_note"}  # results that were stored before have none of these
+    added = {"time", "time_note", "held_up"}  # results that were stored before have none of these
     assert set(plain) == set(properties) == {*schema()["required"], *added}
     assert set(plain["checks"][0]) == set(properties["checks"]["items"]["properties"])
     assert set(plain["build"]) == set(properties["build"]["properties"])

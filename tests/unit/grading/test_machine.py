@@ -1,0 +1,68 @@
+"""Gradings beside each other, and one that has the machine to itself."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from autograder.grading.machine import Machine
+
+SECONDS = 60.0  # for what must happen
+
+
+def test_many_use_the_machine_beside_each_other() -> None:
+    machine, all_in = Machine(), threading.Barrier(3)
+
+    def use() -> int:
+        with machine.beside():
+            return all_in.wait(SECONDS)
+
+    with ThreadPoolExecutor(3) as pool:
+        assert sorted(future.result() for future in [pool.submit(use) for _ in range(3)]) == [0, 1, 2]
+
+
+def test_one_alone_waits_for_the_others_and_the_next_wait_for_it() -> None:
+    machine, order = Machine(), list[str]()
+    begun, ended = threading.Event(), threading.Event()
+
+    def beside(name: str, wait: threading.Event | None = None) -> None:
+        with machine.beside():
+            begun.set()
+            if wait is not None:
+                wait.wait(SECONDS)
+            order.append(name)
+
+    def alone(name: str) -> None:
+        with machine.alone():
+            order.append(f"{name} begins")
+            order.append(f"{name} ends")
+
+    with ThreadPoolExecutor(4) as pool:
+        futures = [pool.submit(beside, "first", ended)]
+        assert begun.wait(SECONDS)
+        futures += [pool.submit(alone, "a"), pool.submit(alone, "b")]
+        deadline = time.monotonic() + SECONDS
+        while machine._waiting < 2:
+            assert time.monotonic() < deadline
+            threading.Event().wait(0.01)
+        futures.append(pool.submit(beside, "late"))
+        ended.set()
+        for future in futures:
+            future.result(SECONDS)
+    assert order[0] == "first"
+    assert order[-1] == "late"
+    assert order[1:-1] in (["a begins", "a ends", "b begins", "b ends"], ["b begins", "b ends", "a begins", "a ends"])
+
+
+@pytest.mark.parametrize("way", ["beside", "alone"])
+def test_an_error_gives_the_machine_back(way: str) -> None:
+    machine = Machine()
+    with pytest.raises(ValueError, match="mine"), getattr(machine, way)():
+        raise ValueError("mine")
+    with machine.alone(), pytest.raises(ZeroDivisionError):
+        _ = 1 / 0
+    with machine.beside():
+        pass
