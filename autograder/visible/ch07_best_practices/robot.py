@@ -37,7 +37,8 @@ class Processor(EitherLab):
             self.publish("/scan", scan)
             self.run(SCAN_SECONDS)
         self.wait_for_late(lambda: len(self.messages(FILTERED, since=began)) >= len(scans))
-        self.wait_for_late(lambda: False, SCAN_SECONDS)  # of the means nobody knows how many are to come
+        if self.time != LOCKSTEP:
+            self.run(SCAN_SECONDS)  # of the means nobody knows how many are to come
         filtered = [stamped.message for stamped in self.messages(FILTERED, since=began)]
         return filtered, [stamped.message.data for stamped in self.messages(MEAN, since=began)]
 
