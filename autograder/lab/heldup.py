@@ -10,7 +10,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
+
+from autograder.sandbox.procfs import waited_ns
 
 _longest = 0.0  # s, of all that this process has met in real time
 
@@ -25,24 +26,8 @@ def watch(pids: Iterable[int], seconds: float) -> Iterator[None]:
     """Note how long processes are held up in this block, which by itself takes `seconds`."""
     global _longest
     pids = tuple(pids)
-    before, began = _waited(pids), time.monotonic()
+    before, began = waited_ns(pids), time.monotonic()
     yield
     late = time.monotonic() - began - max(0.0, seconds)
-    waited = (after - before.get(thread, 0) for thread, after in _waited(pids).items())
+    waited = (after - before.get(thread, 0) for thread, after in waited_ns(pids).items())
     _longest = max(_longest, late, max(waited, default=0) / 1e9)
-
-
-def _waited(pids: Iterable[int]) -> dict[str, int]:
-    """Return by thread for how many nanoseconds it has waited for a processor, ready to run.
-
-    See schedstat in the Linux kernel's Documentation/scheduler/sched-stats.rst. Where a kernel does not count, or a
-    process has ended, nothing is known.
-    """
-    waited = {}
-    for pid in pids:
-        try:
-            for file in Path(f"/proc/{pid}/task").glob("*/schedstat"):
-                waited[file.parent.name] = int(file.read_text().split()[1])
-        except (OSError, IndexError):
-            continue
-    return waited

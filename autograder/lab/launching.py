@@ -33,7 +33,7 @@ from autograder.ros.discovery import announcing_often
 from autograder.ros.domains import Domain
 from autograder.sandbox import Limits, Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
-from autograder.sandbox.process import measure
+from autograder.sandbox.procfs import measure
 
 HOST = Path(__file__).with_name("launch_host")
 PRELOAD = HOST / "preload.py"

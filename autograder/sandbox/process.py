@@ -7,20 +7,17 @@ import os
 import selectors
 import signal
 import subprocess
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from enum import Enum
 from pathlib import Path
 
 from autograder.sandbox.limits import Limits
+from autograder.sandbox.procfs import Tree, children, cpu_seconds, measure, name
 
 _TICK = 0.1  # s between two looks at the clock while the process is silent
 _MEASURE = 0.25  # s between two measurements of the tree
-_PAGE = os.sysconf("SC_PAGE_SIZE")
-_TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
 
 
 class Ending(str, Enum):
@@ -32,63 +29,6 @@ class Ending(str, Enum):
     MEMORY = "memory"
     THREADS = "threads"
     OUTPUT = "output"
-
-
-@dataclass(frozen=True)
-class Tree:
-    """What a process and its descendants use right now."""
-
-    pids: tuple[int, ...]
-    threads: int
-    memory: int
-
-
-def measure(*roots: int, most: int = sys.maxsize) -> Tree:
-    """Measure the trees below `roots`: process ids, threads, resident bytes.
-
-    Processes that vanish are left out. A tree of more than `most` threads is not measured to its end: a fork bomb grows
-    faster than it can be counted.
-    """
-    pids: list[int] = []
-    threads = memory = 0
-    pending = list(roots)
-    while pending and threads <= most:
-        pid = pending.pop()
-        try:
-            tasks = os.listdir(f"/proc/{pid}/task")
-            resident = int(_read(f"/proc/{pid}/statm").split()[1])
-        except (OSError, IndexError, ValueError):
-            continue
-        pids.append(pid)
-        threads += len(tasks)
-        memory += resident * _PAGE
-        for task in tasks:
-            try:
-                pending += map(int, _read(f"/proc/{pid}/task/{task}/children").split())
-            except OSError:
-                continue
-    return Tree(tuple(pids), threads, memory)
-
-
-def _read(path: str) -> bytes:
-    """Read a small file of /proc; this is done often, and a `Path` would take three times as long."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        return os.read(descriptor, 65536)
-    finally:
-        os.close(descriptor)
-
-
-def cpu_seconds(pids: Iterable[int]) -> float:
-    """Return the processor time that processes have used so far; those that vanish are left out."""
-    ticks = 0
-    for pid in pids:
-        try:
-            fields = _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
-        except OSError:
-            continue
-        ticks += int(fields[11]) + int(fields[12])  # utime and stime, proc_pid_stat(5)
-    return ticks / _TICKS_A_SECOND
 
 
 class Process:
@@ -185,8 +125,8 @@ class Process:
         if self._entered:
             return self._entered[0]
         pid = self.pid
-        while _name(pid) == "bwrap" and (children := _children(pid)):
-            pid = children[0]
+        while name(pid) == "bwrap" and (below := children(pid)):
+            pid = below[0]
         return pid
 
     def signal(self, number: signal.Signals) -> None:
@@ -282,17 +222,3 @@ class Process:
             self._end(Ending.OUTPUT)
             return self._popen.poll() is None
         return bool(chunk)
-
-
-def _children(pid: int) -> list[int]:
-    try:
-        return list(map(int, _read(f"/proc/{pid}/task/{pid}/children").split()))
-    except OSError:
-        return []
-
-
-def _name(pid: int) -> str:
-    try:
-        return Path(f"/proc/{pid}/comm").read_text().strip()
-    except OSError:
-        return ""

@@ -14,7 +14,7 @@ import pytest
 
 from autograder.sandbox import Ending, Limits, Process
 from autograder.sandbox.limits import MIB
-from autograder.sandbox.process import measure
+from autograder.sandbox.procfs import measure
 
 LONG = 60.0
 
