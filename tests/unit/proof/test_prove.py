@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -34,6 +35,15 @@ class NoGrader:
         return CellReport(Ending.EXITED, 1, f"nobody grades {job_in(Path()).student}")
 
 
+class OneByOne(NoGrader):
+    """One lane."""
+
+    count = 1
+
+    def __init__(self) -> None:
+        self._together = threading.Barrier(1)
+
+
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
     def judge(result: Result) -> str:
         return f"{result.assignment} is {result.status.value}"
@@ -53,6 +63,22 @@ def test_submissions_of_several_chapters_may_have_one_name(tmp_path: Path) -> No
     assert sorted(came) == list(CHAPTERS)
     logs = [(tmp_path / name / "reference" / "grader.log").read_text() for name in CHAPTERS]
     assert all("nobody grades reference" in log for log in logs)
+
+
+def test_chapters_are_graded_side_by_side_and_told_in_order(tmp_path: Path) -> None:
+    made: list[str] = []
+
+    def named(assignment: str, name: str) -> Case:
+        def write(folder: Path) -> None:
+            folder.mkdir()
+            made.append(f"{assignment[:2]} {name}")
+
+        return replace(case(assignment, write), name=name)
+
+    proof = [*(named("01_package_structure", name) for name in "abcd"), *(named("02_nodes", name) for name in "ab")]
+    claims = prove(proof, seed=1, out=tmp_path, lanes=cast(Lanes, OneByOne()))
+    assert [(claim.assignment, claim.name) for claim in claims] == [(case.assignment, case.name) for case in proof]
+    assert made == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
 
 
 def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None:
