@@ -8,7 +8,7 @@ from pathlib import Path
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.grading.slim import slim_interfaces
+from autograder.grading import overlay
 from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import tail
 from autograder.sandbox import Ending, Mount, Sandbox, zygote
@@ -32,9 +32,9 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
     command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *choice]
     environment = workspace.environment()
-    slim = slim_interfaces(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
+    faster = overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
     environment |= {
-        "CMAKE_PREFIX_PATH": os.pathsep.join([str(slim), environment["CMAKE_PREFIX_PATH"]]),
+        "CMAKE_PREFIX_PATH": os.pathsep.join([str(faster), environment["CMAKE_PREFIX_PATH"]]),
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
@@ -43,7 +43,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, (HOST, zygote.HOST, *workspace.underlays)),
+            *map(Mount, (HOST, zygote.HOST, overlay.HOST, overlay.TEMPLATES, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
