@@ -43,7 +43,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, (HOST, zygote.HOST, overlay.HOST, overlay.TEMPLATES, *workspace.underlays)),
+            *map(Mount, (HOST, zygote.HOST, *overlay.READ, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),

@@ -14,8 +14,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-HOST = Path(__file__).with_name("generator_host.py")
-TEMPLATES = Path(__file__).parents[1] / "interfaces" / "templates.py"  # the host reads it
+from autograder.grading import generator_host
+
+HOST = Path(generator_host.__file__)
+READ = (HOST, generator_host.TEMPLATES)  # by a build with the overlay, beside the overlay
 LEFT_OUT = (
     "rosidl_generator_cpp",
     "rosidl_typesupport_cpp",

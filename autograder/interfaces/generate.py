@@ -13,6 +13,7 @@ import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -87,21 +88,11 @@ def adapt(prefix: Path, work: Path, package: str, texts: dict[str, str]) -> tupl
 
 def share_parsing(job: Job) -> None:
     """Parse each .idl, and let the generators take what came of it."""
-    names = ("rosidl_generator_py.generate_py_impl", "rosidl_generator_type_description", "rosidl_pycommon")
     parser = import_module("rosidl_parser.parser")
-    original, parsed = parser.parse_idl_file, dict[str, Any]()
     locator_of = import_module("rosidl_parser.definition").IdlLocator
-
-    def parse(locator: Any, png_file: Any = None) -> Any:
-        name = str(locator.get_absolute_path())
-        if name not in parsed:
-            parsed[name] = original(locator, png_file)
-        return parsed[name]
-
-    for module in (parser, *map(import_module, names)):
-        module.parse_idl_file = parse  # type: ignore[attr-defined]
+    parser.parse_idl_string = cache(parser.parse_idl_string)  # type: ignore[attr-defined]
     for file in job.files:
-        parse(locator_of(job.prefix / "share" / job.package, file))
+        parser.parse_idl_file(locator_of(job.prefix / "share" / job.package, file))
 
 
 def arguments(job: Job, generator: str, **more: Any) -> str:

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
@@ -42,10 +41,7 @@ def measure(*roots: int, most: int = sys.maxsize) -> Tree:
         threads += len(tasks)
         memory += resident * _PAGE
         for task in tasks:
-            try:
-                pending += map(int, _read(f"/proc/{pid}/task/{task}/children").split())
-            except OSError:
-                continue
+            pending += _started_by(pid, task)
     return Tree(tuple(pids), threads, memory)
 
 
@@ -78,18 +74,23 @@ def waited_ns(pids: Iterable[int]) -> dict[int, int]:
 
 def children(pid: int) -> list[int]:
     """Return the processes that a process's first thread has started."""
-    try:
-        return list(map(int, _read(f"/proc/{pid}/task/{pid}/children").split()))
-    except OSError:
-        return []
+    return _started_by(pid, pid)
 
 
 def name(pid: int) -> str:
     """Return what a process runs, at most 15 characters of it; nothing if it is gone."""
     try:
-        return Path(f"/proc/{pid}/comm").read_text().strip()
+        return _read(f"/proc/{pid}/comm").decode(errors="replace").strip()
     except OSError:
         return ""
+
+
+def _started_by(pid: int, task: int | str) -> list[int]:
+    """Return the processes that one thread of a process has started; none if it is gone."""
+    try:
+        return list(map(int, _read(f"/proc/{pid}/task/{task}/children").split()))
+    except OSError:
+        return []
 
 
 def _read(path: str) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
@@ -13,6 +12,7 @@ import pytest
 
 from autograder.grading.build import build
 from autograder.grading.overlay import HOSTED, LEFT_OUT, write_overlay
+from autograder.interfaces.generate import Job, arguments
 from autograder.lab import Workspace
 from autograder.layout import SOLUTIONS
 from autograder.ros import activate
@@ -29,32 +29,22 @@ OPTIONS = {
 }
 
 
-def share(package: str) -> Path:
-    return next(path for prefix in activate().prefixes if (path := prefix / "share" / package).is_dir())
+def prefix_of(package: str) -> Path:
+    return next(prefix for prefix in activate().prefixes if (prefix / "share" / package).is_dir())
 
 
 def generate(generator: str, program: Path, out: Path) -> dict[str, str]:
     """Run a generator on one service; return what it wrote, by path."""
-    for folder in ("srv/detail/dds_fastrtps", "srv"):
-        (out / folder).mkdir(parents=True, exist_ok=True)
-    below = [f"{name}:{idl}" for name in BELOW for idl in sorted(share(name).rglob("*.idl"))]
-    values = {
-        "package_name": PACKAGE,
-        "output_dir": str(out),
-        "template_dir": str(share(generator) / "resource"),
-        "idl_tuples": [f"{share(PACKAGE)}:{FILE}.idl"],
-        "type_description_tuples": [f"{FILE}.idl:{share(PACKAGE) / FILE}.json"],
-        "ros_interface_files": [],
-        "ros_interface_dependencies": below,
-        "target_dependencies": [],
-    }
-    file = out.with_suffix(".json")
-    file.write_text(json.dumps(values))
-    command = [sys.executable, str(program), "--generator-arguments-file", str(file), *OPTIONS[generator]]
+    out.mkdir()
+    job = Job(PACKAGE, prefix_of(PACKAGE), out, (f"{FILE}.idl",), activate().prefixes, BELOW)
+    described = job.share(PACKAGE) / FILE
+    file = arguments(job, generator, type_description_tuples=[f"{FILE}.idl:{described}.json"])
+    command = [sys.executable, str(program), "--generator-arguments-file", file, *OPTIONS[generator]]
     environment = {**os.environ, "PYTHONHASHSEED": "0"}  # the order of some includes is that of a set
     done = subprocess.run(command, env=environment, text=True, capture_output=True)
     assert done.returncode == 0, done.stderr
-    return {str(path.relative_to(out)): path.read_text() for path in out.rglob("*") if path.is_file()}
+    written = job.out(generator)
+    return {str(path.relative_to(written)): path.read_text() for path in written.rglob("*") if path.is_file()}
 
 
 @pytest.fixture
@@ -68,7 +58,7 @@ def test_what_one_generator_has_parsed_the_others_recall_and_all_write_what_they
     kept: list[int] = []
     for generator in OPTIONS:
         ours = generate(generator, overlay / "lib" / generator, tmp_path / f"ours_{generator}")
-        real = share(generator).parents[1] / "lib" / generator / generator
+        real = prefix_of(generator) / "lib" / generator / generator
         assert ours
         assert ours == generate(generator, real, tmp_path / f"theirs_{generator}")
         (parsed,) = (overlay / "parsed").iterdir()
