@@ -1,12 +1,14 @@
-"""Loads the libraries that nearly every ROS program needs, and imports nothing: for what forks such programs.
+"""Loads the libraries that nearly every ROS program needs, for what forks such programs.
 
-No Python module comes with a library: a program that lacks an import still lacks it. The generator of messages, which a
+No module of ROS comes with a library: a program that lacks an import still lacks it. Only what the script that starts
+every program imports first of all is imported here, too: `importlib.metadata`, by which it finds the program. The generator of messages, which a
 message's module imports if it can, is barred, as the programs' hosts do.
 """
 
 from __future__ import annotations
 
 import ctypes
+import importlib.metadata
 import sys
 from contextlib import suppress
 
