@@ -9,7 +9,8 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 
-runpy.run_path(str(HERE.parent / "ros" / "preload.py"))
+ROS = runpy.run_path(str(HERE.parent / "ros" / "preload.py"))
+READY, warm = ROS["READY"], ROS["warm"]
 sys.path.insert(0, str(HERE))
 for name in ("host", "link"):
     import_module(f"lockstep_host.{name}")

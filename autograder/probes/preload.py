@@ -12,7 +12,8 @@ from importlib import import_module
 from pathlib import Path
 
 gc.disable()  # nothing here is garbage, and to look for it took a third of the time
-runpy.run_path(str(Path(__file__).parents[1] / "ros" / "preload.py"))
+ROS = runpy.run_path(str(Path(__file__).parents[1] / "ros" / "preload.py"))
+READY, warm = ROS["READY"], ROS["warm"]
 for name in ("numpy", "rclpy", "pytest"):
     import_module(name)
 for plugin in sys.modules["_pytest.config"].default_plugins:

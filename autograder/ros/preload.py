@@ -1,14 +1,13 @@
-"""Loads the libraries that nearly every ROS program needs, for what forks such programs.
+"""What nearly every ROS program needs: for what forks such programs.
 
-No module of ROS comes with a library: a program that lacks an import still lacks it. Only what the script that starts
-every program imports first of all is imported here, too: `importlib.metadata`, by which it finds the program. The generator of messages, which a
-message's module imports if it can, is barred, as the programs' hosts do.
+The libraries are loaded. No module comes with one, but many are READY: a program that lacks an import still lacks it
+(`zygote_host/ready.py`). The generator of messages, which a message's module imports if it can, is barred, as the
+programs' hosts do.
 """
 
 from __future__ import annotations
 
 import ctypes
-import importlib.metadata
 import sys
 from contextlib import suppress
 
@@ -22,3 +21,18 @@ sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ig
 for name in ("rmw_fastrtps_cpp", *(f"{package}__rosidl_{kind}" for package in PACKAGES for kind in KINDS)):
     with suppress(OSError):  # a ROS that does without one of them is as good
         ctypes.CDLL(f"lib{name}.so")
+
+READY = (
+    "importlib.metadata",  # by which a program's script finds it
+    *(f"rclpy.{name}" for name in ("node", "executors", "action", "parameter", "qos", "callback_groups", "duration")),
+    *(f"rclpy.{name}" for name in ("time", "logging", "clock", "parameter_client", "qos_event", "event_handler")),
+    *(f"{package}.{kind}" for package in PACKAGES for kind in ("msg", "srv", "action")),
+)
+
+
+def warm() -> None:
+    """Let the types of all messages that are there find their libraries, as a node's first use of each does."""
+    modules = (module for name, module in list(sys.modules.items()) if name.endswith((".msg", ".srv", ".action")))
+    for kind in {type(value) for module in modules for value in vars(module).values()}:
+        if hasattr(kind, "__import_type_support__"):
+            kind.__import_type_support__()

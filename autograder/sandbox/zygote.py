@@ -33,7 +33,8 @@ class Zygote:
 
     Args:
         preload: the script that imports what the programs share. It must import nothing that they would not: a
-            student's program that lacks an import would work in the grader only.
+            student's program that lacks an import would work in the grader only. What it names as `READY` they have
+            as soon as they import it, and no sooner (`zygote_host/ready.py`).
         environment: its environment variables, which every program can read in its /proc.
     """
 

@@ -14,6 +14,7 @@ import pytest
 
 from autograder import probes
 from autograder.grading import colcon
+from autograder.lab import launching
 from autograder.lockstep import stepper
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Process, Sandbox
@@ -23,7 +24,7 @@ from tests.e2e.cell_support import in_cell, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-LOCKSTEP, PROBES = stepper.PRELOAD, probes.PRELOAD
+LOCKSTEP, PROBES, LAUNCHES = stepper.PRELOAD, probes.PRELOAD, launching.PRELOAD
 LONG = 120.0
 
 # What a process can find out about its place and its rights.
@@ -214,12 +215,66 @@ def imports(scratch: Path, preload: str, code: str) -> list[str]:
         (PROBES, "import rclpy\nrclpy.node.Node"),
         (LOCKSTEP, "import sensor_msgs\nsensor_msgs.msg.LaserScan"),
         (LOCKSTEP, "import std_srvs\nstd_srvs.srv"),
+        (PROBES, "import std_msgs.msg\nstd_msgs.srv"),
+        (PROBES, "from geometry_msgs.msg import Twist\nimport sensor_msgs\nsensor_msgs.msg"),
+        (LAUNCHES, "import rclpy\nrclpy.executors"),
         (colcon.PRELOAD, "import setuptools\nsetuptools.no_such_thing"),
     ],
 )
 def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(preload: Path, code: str) -> None:
     started, forked = in_cell(imports, str(preload), code)
     assert forked.splitlines()[-1] == started.splitlines()[-1]
+
+
+# Which modules there are before and after an import, and whether each is an attribute of its package.
+BROUGHT = """
+import json, sys
+
+def there():
+    names = [name for name, module in sys.modules.items() if module is not None]
+    return {n: getattr(sys.modules.get(n.rpartition(".")[0]), n.rpartition(".")[2], None) is not None for n in names}
+
+before = there()
+%s
+print(json.dumps([before, there()]))
+"""
+
+
+@pytest.mark.parametrize("preload", [LOCKSTEP, PROBES, LAUNCHES], ids=["lockstep", "probes", "launches"])
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import rclpy",
+        "import rclpy.node",
+        "from rclpy.action import ActionServer",
+        "from rclpy.executors import MultiThreadedExecutor",
+        "import std_srvs",
+        "import sensor_msgs.msg",
+        "from nav_msgs.srv import GetPlan",
+        "import numpy",
+    ],
+)
+def test_an_import_brings_what_it_brings_elsewhere(preload: Path, code: str) -> None:
+    started, forked = in_cell(imports, str(preload), BROUGHT % code)
+    (_, wanted), (before, after) = json.loads(started), json.loads(forked)
+    assert {name: after.get(name) for name in wanted} == wanted
+    assert set(after) - set(before) <= set(wanted)
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs.msg", "rclpy.node"])
+def test_a_module_that_was_ready_is_a_module_like_any_other(name: str) -> None:
+    code = f"""
+import importlib, importlib.util, inspect, sys
+found = importlib.util.find_spec({name!r})
+print(found.origin, found.has_location, found.submodule_search_locations, {name!r} in sys.modules)
+module = importlib.import_module({name!r})
+print(module.__spec__.name, type(module.__spec__.loader).__name__, module.__file__, len(inspect.getsource(module)))
+del sys.modules[{name!r}]
+again = importlib.import_module({name!r})
+print(again is module, importlib.reload(again) is again, dir(again) == dir(module))
+"""
+    started, forked = in_cell(imports, str(PROBES), code)
+    assert forked == started
 
 
 def shadows(scratch: Path, name: str) -> list[str]:
@@ -237,7 +292,7 @@ def shadows(scratch: Path, name: str) -> list[str]:
     return said
 
 
-@pytest.mark.parametrize("name", ["rclpy", "numpy", "selectors", "mine"])
+@pytest.mark.parametrize("name", ["rclpy", "numpy", "std_msgs", "yaml", "selectors", "mine"])
 def test_a_module_of_the_students_comes_first_as_it_does_for_them(name: str) -> None:
     started, forked = in_cell(shadows, name)
     assert started.startswith(f"my own {name}\n['one'] home")

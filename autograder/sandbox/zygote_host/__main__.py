@@ -14,7 +14,6 @@ Descriptors that come with an order are the line to the process that bubblewrap 
 from __future__ import annotations
 
 import gc
-import inspect
 import json
 import os
 import runpy
@@ -27,11 +26,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from autograder.sandbox.zygote_host import becoming, confinement, leaving
+    from autograder.sandbox.zygote_host import becoming, confinement, leaving, ready
 else:
     import becoming
     import confinement
     import leaving
+    import ready
 
 MAX_ORDER = 1024 * 1024  # bytes
 MAX_FDS = 16
@@ -114,28 +114,20 @@ def _confine(orders: socket.socket, order: dict[str, Any], fds: list[int]) -> No
         kept.send(b'{"entered": true}')
 
 
-def _look_modules_up() -> None:
-    """Let `inspect` find out which file each module is from, and remember it.
-
-    A program's first line of log does (rclpy asks where it was written), which takes 20 ms with all those modules.
-    """
-    inspect.getmodule(compile("", "a file of no module", "exec"))
-
-
 def main() -> tuple[Any, dict[str, Any]] | None:
     """Serve until there are no more orders, or this is the process of a program."""
     sys.path.remove(str(SELF))
     given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     base = {path: Path(path).exists() for path in sys.path if path not in given}
     orders = socket.socket(fileno=int(sys.argv[1]))
-    runpy.run_path(sys.argv[2])
-    _look_modules_up()
+    preload = runpy.run_path(sys.argv[2])
+    ready.make_ready(preload.get("READY", ()), preload.get("warm", lambda: None))
     gc.collect()
     gc.freeze()  # what the programs share is not theirs to look through
     order = serve(orders)
     if order is None:
         return None
-    for module in (becoming, confinement, leaving):
+    for module in (becoming, confinement, leaving, ready):
         del sys.modules[module.__name__]
     environment = {**order["environment"], "PWD": order["workdir"]}  # bubblewrap tells it, too
     return becoming.become(order["command"], environment, base)

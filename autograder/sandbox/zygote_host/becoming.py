@@ -46,7 +46,8 @@ def become(
 
 def _shadowed(folders: Sequence[str]) -> bool:
     """Return whether a folder has a module of its own that is called as one that is loaded from elsewhere."""
-    loaded = {name.partition(".")[0] for name in sys.modules}
+    ready = (name for finder in sys.meta_path for name in getattr(finder, "ready", ()))
+    loaded = {name.partition(".")[0] for name in (*sys.modules, *ready)}
     return any(
         (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)
         for folder in folders
