@@ -8,8 +8,8 @@ PYTHON ?= $(shell for python in python3.12 $(SYSTEM_PYTHON) python3 python3.13 p
 	&& echo $$python && exit; done; echo python3)
 BIN := .venv/bin
 BOOTSTRAP = $(PYTHON) -I autograder/bootstrap.py
-# `python -m autograder.ros COMMAND` runs a command with ROS switched on.
-WITH_ROS := $(BIN)/python -m autograder.ros
+# `autograder ros COMMAND` runs a command with ROS switched on.
+WITH_ROS := $(BIN)/autograder ros
 
 # More than the two cores of a small machine: much of a test is waiting.
 WORKERS ?= 4

@@ -14,9 +14,9 @@ from autograder import layout
 
 # Parts of the autograder that no grading asks.
 APART = frozenset({"bootstrap.py", "cli", "course", "doctor", "export", "feedback", "nbgrader", "notebook", "proof"})
-PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants", "README.md"})  # in suites: what judges the checks
+PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants"})  # in a chapter's checks: what judges them
 CHAPTER = re.compile(r"ch\d\d_")
-MENTION = re.compile(r"\bautograder\.(suites|visible)(?:\.| import )(ch\d\d_\w+)")
+MENTION = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\d_\w+)")
 
 
 def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> str:
@@ -42,25 +42,32 @@ def files(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) 
 
 
 def _packages(assignment: str, root: Path) -> set[Path]:
-    """Return the packages of checks, hidden and visible, of the assignment and of all that these import from."""
-    pending = [root / "autograder" / home / f"ch{assignment}" for home in ("suites", "visible")]
+    """Return the folder of the assignment's checks and those of all chapters that these import from."""
+    home = root / "autograder" / "checks"
+    pending = [home / f"ch{assignment}"]
     found: set[Path] = set()
     while pending:
         folder = pending.pop()
         if folder not in found:
             found.add(folder)
-            texts = (path.read_text(encoding="utf-8") for path in folder.glob("*.py"))
-            pending += [root / "autograder" / home / name for text in texts for home, name in MENTION.findall(text)]
+            texts = (path.read_text(encoding="utf-8") for path in folder.rglob("*.py") if not _proves(path, home))
+            pending += [home / name for text in texts for name in MENTION.findall(text)]
     return found
 
 
+def _proves(path: Path, home: Path) -> bool:
+    """Return whether a path below the checks is, or lies in, what proves them."""
+    return not PROOF.isdisjoint(path.relative_to(home).parts)
+
+
 def _below(path: Path, grader: Path) -> Iterator[Path]:
-    """Yield a file, or the files of a folder without what no grading reads and without packages of checks."""
+    """Yield a file, or the files of a folder without what no grading reads and without the chapters' checks."""
     if path.is_file():
         yield path
     for child in path.iterdir() if path.is_dir() else ():
         apart = path == grader and child.name in APART
-        proof = path.is_relative_to(grader / "suites") and child.name in PROOF
-        checks = path.parent == grader and CHAPTER.match(child.name)
+        home = grader / "checks"
+        proof = child.is_relative_to(home) and _proves(child, home)
+        checks = path == home and CHAPTER.match(child.name)
         if not (apart or proof or checks or child.name.startswith(".") or child.name == "__pycache__"):
             yield from _below(child, grader)

@@ -10,11 +10,16 @@ from autograder.exceptions import UsageError
 ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = ROOT / "chapters"
 SOLUTIONS = ROOT / "solutions"
-SUITES = ROOT / "autograder" / "suites"
+CHECKS = ROOT / "autograder" / "checks"
 WORLDS = ROOT / "assets" / "worlds"
 BUILD = ROOT / ".build"
 # What tools leave behind in a folder that is worked in, for `shutil.copytree`.
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
+
+
+def check_folders() -> tuple[Path, ...]:
+    """Return the folder of each chapter's checks, visible, hidden and what proves them. No sandbox shows one."""
+    return tuple(sorted(CHECKS.glob("ch*")))
 
 
 def chapter(assignment: str) -> Path:

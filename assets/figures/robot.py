@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 from autograder.notebook import DriveReport, drive
-from autograder.suites.mutants import lay_down_reference
+from autograder.proof.mutants import write_reference
 
 OUT = Path(__file__).with_suffix(".png")
 
@@ -17,7 +17,7 @@ OUT = Path(__file__).with_suffix(".png")
 def main() -> None:
     """Drive, and save the picture of the track."""
     with tempfile.TemporaryDirectory() as folder:
-        lay_down_reference(("my_robot_package",), Path(folder))
+        write_reference(("my_robot_package",), Path(folder))
         report = drive("my_robot_package", "robot_controller", "lab", 60.0, workspace=folder)
     assert isinstance(report, DriveReport), report
     print(report.picture.alt)

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import click
 
-from autograder import feedback, layout, suites
+from autograder import feedback, layout
+from autograder.checks import suites
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, reason, seed_option, table
 from autograder.grading.batch import Entry, grade_all
+from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import write_json
 from autograder.sandbox import Tier
-from autograder.suites.mutants import lay_down, lay_down_reference, mutants
 
 ASSIGNMENT = "08_capstone"
 REFERENCE = "reference"
@@ -31,12 +32,12 @@ def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None
 
     Exit status: 0 when the reference has all marks and no flawed submission has, 1 otherwise.
     """
-    suite = suites.load(ASSIGNMENT)
+    suite = suites.hidden(ASSIGNMENT)
     shown = [mutant for mutant in mutants(ASSIGNMENT) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:
-        lay_down_reference(suite.sources, Path(folder) / REFERENCE)
+        write_reference(suite.sources, Path(folder) / REFERENCE)
         for mutant in shown:
-            lay_down(mutant, suite.sources, Path(folder) / mutant.id)
+            write_mutant(mutant, suite.sources, Path(folder) / mutant.id)
         (Path(folder) / "empty").mkdir()
         names = [REFERENCE, *(mutant.id for mutant in shown), "empty"]
         entries = tuple(Entry(name, Path(folder) / name) for name in names)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from autograder import feedback, suites
+from autograder import feedback
+from autograder.checks import suites
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, reason, seed_option, table
 from autograder.grading.batch import discover, grade_all
 from autograder.result import Result, Status, write_json
@@ -48,7 +49,7 @@ def grade(
     Exit status: 0 when every submission was graded, 1 when one was not (or is below --require), 2 for a wrong call,
     130 after Ctrl-C, which lets end what has begun.
     """
-    suites.load(assignment)
+    suites.hidden(assignment)
     entries = discover(paths, assignment)
     with Progress(len(entries)) as progress:
         try:

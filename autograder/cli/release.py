@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
-from autograder.course.bundle import write_bundle
+from autograder.course.release import write_bundle
 from autograder.result import write_json
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import click
 
-from autograder import layout, suites
+from autograder import layout
+from autograder.checks import suites
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
-from autograder.grading.lanes import Lanes
 from autograder.proof import Claim, Kind, cases, holds, prove, summary
+from autograder.proof.lanes import Lanes
 from autograder.result import write_json
 from autograder.sandbox import Tier
 

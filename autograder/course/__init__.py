@@ -10,9 +10,9 @@ from autograder.course.exceptions import CourseError
 from autograder.course.execute import Execution, run_notebook, run_notebooks
 from autograder.course.findings import Finding
 from autograder.course.forms import CODE_STUB, Form, in_form
-from autograder.course.holes import with_holes, without_licence
-from autograder.course.hygiene import hygiene
+from autograder.course.notebook_rules import broken_rules
 from autograder.course.points import set_points, wrong_points
+from autograder.course.solution_markers import with_holes, without_licence
 from autograder.course.sync import Chapter, chapters, stale, sync
 
 __all__ = [
@@ -22,8 +22,8 @@ __all__ = [
     "Execution",
     "Finding",
     "Form",
+    "broken_rules",
     "chapters",
-    "hygiene",
     "in_form",
     "is_solution",
     "origin",

@@ -28,7 +28,7 @@ from typing import Any
 from nbformat import NotebookNode
 
 from autograder.course.exceptions import CourseError
-from autograder.course.holes import with_cuts, with_holes, without_licence
+from autograder.course.solution_markers import with_cuts, with_holes, without_licence
 
 
 @dataclass(frozen=True)

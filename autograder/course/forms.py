@@ -8,7 +8,7 @@ from enum import Enum
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.holes import without_marks, without_scheme
+from autograder.course.solution_markers import without_marks, without_scheme
 
 # What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
 # the node that runs into it ends, and what it ended with is this sentence.

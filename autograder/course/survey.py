@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from autograder.checks import suites
 from autograder.course.syllabus import Coverage, Syllabus, coverage
 from autograder.course.sync import chapters
 from autograder.course.tables import page
 from autograder.layout import CHAPTERS
-from autograder.suites import graded, manifest
 
 PAGE = CHAPTERS / "README.md"
 
@@ -24,9 +24,11 @@ class Survey:
     @classmethod
     def of_the_course(cls) -> Survey:
         """Read the syllabus, the chapters and their hidden suites."""
-        syllabus, have_suites = Syllabus.read(), graded()
+        syllabus, have_suites = Syllabus.read(), suites.graded()
         notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
-        held = [(name, book, manifest(name) if name in have_suites else ()) for name, book in notebooks.items()]
+        held = [
+            (name, book, suites.hidden(name).checks if name in have_suites else ()) for name, book in notebooks.items()
+        ]
         titles = {name: book.cells[0].source.splitlines()[0].removeprefix("# ") for name, book in notebooks.items()}
         return cls(syllabus, coverage(syllabus, held), titles)
 

@@ -125,7 +125,7 @@ def _differences(chapter: Chapter, notebook: NotebookNode, solutions: Path) -> I
             yield Finding(name, cell_id, str(error)), None
             continue
         if expected is not None and source is not None and cell.source != expected:
-            message = f"differs from solutions/{source.source}; run `python -m autograder.course sync`"
+            message = f"differs from solutions/{source.source}; run `autograder course sync`"
             yield Finding(name, cell_id, message + _diff(cell.source, expected)), _Mend(cell, expected)
     try:
         pairs = given(notebook)
@@ -139,7 +139,7 @@ def _differences(chapter: Chapter, notebook: NotebookNode, solutions: Path) -> I
         if current != text:
             what = "is missing" if current is None else "differs"
             message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
-            message += "run `python -m autograder.course sync`"
+            message += "run `autograder course sync`"
             yield Finding(name, None, message + _diff(current or "", text)), _Mend(path, text)
 
 

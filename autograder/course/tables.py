@@ -8,8 +8,8 @@ from autograder.course.syllabus import Coverage, Place, Syllabus
 
 HEAD = """# The course, chapter by chapter
 
-One notebook an assignment; its folder is what students get. This page is written by `python -m
-autograder.course tables` from the notebooks' metadata, the hidden suites and `assets/syllabus.yaml`; a test holds it.
+One notebook an assignment; its folder is what students get. `autograder course tables` writes this page from the
+notebooks' metadata, the hidden checks and `assets/syllabus.yaml`; a test holds it.
 """
 
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import suites
+from autograder import intake
+from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
-from autograder.grading import intake
+from autograder.grading.parallel import together
 from autograder.grading.pipeline import RESULT, grade_submission
-from autograder.grading.together import together
 from autograder.result import Result, Status, from_json
 from autograder.sandbox import Tier
 
@@ -115,7 +115,7 @@ def _stored(entry: Entry, assignment: str, seed: int, isolation: Tier, folder: P
         digest = intake.take(entry.path, assignment).sha256
     except (OSError, ValueError, AutograderError):
         return None
-    suite = suites.load(assignment)
+    suite = suites.hidden(assignment)
     found = (result.submission_sha256, result.suite_version, result.seed, result.isolation)
     same = found == (digest, suite.version, seed, isolation.value)
     return result if same and result.status is Status.GRADED else None

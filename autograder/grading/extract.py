@@ -16,13 +16,13 @@ import sim
 from autograder import layout
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
-from autograder.grading import hygiene
-from autograder.grading.hygiene import STUB
+from autograder.grading import submitted_notebook
 from autograder.grading.kernel import SandboxedKernelManager
-from autograder.lab.workspace import Workspace
+from autograder.grading.submitted_notebook import STUB
 from autograder.lockstep.failures import tail
 from autograder.sandbox import Mount, Sandbox
 from autograder.sandbox.limits import KERNEL
+from autograder.workspace import Workspace
 from sim.grading import GRADING_VARIABLE
 
 CELL_SECONDS = 60
@@ -44,7 +44,7 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
         StudentError: what was handed in is no notebook, or keeps its kernel from starting.
     """
     source = nbformat.read(original, as_version=4)
-    notebook = hygiene.restore(hygiene.read(submitted, original.name), source)
+    notebook = submitted_notebook.restore(submitted_notebook.read(submitted, original.name), source)
     executed = nbformat.writes(execute(notebook, folder, workspace))
     # Half a surrogate pair, in a cell or in what it printed, is no UTF-8: it must not fail the grader.
     out.write_bytes(executed.encode("utf-8", errors="replace"))
@@ -148,7 +148,7 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
             Mount(folder, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
-        hidden=(layout.SUITES,),
+        hidden=layout.check_folders(),
         environment=environment,
         limits=KERNEL,
     )

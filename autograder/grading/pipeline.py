@@ -14,8 +14,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder import suites
-from autograder.checks import Outcome
+from autograder.checks import Outcome, suites
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
@@ -83,7 +82,7 @@ def grade_submission(
         UsageError: there is no such path or assignment.
         IsolationError: this machine cannot isolate the submission so.
     """
-    suite = suites.load(assignment)
+    suite = suites.hidden(assignment)
     if not path.exists():
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)

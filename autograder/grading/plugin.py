@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import traceback
 from collections.abc import Generator, Mapping
 from pathlib import Path
@@ -13,10 +14,10 @@ import pytest
 from autograder.checks import Check, CheckFailed, Outcome, declared
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
-from autograder.grading.gallery import Gallery
+from autograder.gallery import Gallery
 from autograder.grading.job import ALL, Scope
-from autograder.lab.workspace import Workspace
 from autograder.result import CheckResult
+from autograder.workspace import Workspace
 
 
 class GradingPlugin:
@@ -65,6 +66,11 @@ class GradingPlugin:
     def seed(self) -> int:
         """The number from which every hidden input of this run is drawn."""
         return self._seed
+
+    @pytest.fixture
+    def draw(self, request: pytest.FixtureRequest) -> random.Random:
+        """Random numbers of the running check, the same for the same seed."""
+        return random.Random(f"{self._seed}:{request.function.__name__}")
 
     @pytest.fixture
     def gallery(self, request: pytest.FixtureRequest) -> Gallery:
@@ -132,7 +138,8 @@ def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
         os.environ.pop(variable, None)
     # The last one collects garbage twice, at a fifth of a second.
     unwanted = ("cacheprovider", "terminal", "faulthandler", "unraisableexception")
+    chapter = files[0].parents[1]  # its conftest.py serves the visible and the hidden checks
     arguments = [word for name in unwanted for word in ("-p", f"no:{name}")]
-    arguments += ["-c", "/dev/null", "--rootdir", str(files[0].parent), "--confcutdir", str(files[0].parent)]
+    arguments += ["-c", "/dev/null", "--rootdir", str(chapter), "--confcutdir", str(chapter)]
     arguments += ["--import-mode=importlib", "-W", "default"]
     return int(pytest.main([*arguments, *map(str, files)], plugins=[plugin]))

@@ -17,21 +17,21 @@ from contextlib import contextmanager
 from datetime import datetime, timezone
 from pathlib import Path
 
-from autograder import layout, suites
-from autograder.checks import Outcome
+from autograder import layout
+from autograder.checks import Outcome, suites
+from autograder.checks.suites import Suite
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
-from autograder.grading.gallery import Gallery
-from autograder.grading.intake import lay_down
+from autograder.gallery import Gallery
 from autograder.grading.job import Job
 from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
+from autograder.intake import write_tree
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import heed_interrupts
 from autograder.sandbox.tiers import Tier
-from autograder.suites import Suite
 
 _NO_DIGEST = "0" * 64
 
@@ -41,7 +41,7 @@ class Grading:
 
     def __init__(self, job: Job, suite: Suite) -> None:
         # Imported here, once ROS is switched on: these reach rclpy and the message packages.
-        from autograder.lab.workspace import Workspace
+        from autograder.workspace import Workspace
 
         self._job, self._suite = job, suite
         self._folder = job.scratch / "assignment"
@@ -58,7 +58,7 @@ class Grading:
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
-        from autograder.lab import either, heldup
+        from autograder.harness import auto, cpu_starvation
 
         began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
@@ -70,7 +70,7 @@ class Grading:
             diagnosis = error.diagnosis
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
-        sentence, note = f"not checked: {diagnosis.sentence}", either.explain()
+        sentence, note = f"not checked: {diagnosis.sentence}", auto.explain()
         return Result(
             assignment=self._job.assignment,
             student=self._job.student,
@@ -89,14 +89,15 @@ class Grading:
             build=self._build,
             artifacts=tuple(self._gallery.artifacts),
             phases=self._phases,
-            time=either.REAL if note else either.LOCKSTEP,
+            time=auto.REAL if note else auto.LOCKSTEP,
             time_note=note,
-            held_up=round(heldup.longest(), 6) if note else 0.0,
+            held_up=round(cpu_starvation.longest(), 6) if note else 0.0,
         )
 
     def _prepare(self) -> Diagnosis:
         """Read, extract and build; return what was wrong with a build that the suite lets fail."""
-        from autograder.grading import intake, observed
+        from autograder import intake
+        from autograder.building import observed
 
         with self._phase("intake"):
             submission = intake.take(self._job.path, self._job.assignment)
@@ -106,8 +107,8 @@ class Grading:
             with self._phase("notebook"):
                 from autograder.grading import extract  # Jupyter is slow to import, and not every submission needs it
 
-                lay_down(submission.extra, self._folder)
-                lay_down(packages, self._folder / "ws" / "src")
+                write_tree(submission.extra, self._folder)
+                write_tree(packages, self._folder / "ws" / "src")
                 self._give(self._folder / "ws" / "src")
                 original = layout.source_notebook(self._job.assignment)
                 extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
@@ -115,12 +116,12 @@ class Grading:
                 packages = intake.take_source(self._folder / "ws")
                 self._clear()
         source = self._workspace.root / "src"
-        lay_down(packages, source)
+        write_tree(packages, source)
         with self._phase("build"):
-            seen = observed.bring(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
+            seen = observed.build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
             # A set-up script could write to the sources, links and devices too. Checks read what was handed in.
             subprocess.run(["rm", "-rf", "--", source], check=True)
-            lay_down(packages, source)
+            write_tree(packages, source)
         self._build, self._builds = seen.build, seen.diagnoses
         return seen.diagnosis
 
@@ -174,7 +175,7 @@ def main() -> None:
     """Grade the job that the command line holds."""
     job = Job.from_json(sys.argv[1])
     prepare()
-    work(job, suites.load(job.assignment))
+    work(job, suites.hidden(job.assignment))
 
 
 if __name__ == "__main__":

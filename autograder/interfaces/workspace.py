@@ -16,7 +16,7 @@ from autograder.interfaces.loading import load
 from autograder.packages import find_packages
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
-    from autograder.lab.workspace import Workspace
+    from autograder.workspace import Workspace
 
 
 def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:

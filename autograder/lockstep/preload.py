@@ -12,6 +12,6 @@ HERE = Path(__file__).parent
 ROS = runpy.run_path(str(HERE.parent / "ros" / "preload.py"))
 READY, warm = ROS["READY"], ROS["warm"]
 sys.path.insert(0, str(HERE))
-for name in ("host", "link"):
+for name in ("host", "pipes"):
     import_module(f"lockstep_host.{name}")
 sys.path.remove(str(HERE))

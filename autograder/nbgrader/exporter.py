@@ -8,8 +8,9 @@ from nbconvert.exporters import NotebookExporter
 from nbformat import NotebookNode
 from nbformat.v4 import new_notebook
 
+from autograder import intake
 from autograder.exceptions import StudentError
-from autograder.grading import hygiene, intake
+from autograder.grading import submitted_notebook
 
 
 class SubmissionExporter(NotebookExporter):
@@ -25,7 +26,7 @@ class SubmissionExporter(NotebookExporter):
             self.log.warning("%s is larger than %d MiB", name, intake.MAX_FILE // 2**20)
             return new_notebook()
         try:
-            return hygiene.read(data, name)
+            return submitted_notebook.read(data, name)
         except StudentError as error:
             self.log.warning("%s", error)
             return new_notebook()

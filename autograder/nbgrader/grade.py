@@ -25,8 +25,8 @@ from autograder.feedback.pictures import from_folder
 from autograder.feedback.text import clean
 from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
-from autograder.grading.hygiene import grade_id
 from autograder.grading.pipeline import NOTEBOOK
+from autograder.grading.submitted_notebook import grade_id
 from autograder.nbgrader.outputs import harmless, verdict
 from autograder.result import Result, Status
 from autograder.sandbox import Tier

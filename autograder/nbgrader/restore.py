@@ -11,7 +11,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 
 from autograder.course import Form, in_form
 from autograder.feedback.text import clean
-from autograder.grading import hygiene
+from autograder.grading import submitted_notebook
 
 
 class RestoreCells(NbGraderPreprocessor):
@@ -34,11 +34,11 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
 
     Metadata and attachments of a student's cell are dropped: pages made from the notebook would take them over.
     """
-    notebook = hygiene.restore(submitted, released)
+    notebook = submitted_notebook.restore(submitted, released)
     ids: set[str] = set()
     for cell in notebook.cells:
         cell.source = clean(cell.source)
-        if not hygiene.grade_id(cell):
+        if not submitted_notebook.grade_id(cell):
             cell.metadata = NotebookNode()
         cell.pop("attachments", None)
         # Two cells of one id would be one cell to a browser; nbformat only warns.

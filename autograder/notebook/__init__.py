@@ -12,20 +12,20 @@ from __future__ import annotations
 
 import os
 
-from autograder.notebook.arena import Arena, simulator
 from autograder.notebook.checking import CheckReport, check
 from autograder.notebook.comparing import side_by_side
 from autograder.notebook.driving import DriveReport, drive
-from autograder.notebook.errors import Notice
+from autograder.notebook.exceptions import Notice
+from autograder.notebook.simulator_session import SimulatorSession, simulator
 from autograder.notebook.sourcing import source
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 
 __all__ = [
-    "Arena",
     "CheckReport",
     "DriveReport",
     "Notice",
+    "SimulatorSession",
     "check",
     "drive",
     "grade",

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder import suite
-from autograder.checks import Outcome
+from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import send
-from autograder.notebook.errors import INFO, STYLE, TROUBLE, Notice
+from autograder.notebook.exceptions import INFO, STYLE, TROUBLE, Notice
+from autograder.notebook.worker_client import send
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
@@ -84,7 +83,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         UsageError: there is no such assignment or workspace.
         GraderError: the check itself failed.
     """
-    if assignment not in (there := suite.names("autograder.visible")):
+    if assignment not in (there := suites.checked()):
         raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
     if grading():
         return Notice("The hidden checks run after this notebook has been executed.")

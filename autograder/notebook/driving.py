@@ -12,8 +12,8 @@ import yaml
 from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
-from autograder.notebook.desk import RECORDING, send
-from autograder.notebook.errors import TROUBLE, Notice
+from autograder.notebook.exceptions import TROUBLE, Notice
+from autograder.notebook.worker_client import RECORDING, send
 from sim import (
     DeadSector,
     Faults,

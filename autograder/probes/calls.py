@@ -23,12 +23,12 @@ from typing import Any
 from autograder.checks import CheckFailed
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.lab.workspace import Workspace
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
 from autograder.probes import PRELOAD
 from autograder.sandbox import Limits, Mount
 from autograder.sandbox.launcher import launch
+from autograder.workspace import Workspace
 
 REFERENCE = "$made"  # as in caller.py, which runs alone in the sandbox
 CALLER = Path(__file__).with_name("caller.py")

@@ -18,13 +18,13 @@ class Imports:
 
     def pytest_configure(self) -> None:
         """Import what tests import, too."""
-        self.launches = runpy.run_path(str(AUTOGRADER / "lab" / "launch_host" / "preload.py"))
+        self.launches = runpy.run_path(str(AUTOGRADER / "harness" / "launch_host" / "preload.py"))
         for name in ("ament_flake8.main", "ament_pep257.main"):
             with suppress(ImportError):
                 import_module(name)
 
 
-runpy.run_path(str(AUTOGRADER / "grading" / "preload.py"))
+runpy.run_path(str(AUTOGRADER / "building" / "preload.py"))
 with Path(os.devnull).open("w") as nothing, redirect_stdout(nothing), redirect_stderr(nothing):
     pytest.main(["--help", "-c", os.devnull], plugins=[imports := Imports()])
 READY, warm = imports.launches["READY"], imports.launches["warm"]

@@ -10,10 +10,10 @@ import re
 from dataclasses import replace
 
 from autograder.checks import CheckFailed
-from autograder.lab.workspace import Workspace
-from autograder.probes import testing
-from autograder.probes.reports import Order, Source
+from autograder.probes import test_runs
+from autograder.probes.test_reports import Source, TestRun
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
+from autograder.workspace import Workspace
 
 # How each linter writes what it found.
 _FINDINGS = {
@@ -37,7 +37,7 @@ def objections(workspace: Workspace, source: Source) -> dict[str, str]:
     """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test."""
     tests = [f"{name}.py" for name in _FINDINGS]
     files = {**source.files, **{f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}}
-    (report,) = testing.run(workspace, replace(source, files=files), [Order(tuple(tests), conftest=False)])
+    (report,) = test_runs.run(workspace, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
     said: dict[str, str] = {}
     for name, finding in _FINDINGS.items():
         test = f"{name}::{name}"

@@ -13,7 +13,7 @@ import pickle
 from dataclasses import asdict
 from pathlib import Path
 
-from autograder.probes.reports import Order, Report, Source
+from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.sandbox import Ending
 
 
@@ -27,17 +27,17 @@ class Memory:
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
 
-    def recall(self, source: Source, order: Order) -> Report | None:
+    def recall(self, source: Source, wanted: TestRun) -> Report | None:
         """Return what was found in the same run, if it has been made."""
-        path = self._path(source, order)
+        path = self._path(source, wanted)
         if path is None or not path.is_file():
             return None
         report: Report = pickle.loads(path.read_bytes())
         return report
 
-    def keep(self, source: Source, order: Order, report: Report) -> None:
+    def keep(self, source: Source, wanted: TestRun, report: Report) -> None:
         """Remember a run, but for one that had to be stopped: that may have been the machine's fault."""
-        path = self._path(source, order)
+        path = self._path(source, wanted)
         if path is None or report.ending is Ending.WALL_TIME:
             return
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -45,17 +45,17 @@ class Memory:
         whole.write_bytes(pickle.dumps(report))
         whole.replace(path)
 
-    def _path(self, source: Source, order: Order) -> Path | None:
-        if self._folder is None or order.version is None:
+    def _path(self, source: Source, wanted: TestRun) -> Path | None:
+        if self._folder is None or wanted.version is None:
             return None
-        files = {name: hashlib.sha256(source.tests[name]).hexdigest() for name in sorted(_read(source, order))}
-        words = json.dumps([source.package, files, asdict(order)], sort_keys=True)
+        files = {name: hashlib.sha256(source.tests[name]).hexdigest() for name in sorted(_read(source, wanted))}
+        words = json.dumps([source.package, files, asdict(wanted)], sort_keys=True)
         return self._folder / hashlib.sha256(words.encode()).hexdigest()
 
 
-def _read(source: Source, order: Order) -> set[str]:
+def _read(source: Source, wanted: TestRun) -> set[str]:
     """Return the files of the folder `test` that a run can read: its own, all that are no tests, and what they name."""
-    read = {name for name in source.tests if name in order.files or not Path(name).name.startswith("test_")}
+    read = {name for name in source.tests if name in wanted.files or not Path(name).name.startswith("test_")}
     while True:
         text = b"".join(source.tests[name] for name in read)
         named = {name for name in source.tests if Path(name).stem.encode() in text} - read

@@ -1,6 +1,6 @@
 """A node's parameters: asked for and changed over its own services, and judged in a student's words.
 
-    node = NodeParameters(lab, "/configured_node")
+    node = NodeParameters(harness, "/configured_node")
     node.values("safety_distance")                       # {"safety_distance": 0.5}
     node.change({"safety_distance": 9.0})                # Answer(accepted=False, reason="... out of range ...")
 
@@ -21,7 +21,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 
 from autograder.checks import CheckFailed
-from autograder.lab import Lab
+from autograder.harness import Harness
 
 Value = bool | int | float | str | list[object] | None
 
@@ -57,11 +57,11 @@ class NodeParameters:
     """The parameter services of one node.
 
     Attributes:
-        lab: where the node runs.
+        harness: where the node runs.
         node: its fully qualified name.
     """
 
-    lab: Lab
+    harness: Harness
     node: str
 
     def names(self) -> frozenset[str]:
@@ -98,10 +98,10 @@ class NodeParameters:
             CheckFailed: the node has no such service, or does not answer.
         """
         service = f"{self.node}/{name}"
-        response = self.lab.call(kind, service, request, SECONDS)
+        response = self.harness.call(kind, service, request, SECONDS)
         if response is not None:
             return response
-        if not self.lab.node.count_services(service):
+        if not self.harness.node.count_services(service):
             raise CheckFailed(f"The node has no service {service}: leave its parameter services on.")
         raise CheckFailed(f"The node did not answer a request to {service} within {SECONDS:.0f} s.")
 

@@ -62,7 +62,7 @@ def disguise(version: Version, seed: int) -> Version:
     )
 
 
-def lay_down(version: Version, package: str, tests: Mapping[str, bytes], root: Path) -> Path:
+def write_version(version: Version, package: str, tests: Mapping[str, bytes], root: Path) -> Path:
     """Write a version as a colcon workspace below `root`, as if it had been built; return its source folder.
 
     Args:

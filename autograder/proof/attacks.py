@@ -12,10 +12,9 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import suites
+from autograder.checks import suites
 from autograder.diagnosis import Kind
-from autograder.proof.claims import lost
-from autograder.proof.malice import (
+from autograder.proof.attack_payloads import (
     ALSO_RCLPY,
     BOMB,
     FORGE_PASSES,
@@ -30,8 +29,9 @@ from autograder.proof.malice import (
     STOP_PARENT,
     TRICKS,
 )
+from autograder.proof.claims import lost
+from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result, Status
-from autograder.suites.mutants import Mutant, lay_down, lay_down_reference, mutants
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
@@ -66,7 +66,7 @@ class Attack:
         wrong = [f"gains {', '.join(sorted(self.base - missing))}"] if self.base - missing else []
         if self.exactly and missing != self.base:
             wrong.append(f"disturbs {', '.join(sorted(missing - self.base))}")
-        if result.max_score != suites.load(ASSIGNMENT).max_score:
+        if result.max_score != suites.hidden(ASSIGNMENT).max_score:
             wrong.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
             wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
@@ -85,7 +85,7 @@ class Edits:
 
 def all_checks() -> frozenset[str]:
     """Return the ids of every check."""
-    return frozenset(check.id for check in suites.load(ASSIGNMENT).checks)
+    return frozenset(check.id for check in suites.hidden(ASSIGNMENT).checks)
 
 
 def mutant(name: str) -> Mutant:
@@ -98,9 +98,9 @@ def package(base: str | None, edits: Edits) -> Callable[[Path], None]:
 
     def make(folder: Path) -> None:
         if base is None:
-            lay_down_reference((PACKAGE,), folder)
+            write_reference((PACKAGE,), folder)
         else:
-            lay_down(mutant(base), (PACKAGE,), folder)
+            write_mutant(mutant(base), (PACKAGE,), folder)
         home = folder / "src" / PACKAGE
         text = (home / CONTROLLER).read_text()
         for find, put in edits.replace.items():

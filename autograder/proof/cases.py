@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from autograder import layout, suites
+from autograder import layout
+from autograder.checks import suites
 from autograder.grading.job import Scope
 from autograder.proof.attacks import Attack, attacks
 from autograder.proof.claims import Kind, as_named, full, killed, nothing
 from autograder.proof.generated import Generated, generated
+from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result
-from autograder.suites.mutants import Mutant, lay_down, lay_down_reference, mutants
 
 Judge = Callable[[Result], str]
 UNSEEN = Scope(pictures=False)
@@ -50,9 +51,9 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
         assignment: whose suite is to be proved.
         quick: one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
     """
-    sources = suites.load(assignment).sources
+    sources = suites.hidden(assignment).sources
     found = [
-        Case(assignment, Kind.REFERENCE, "reference", partial(lay_down_reference, sources), full),
+        Case(assignment, Kind.REFERENCE, "reference", partial(write_reference, sources), full),
         Case(assignment, Kind.RELEASE, "release", partial(write_release, assignment), nothing),
         *_variants(assignment, sources),
     ]
@@ -70,7 +71,7 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
 
     Where a mutant fails a check by itself, and not merely for want of one that it depends on, such a one is taken.
     """
-    depends = {check.id: frozenset(check.depends) for check in suites.manifest(assignment)}
+    depends = {check.id: frozenset(check.depends) for check in suites.hidden(assignment).checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
     lost = {m.id: set(m.loses) for m in candidates}
@@ -104,17 +105,17 @@ def write_release(assignment: str, folder: Path) -> None:
 
 
 def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
-    write, judge = partial(lay_down, mutant, sources), partial(as_named, mutant, only=frozenset(only))
+    write, judge = partial(write_mutant, mutant, sources), partial(as_named, mutant, only=frozenset(only))
     return Case(assignment, Kind.MUTANT, mutant.id, write, judge, scope=replace(UNSEEN, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
     """Yield the right answers of another style: whole files that take the place of the reference's."""
-    folder = suites.load(assignment).files[0].parent / "variants"
+    folder = suites.hidden(assignment).folder / "variants"
     for variant in sorted(folder.iterdir()) if folder.is_dir() else ():
 
         def write(target: Path, variant: Path = variant) -> None:
-            lay_down_reference(sources, target)
+            write_reference(sources, target)
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
         yield Case(assignment, Kind.VARIANT, variant.name, write, full)
@@ -122,7 +123,7 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
 
 def _generated(assignment: str, made: Generated, sources: tuple[str, ...]) -> Case:
     def write(folder: Path) -> None:
-        lay_down_reference(sources, folder)
+        write_reference(sources, folder)
         (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
 
     # One lost check kills it: the others would say nothing more.

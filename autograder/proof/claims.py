@@ -7,8 +7,8 @@ from enum import Enum
 
 from autograder.checks import Outcome
 from autograder.diagnosis import Kind as Diagnosed
+from autograder.proof.mutants import Mutant
 from autograder.result import Result, Status
-from autograder.suites.mutants import Mutant
 
 
 class Kind(str, Enum):

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import yaml
 
-from autograder import layout, suites
+from autograder import layout
+from autograder.checks import suites
 from autograder.course import Chapter, is_solution, origin
 from autograder.proof.operators import changes
 
@@ -35,7 +36,7 @@ class Generated:
 
 def generated(assignment: str, *, most: int = SAMPLE) -> list[Generated]:
     """Return a sample of an assignment's generated mutants, always the same one for the same reference."""
-    path = suites.load(assignment).files[0].parent / "survivors.yaml"
+    path = suites.hidden(assignment).folder / "survivors.yaml"
     reasons: dict[str, str] = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
     found = list(_all(assignment, reasons))
     drawn = sorted(found, key=lambda made: hashlib.sha256(made.id.encode()).digest())[:most]
@@ -55,7 +56,7 @@ def _all(assignment: str, reasons: dict[str, str]) -> Iterator[Generated]:
 
 def _written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None]]:
     """Yield the Python files of the reference that students write, with the functions that they write of them."""
-    packages = suites.load(assignment).packages
+    packages = suites.hidden(assignment).packages
     for cell in Chapter(layout.chapter(assignment)).read().cells:
         source = origin(cell) if is_solution(cell) else None
         if source is None or source.source.suffix != ".py" or source.source.parts[0] not in packages:

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from autograder import suites
-from autograder.checks import Check
-from autograder.suites.mutants import Mutant, mutants
+from autograder import layout
+from autograder.checks import Check, suites
+from autograder.proof.mutants import Mutant, mutants
 
-PAGE = suites.FOLDER / "README.md"
+PAGE = layout.ROOT / "docs" / "checks.md"
 HEAD = """# The hidden checks, and what proves them
 
-For instructors; nothing of this folder reaches students. Each check is named with the sentence that the student reads,
+For instructors; nothing of this page reaches students. Each check is named with the sentence that the student reads,
 and with the flawed versions of the reference that fail it by themselves: small, realistic errors, `mutants.yaml` beside
-the suite. `autograder verify` grades them all. This page is written by `python -m autograder.course tables`.
+the suite. `autograder verify` grades them all. `autograder course tables` writes this page.
 """
 
 
 def guide() -> str:
     """Return the guide as Markdown."""
     return HEAD + "".join(
-        "\n".join(["", f"## {name}", "", *_table(suites.manifest(name), mutants(name)), ""]) for name in suites.graded()
+        "\n".join(["", f"## {name}", "", *_table(suites.hidden(name).checks, mutants(name)), ""])
+        for name in suites.graded()
     )
 
 

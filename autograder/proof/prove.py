@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from autograder.grading.lanes import Lanes
+from autograder.grading.parallel import together
 from autograder.grading.pipeline import grade_submission
-from autograder.grading.together import together
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
+from autograder.proof.lanes import Lanes
 
 SUBMISSION = "submission"
 

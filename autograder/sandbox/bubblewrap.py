@@ -13,7 +13,7 @@ from autograder.sandbox.spec import Mount, Sandbox
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
 # Covered wherever a mount would show them: an installed course lies inside the Python that every sandbox sees.
-_PRIVATE = (layout.SUITES, layout.SOLUTIONS)
+_PRIVATE = (*layout.check_folders(), layout.SOLUTIONS)
 
 
 def resources(limits: Limits) -> dict[str, tuple[int, int]]:

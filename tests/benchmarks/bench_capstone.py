@@ -6,9 +6,9 @@ import os
 import tempfile
 from pathlib import Path
 
-from autograder import suites
+from autograder.checks import suites
 from autograder.grading import grade_submission
-from autograder.suites.mutants import lay_down_reference
+from autograder.proof.mutants import write_reference
 
 ASSIGNMENT = "08_capstone"
 
@@ -17,7 +17,7 @@ def figures() -> dict[str, float]:
     """Return `grade.capstone_core_s`; a first grading, not measured, fills the caches."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        lay_down_reference(suites.load(ASSIGNMENT).packages, folder / "reference")
+        write_reference(suites.hidden(ASSIGNMENT).packages, folder / "reference")
         _grade(folder, "cold")
         before = _spent()
         _grade(folder, "warm")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from autograder.interfaces import Cache, build
 from autograder.interfaces.definitions import KINDS
-from autograder.suites.mutants import lay_down_reference
+from autograder.proof.mutants import write_reference
 
 PACKAGE = "my_robot_interfaces"
 RUNS = 3
@@ -28,7 +28,7 @@ def figures() -> dict[str, float]:
     cached: list[tuple[float, float]] = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        lay_down_reference((PACKAGE,), folder)
+        write_reference((PACKAGE,), folder)
         source = folder / "src" / PACKAGE
         texts = {f"{kind}/{path.name}": path.read_text() for kind in KINDS for path in (source / kind).iterdir()}
         for run in range(RUNS):
@@ -47,7 +47,7 @@ def figures() -> dict[str, float]:
 
 
 def _colcon(folder: Path) -> None:
-    subprocess.run([sys.executable, "-m", "autograder.ros", "colcon", "build"], cwd=folder, check=True, stdout=2)
+    subprocess.run([sys.executable, "-m", "autograder", "ros", "colcon", "build"], cwd=folder, check=True, stdout=2)
 
 
 def _cost(work: Callable[[], object]) -> tuple[float, float]:

@@ -54,7 +54,7 @@ def measure(scratch: Path) -> dict[str, list[float]]:
     from autograder.ros import activate
 
     ros = activate()
-    from autograder.lab import Workspace
+    from autograder.harness import Workspace
 
     (scratch / "home").mkdir()
     return {
@@ -64,12 +64,12 @@ def measure(scratch: Path) -> dict[str, list[float]]:
 
 
 def _one(workspace: Any) -> list[float]:
-    from autograder.grading.build import build
-    from autograder.suites.mutants import lay_down_reference
-    from autograder.visible.ch02_nodes.robot import Robot
-    from autograder.visible.ch02_nodes.scans import scan
+    from autograder.building.build import build
+    from autograder.checks.ch02_nodes.support.robot import Robot
+    from autograder.checks.ch02_nodes.support.scans import scan
+    from autograder.proof.mutants import write_reference
 
-    lay_down_reference(("my_robot_package",), workspace.root)
+    write_reference(("my_robot_package",), workspace.root)
     build(workspace, ("my_robot_package",))
     message = scan()
     rates = []
@@ -87,7 +87,7 @@ def _one(workspace: Any) -> list[float]:
 def _three(workspace: Any) -> list[float]:
     from std_msgs.msg import String
 
-    from autograder.lab import LockstepLab, Program
+    from autograder.harness import Program, SteppedHarness
 
     folder = workspace.install / "chain" / "lib" / "chain"
     folder.mkdir(parents=True)
@@ -97,13 +97,15 @@ def _three(workspace: Any) -> list[float]:
     programs = tuple(Program("chain", name) for name in CHAIN)
     rates = []
     for _ in range(RUNS):
-        with LockstepLab(workspace, programs=programs, offers={"/in": String}, listens={"/third": String}) as lab:
+        with SteppedHarness(
+            workspace, programs=programs, offers={"/in": String}, listens={"/third": String}
+        ) as harness:
             began = time.perf_counter()
             for number in range(CHAIN_STEPS):
-                lab.publish("/in", String(data=str(number)))
-                lab.step(lab.tick_ns)
+                harness.publish("/in", String(data=str(number)))
+                harness.step(harness.tick_ns)
             rates.append(CHAIN_STEPS / (time.perf_counter() - began))
-            if len(lab.messages("/third")) != CHAIN_STEPS:
+            if len(harness.messages("/third")) != CHAIN_STEPS:
                 raise RuntimeError("the chain did not pass every message on")
     return rates
 

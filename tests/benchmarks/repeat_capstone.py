@@ -19,10 +19,10 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import suites
+from autograder.checks import suites
 from autograder.grading import grade_submission
+from autograder.proof.mutants import write_reference
 from autograder.result import Outcome
-from autograder.suites.mutants import lay_down_reference
 
 ASSIGNMENT = "08_capstone"
 SEED = 2026
@@ -70,7 +70,7 @@ def main() -> int:
     alike = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        lay_down_reference(suites.load(ASSIGNMENT).packages, folder / "reference")
+        write_reference(suites.hidden(ASSIGNMENT).packages, folder / "reference")
         for number, grading in enumerate(gradings(folder, times), 1):
             first = first or grading.traces
             different = sorted({file for file, _ in grading.traces.items() ^ first.items()})

@@ -14,7 +14,8 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 from nbgrader.api import Gradebook
 
-from autograder import layout, suites
+from autograder import layout
+from autograder.checks import suites
 from autograder.course import Chapter, Form, in_form, is_solution
 
 Grades = dict[str, tuple[float, float, bool]]
@@ -110,7 +111,7 @@ def write_down(notebook: NotebookNode, assignment: str, src: Path) -> None:
 
 def changes(assignment: str, src: Path) -> Iterator[tuple[str, str | None]]:
     """Yield the files that differ from the reference's, by name, with their text; None for one that is gone."""
-    sources = suites.load(assignment).sources
+    sources = suites.hidden(assignment).sources
     reference = {name: (layout.SOLUTIONS / name).read_text() for name in files(layout.SOLUTIONS, sources)}
     there = {name: (src / name).read_text() for name in files(src, sources)}
     for name in sorted(reference.keys() | there.keys()):

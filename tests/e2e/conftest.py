@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.grading.build import build
-from autograder.lab import Workspace
+from autograder.building.build import build
+from autograder.harness import Workspace
 from autograder.layout import SOLUTIONS
 from autograder.packages import find_packages
 from autograder.probes import PRELOAD

@@ -7,11 +7,12 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder import feedback, layout, suites
+from autograder import feedback, layout
+from autograder.checks import suites
 from autograder.grading import Graded, grade_submission
-from autograder.grading.hygiene import grade_id
+from autograder.grading.submitted_notebook import grade_id
+from autograder.proof.attack_payloads import CANARY
 from autograder.proof.attacks import ASSIGNMENT, Attack, attacks
-from autograder.proof.malice import CANARY
 from autograder.sandbox import cgroup
 
 ATTACKS = attacks(ASSIGNMENT)
@@ -21,11 +22,12 @@ def _hidden_text() -> set[str]:
     """Return lines that stand in the hidden suite only: whoever prints one of them has read it."""
     lines = {
         line.strip()
-        for path in suites.load(ASSIGNMENT).files
+        for path in suites.hidden(ASSIGNMENT).files
         for line in path.read_text().splitlines()
         if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
     }
-    shown = "\n".join(path.read_text() for path in (layout.ROOT / "autograder" / "visible").rglob("*.py"))
+    public = (path for name in ("support", "visible") for path in layout.CHECKS.glob(f"ch*/{name}/*.py"))
+    shown = "\n".join(path.read_text() for path in public)
     return {line for line in lines if line not in shown}
 
 

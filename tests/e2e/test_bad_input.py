@@ -18,7 +18,7 @@ def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
     from nbformat.v4 import new_code_cell, new_notebook
 
     from autograder.grading.extract import execute
-    from autograder.lab import Workspace
+    from autograder.harness import Workspace
     from autograder.ros import activate
 
     folder, home = scratch / "assignment", scratch / "home"
@@ -74,7 +74,7 @@ def test_the_kernel_sees_no_hidden_suite_and_no_network() -> None:
     code = """
 import socket
 try:
-    import autograder.suites.ch02_nodes.worlds
+    import autograder.checks.ch02_nodes.hidden.worlds
     print("SEEN")
 except ImportError:
     print("hidden")

@@ -11,7 +11,7 @@ import pytest
 from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.lab import Workspace
+from autograder.harness import Workspace
 from autograder.probes.calls import Outcome, call, calls, look, made, make, same, value
 from autograder.ros import environment
 

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder import suites
+from autograder.checks import suites
 from autograder.course import Chapter
 from autograder.export import load
 from autograder.layout import chapter
 from autograder.proof.cases import cases
 from autograder.proof.claims import Kind, as_named, nothing
+from autograder.proof.mutants import Mutant, mutants, write_mutant
 from autograder.result import Result
-from autograder.suites.mutants import Mutant, lay_down, mutants
 from tests.e2e.classroom import Classroom
 
 pytestmark = [
@@ -59,7 +59,7 @@ def pupils(assignment: str) -> Iterator[Pupil]:
         if case.kind in (Kind.REFERENCE, Kind.VARIANT):
             yield Pupil(case.name, case.write, case.judge)
     for mutant in two_mutants(assignment):
-        write = partial(lay_down, mutant, suites.load(assignment).sources)
+        write = partial(write_mutant, mutant, suites.hidden(assignment).sources)
         yield Pupil(mutant.id, write, partial(as_named, mutant))
     yield Pupil("untouched", None, nothing)
 
@@ -107,7 +107,7 @@ def test_each_answer_gets_the_mark_that_is_claimed_of_it(graded: Graded) -> None
 
 
 def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: str) -> None:
-    groups = suites.load(assignment).groups
+    groups = suites.hidden(assignment).groups
     for pupil in graded.pupils:
         result = graded.parallel[pupil.name]
         grades = graded.room.grades(pupil.name)

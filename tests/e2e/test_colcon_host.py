@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.grading.build import build as build_for_grading
-from autograder.grading.colcon import HOST
-from autograder.lab import Workspace
-from autograder.probes import colcon
+from autograder.building.build import build as build_for_grading
+from autograder.building.colcon import HOST
+from autograder.harness import Workspace
+from autograder.probes import colcon_test
 from autograder.ros import environment
 from tests.e2e.cell_support import in_cell
 
@@ -194,10 +194,10 @@ def run_of(scratch: Path) -> list[Any]:
     (folder / "pytest.ini").write_text(STRICT)
     build_for_grading(workspace, ("speed_guard",))
     found = []
-    preload, colcon_test = colcon.PRELOAD, colcon.colcon_test
+    preload = colcon_test.PRELOAD
     for way in (None, preload):
-        colcon.PRELOAD = way  # type: ignore[assignment]
-        report = colcon_test(workspace, "speed_guard")
+        colcon_test.PRELOAD = way  # type: ignore[assignment]
+        report = colcon_test.colcon_test(workspace, "speed_guard")
         said = (line for line in report.output.splitlines() if re.search("passed|failed|[Ww]arn|[Ee]rror", line))
         verdicts = {name: verdict.value for name, verdict in report.claims.verdicts.items()}
         lines = [re.sub("=+|[0-9.]+s", "", FROM_RUN_TO_RUN.sub("", line)) for line in said]

@@ -14,15 +14,14 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import suites
-from autograder.checks import Outcome
+from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
 from autograder.exceptions import IsolationError, UsageError
 from autograder.grading import grade_submission, pipeline
 from autograder.grading.batch import Entry, grade_all
+from autograder.proof.mutants import write_reference
 from autograder.result import Result, Status
 from autograder.sandbox import Tier, tiers
-from autograder.suites.mutants import lay_down_reference
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
@@ -34,7 +33,7 @@ SEED = 11
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The reference solution as a source tree."""
     folder = tmp_path_factory.mktemp("reference") / "tree"
-    lay_down_reference((PACKAGE,), folder)
+    write_reference((PACKAGE,), folder)
     return folder
 
 
@@ -82,11 +81,11 @@ def test_the_reference_gets_everything_in_every_layout(together: dict[str, Resul
     result = together[layout]
     assert [check.id for check in result.checks if check.outcome is not Outcome.PASSED] == []
     assert (result.status, result.diagnosis.kind, result.score) == (Status.GRADED, Kind.OK, result.max_score)
-    assert result.max_score == suites.load(ASSIGNMENT).max_score
+    assert result.max_score == suites.hidden(ASSIGNMENT).max_score
     assert (result.seed, result.isolation, result.suite_version) == (
         SEED,
         "bubblewrap",
-        suites.load(ASSIGNMENT).version,
+        suites.hidden(ASSIGNMENT).version,
     )
     assert result.build is not None
     assert result.build.packages[-1] == PACKAGE
@@ -224,10 +223,10 @@ BROKEN_LAB = """
 from autograder.ros import activate
 activate()
 from autograder.exceptions import GraderError
-from autograder.lab import LockstepLab
-def step(lab, dt_ns):
+from autograder.harness import SteppedHarness
+def step(harness, dt_ns):
     raise GraderError("messages were lost: CANARY")
-LockstepLab.step = step
+SteppedHarness.step = step
 """
 
 
@@ -238,7 +237,7 @@ LockstepLab.step = step
         pytest.param("import os\nos.kill(os.getpid(), 9)", "The worker ended", id="killed"),
         pytest.param("pass", "The worker ended: exited, 0.", id="no result"),
         pytest.param(BROKEN_SUITE + RUN, "def test_secret", id="broken suite"),
-        pytest.param(BROKEN_LAB + RUN, "messages were lost", id="broken lab"),
+        pytest.param(BROKEN_LAB + RUN, "messages were lost", id="broken harness"),
     ],
 )
 def test_a_failure_of_the_grader_is_not_graded_and_never_a_zero(
@@ -249,7 +248,7 @@ def test_a_failure_of_the_grader_is_not_graded_and_never_a_zero(
     assert (result.status, result.diagnosis.kind) == (Status.NOT_GRADED, Kind.NOT_GRADED)
     assert "This is no zero" in result.diagnosis.sentence
     assert {check.outcome for check in result.checks} == {Outcome.NOT_CHECKED}
-    assert result.max_score == suites.load(ASSIGNMENT).max_score
+    assert result.max_score == suites.hidden(ASSIGNMENT).max_score
     assert "CANARY" not in (tmp_path / "out" / "result.json").read_text()
     assert logged in (tmp_path / "out" / "grader.log").read_text()
 

@@ -127,7 +127,7 @@ def turns(scratch: Path, program: str) -> dict[str, Any]:
     """Run a program twice, at first with all its turns; return what it said and the number of its turns in both."""
     from std_msgs.msg import String
 
-    from autograder.lab import LockstepLab, Workspace
+    from autograder.harness import SteppedHarness, Workspace
     from autograder.lockstep import Stepper
     from autograder.ros import activate
 
@@ -146,17 +146,17 @@ def turns(scratch: Path, program: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for way in ("all", "needed"):
         if way == "all":
-            sparing, LockstepLab._let_live = LockstepLab._let_live, LockstepLab._turn  # type: ignore[method-assign]
+            sparing, SteppedHarness._let_live = SteppedHarness._let_live, SteppedHarness._turn  # type: ignore[method-assign]
         else:
-            LockstepLab._let_live = sparing  # type: ignore[method-assign]
+            SteppedHarness._let_live = sparing  # type: ignore[method-assign]
         took[0] = 0
-        with LockstepLab(workspace, "pkg", "node", offers={"/heard": String}, listens={"/said": String}) as lab:
+        with SteppedHarness(workspace, "pkg", "node", offers={"/heard": String}, listens={"/said": String}) as harness:
             for number in range(STEPS):
                 if number % EVERY == 0:
-                    lab.publish("/heard", String(data=f"message {number}"))
-                lab.step(STEP_NS)
-            notes = lab.notes
-        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in lab.messages("/said")]
+                    harness.publish("/heard", String(data=f"message {number}"))
+                harness.step(STEP_NS)
+            notes = harness.notes
+        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in harness.messages("/said")]
         found[way] = [said, notes, took[0]]
     return found
 

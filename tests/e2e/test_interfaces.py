@@ -32,14 +32,14 @@ rclpy.spin(node)
 
 
 def _workspace(scratch: Path) -> Any:
-    from autograder.lab import Workspace
+    from autograder.harness import Workspace
+    from autograder.proof.mutants import write_reference
     from autograder.ros import activate
-    from autograder.suites.mutants import lay_down_reference
 
     (scratch / "home").mkdir()
     domain = int(os.environ["ROS_DOMAIN_ID"])
     workspace = Workspace(scratch / "ws", activate(), scratch / "home", domain=domain)
-    lay_down_reference((PACKAGE,), workspace.root)
+    write_reference((PACKAGE,), workspace.root)
     return workspace
 
 
@@ -49,7 +49,7 @@ def talk(scratch: Path) -> dict[str, Any]:
 
     import rclpy
 
-    from autograder.grading.build import build as colcon
+    from autograder.building.build import build as colcon
     from autograder.sandbox.launcher import launch
 
     workspace = _workspace(scratch)

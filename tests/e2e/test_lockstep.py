@@ -116,7 +116,7 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
     """Run a program several times in lockstep; return what it said in each run."""
     from std_msgs.msg import String
 
-    from autograder.lab import LockstepLab, Workspace
+    from autograder.harness import SteppedHarness, Workspace
     from autograder.ros import activate
 
     install = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
@@ -127,13 +127,13 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
     offers, listens = {"/heard": String, "/also": String}, {"/said": String}
     traces = []
     for _ in range(runs):
-        with LockstepLab(workspace, "pkg", "node", offers=offers, listens=listens) as lab:
+        with SteppedHarness(workspace, "pkg", "node", offers=offers, listens=listens) as harness:
             for number in range(STEPS):
-                lab.publish("/also", String(data=f"also {number}"))
-                lab.publish("/heard", String(data=f"message {number}"))
-                lab.step(lab.tick_ns)
-            status = lab.quit()
-        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in lab.messages("/said")]
+                harness.publish("/also", String(data=f"also {number}"))
+                harness.publish("/heard", String(data=f"message {number}"))
+                harness.step(harness.tick_ns)
+            status = harness.quit()
+        said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in harness.messages("/said")]
         traces.append({"said": said, "status": status})
     return traces
 
@@ -181,9 +181,9 @@ def test_a_message_that_was_published_before_the_two_sides_met_is_not_waited_for
 
 def impatient(scratch: Path, program: str) -> list[Any]:
     """Run a program once, with little patience for messages that do not come."""
-    from autograder.lab import lockstep
+    from autograder.harness import stepped
 
-    lockstep.DELIVERY_SECONDS = 1.0
+    stepped.DELIVERY_SECONDS = 1.0
     return trace(scratch, program, 1)
 
 

@@ -30,7 +30,7 @@ def interfaces() -> Path:
 
 def lay_down(scratch: Path, **texts: str) -> Any:
     """Lay down programs and the message package as a built workspace."""
-    from autograder.lab import Workspace
+    from autograder.harness import Workspace
     from autograder.ros import activate
 
     folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
@@ -43,9 +43,9 @@ def lay_down(scratch: Path, **texts: str) -> Any:
     return Workspace(scratch / "ws", activate(), scratch / "home", underlays=(scratch / "under",))
 
 
-def said(lab: Any, topic: str = "/said") -> list[Any]:
+def said(harness: Any, topic: str = "/said") -> list[Any]:
     """Return what was said, when and in which words."""
-    return [[round(stamped.seconds, 3), stamped.message.data] for stamped in lab.messages(topic)]
+    return [[round(stamped.seconds, 3), stamped.message.data] for stamped in harness.messages(topic)]
 
 
 def twice(run: Any) -> Any:
@@ -56,18 +56,18 @@ def twice(run: Any) -> Any:
 
 
 def open_lab(workspace: Any, *names: str, serves: Any = None, real: bool = False, **options: Any) -> Any:
-    """Return a lab, in lockstep unless it is to be real time, with some of the programs; the grader hears /said."""
+    """Return a harness, in lockstep unless it is to be real time, with some of the programs; the grader hears /said."""
     from std_msgs.msg import String
     from std_srvs.srv import Trigger
 
-    from autograder.lab import LockstepLab, Program, RealtimeLab
+    from autograder.harness import Program, RealTimeHarness, SteppedHarness
 
     listens = {"/said": String, **options.pop("listens", {})}
-    kind = RealtimeLab if real else LockstepLab
-    lab = kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
+    kind = RealTimeHarness if real else SteppedHarness
+    harness = kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
     if serves is not None:
-        lab.serve(Trigger, "/ask", serves)
-    return lab
+        harness.serve(Trigger, "/ask", serves)
+    return harness
 
 
 def answering() -> Any:
@@ -91,18 +91,18 @@ def server(scratch: Path) -> Any:
     workspace = lay_down(scratch, node=programs.SERVER)
 
     def run() -> Any:
-        with open_lab(workspace, "node") as lab:
-            answers = [lab.call(Trigger, "/ask", Trigger.Request()).message]
-            lab.run(0.3)
-            answers.append(lab.call(Trigger, "/ask", Trigger.Request()).message)
-            answers.append(lab.call(SetBool, "/ask", SetBool.Request(), seconds=0.2))
-            answers.append(lab.call(Trigger, "/nobody", Trigger.Request(), seconds=0.2))
+        with open_lab(workspace, "node") as harness:
+            answers = [harness.call(Trigger, "/ask", Trigger.Request()).message]
+            harness.run(0.3)
+            answers.append(harness.call(Trigger, "/ask", Trigger.Request()).message)
+            answers.append(harness.call(SetBool, "/ask", SetBool.Request(), seconds=0.2))
+            answers.append(harness.call(Trigger, "/nobody", Trigger.Request(), seconds=0.2))
             for speed in (0.9, 9.0):
                 request = SetParameters.Request(parameters=[Parameter("speed", value=speed).to_parameter_msg()])
-                result = lab.call(SetParameters, "/server/set_parameters", request).results[0]
+                result = harness.call(SetParameters, "/server/set_parameters", request).results[0]
                 answers.append([result.successful, result.reason])
-            got = lab.call(GetParameters, "/server/get_parameters", GetParameters.Request(names=["speed"]))
-            return answers, got.values[0].double_value, round(lab.seconds, 3), said(lab)
+            got = harness.call(GetParameters, "/server/get_parameters", GetParameters.Request(names=["speed"]))
+            return answers, got.values[0].double_value, round(harness.seconds, 3), said(harness)
 
     return twice(run)
 
@@ -118,16 +118,16 @@ def test_a_service_and_the_parameter_services_answer_without_time_going_by() -> 
 def given(scratch: Path) -> Any:
     from rcl_interfaces.srv import GetParameters
 
-    from autograder.lab import LockstepLab, RealtimeLab
+    from autograder.harness import RealTimeHarness, SteppedHarness
 
     workspace = lay_down(scratch, node=programs.SERVER)
     arguments = ("--ros-args", "-r", "__node:=driver", "--params-file", "{files}/speed.yaml")
     files = {"speed.yaml": "driver:\n  ros__parameters:\n    speed: 0.25\n"}
     found = []
-    for kind in (LockstepLab, RealtimeLab):
-        with kind(workspace, "pkg", "node", arguments=arguments, files=files) as lab:
-            got = lab.call(GetParameters, "/driver/get_parameters", GetParameters.Request(names=["speed"]))
-            found.append([lab.nodes(), got.values[0].double_value])
+    for kind in (SteppedHarness, RealTimeHarness):
+        with kind(workspace, "pkg", "node", arguments=arguments, files=files) as harness:
+            got = harness.call(GetParameters, "/driver/get_parameters", GetParameters.Request(names=["speed"]))
+            found.append([harness.nodes(), got.values[0].double_value])
     return found, [path.name for path in workspace.root.iterdir()]
 
 
@@ -144,15 +144,15 @@ def goals(scratch: Path, program: str) -> Any:
     workspace = lay_down(scratch, node=program)
 
     def run() -> Any:
-        with open_lab(workspace, "node") as lab:
-            whole = lab.send_goal(count, "/count", count.Goal(order=3))
-            over = lab.wait(whole, 3.0)
-            refused = lab.send_goal(count, "/count", count.Goal(order=99))
-            lab.wait(refused, 1.0)
-            stopped = lab.send_goal(count, "/count", count.Goal(order=40))
-            lab.run(0.35)
+        with open_lab(workspace, "node") as harness:
+            whole = harness.send_goal(count, "/count", count.Goal(order=3))
+            over = harness.wait(whole, 3.0)
+            refused = harness.send_goal(count, "/count", count.Goal(order=99))
+            harness.wait(refused, 1.0)
+            stopped = harness.send_goal(count, "/count", count.Goal(order=40))
+            harness.run(0.35)
             stopped.cancel()
-            lab.wait(stopped, 20.0)
+            harness.wait(stopped, 20.0)
             feedback = [[round(f.seconds, 3), f.message.last] for f in whole.feedback]
             ends = [[goal.accepted, goal.status] for goal in (whole, refused, stopped)]
             return [over, ends, list(whole.result.sequence), feedback, len(stopped.feedback), stopped.cancelled]
@@ -183,9 +183,9 @@ def clients(scratch: Path) -> Any:
     workspace = lay_down(scratch)
 
     def run(name: str) -> Any:
-        with open_lab(workspace, "node", serves=answering()) as lab:
-            lab.run(1.6)
-            return said(lab)
+        with open_lab(workspace, "node", serves=answering()) as harness:
+            harness.run(1.6)
+            return said(harness)
 
     found = {}
     for name, text in programs.CLIENTS.items():
@@ -211,11 +211,11 @@ def late(scratch: Path) -> Any:
     workspace = lay_down(scratch, node=programs.PATIENT)
 
     def run() -> Any:
-        with open_lab(workspace, "node") as lab:
-            lab.run(0.2)
-            lab.serve(Trigger, "/ask", answering())
-            lab.run(0.2)
-            return said(lab)
+        with open_lab(workspace, "node") as harness:
+            harness.run(0.2)
+            harness.serve(Trigger, "/ask", answering())
+            harness.run(0.2)
+            return said(harness)
 
     return twice(run)
 
@@ -233,9 +233,9 @@ def unanswered(scratch: Path) -> Any:
     workspace = lay_down(scratch, node=programs.GIVES_UP)
 
     def run() -> Any:
-        with open_lab(workspace, "node", serves=lambda request: None) as lab:
-            lab.run(1.2)
-            return said(lab)
+        with open_lab(workspace, "node", serves=lambda request: None) as harness:
+            harness.run(1.2)
+            return said(harness)
 
     return twice(run)
 
@@ -252,9 +252,9 @@ def alone(scratch: Path, text: str, seconds: float) -> Any:
     workspace = lay_down(scratch, node=text)
 
     def run() -> Any:
-        with open_lab(workspace, "node", listens={"/also": String, "/map": String}) as lab:
-            lab.run(seconds)
-            return [said(lab), said(lab, "/also"), said(lab, "/map"), lab.notes]
+        with open_lab(workspace, "node", listens={"/also": String, "/map": String}) as harness:
+            harness.run(seconds)
+            return [said(harness), said(harness, "/also"), said(harness, "/map"), harness.notes]
 
     return twice(run)
 
@@ -304,9 +304,9 @@ def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
     workspace = lay_down(scratch, **texts)
 
     def run() -> Any:
-        with open_lab(workspace, *texts, listens={"/map": String, "/ping": String}) as lab:
-            lab.run(seconds)
-            return [said(lab), said(lab, "/map"), said(lab, "/ping")]
+        with open_lab(workspace, *texts, listens={"/map": String, "/ping": String}) as harness:
+            harness.run(seconds)
+            return [said(harness), said(harness, "/map"), said(harness, "/ping")]
 
     return twice(run)
 
@@ -348,9 +348,9 @@ def served(scratch: Path) -> Any:
     busy = [Process([sys.executable, "-I", "-c", "while True: pass"], Limits(wall_seconds=120)) for _ in range(2)]
 
     def run() -> Any:
-        with open_lab(workspace, *texts) as lab:
-            lab.run(1.0)
-            return said(lab)
+        with open_lab(workspace, *texts) as harness:
+            harness.run(1.0)
+            return said(harness)
 
     quiet = run()
     try:
@@ -373,8 +373,8 @@ def failing(scratch: Path, texts: dict[str, str], serves: bool) -> list[str]:
 
     workspace = lay_down(scratch, **texts)
     try:
-        with open_lab(workspace, *texts, serves=answering() if serves else None) as lab:
-            lab.run(2.0)
+        with open_lab(workspace, *texts, serves=answering() if serves else None) as harness:
+            harness.run(2.0)
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
     return ["ok", ""]
@@ -409,15 +409,15 @@ def sparing(scratch: Path, text: str) -> Any:
     workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
 
     def run() -> Any:
-        lab = open_lab(workspace, "server", "spared", "map")
-        lab.spared = frozenset({"spared"})
-        with lab:
-            lab.run(0.5)
-            answer = lab.call(Trigger, "/ask", Trigger.Request()).message
-            running = sorted(lab.running)
-            lab.spared = frozenset()
+        harness = open_lab(workspace, "server", "spared", "map")
+        harness.spared = frozenset({"spared"})
+        with harness:
+            harness.run(0.5)
+            answer = harness.call(Trigger, "/ask", Trigger.Request()).message
+            running = sorted(harness.running)
+            harness.spared = frozenset()
             try:
-                lab.run(0.5)
+                harness.run(0.5)
             except StudentError as error:
                 return [answer, running, error.diagnosis.sentence]
             return [answer, running, ""]
@@ -468,14 +468,14 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
     from autograder.exceptions import StudentError
 
     workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
-    lab = open_lab(workspace, "server", "spared", "map", real=True)
-    lab.spared = frozenset({"spared"})
-    with lab:
-        lab.until(lambda: "spared" not in lab.running, 10.0)
-        answer, running = lab.call(Trigger, "/ask", Trigger.Request()).message, sorted(lab.running)
+    harness = open_lab(workspace, "server", "spared", "map", real=True)
+    harness.spared = frozenset({"spared"})
+    with harness:
+        harness.until(lambda: "spared" not in harness.running, 10.0)
+        answer, running = harness.call(Trigger, "/ask", Trigger.Request()).message, sorted(harness.running)
     try:
-        with open_lab(workspace, "server", "spared", "map", real=True) as lab:
-            lab.run(10.0)
+        with open_lab(workspace, "server", "spared", "map", real=True) as harness:
+            harness.run(10.0)
     except StudentError as error:
         return [answer, running, error.diagnosis.sentence]
     return [answer, running, ""]

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from autograder import suites
+from autograder.checks import suites
 from autograder.grading.job import Scope
 from autograder.grading.pipeline import grade_submission
-from autograder.lab.either import TIME_VARIABLE
+from autograder.harness.auto import TIME_VARIABLE
+from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import Result
-from autograder.suites.mutants import lay_down, lay_down_reference, mutants
 from tests.e2e import lockstep_programs as programs
 from tests.e2e.cell_support import in_cell
 
@@ -47,9 +47,9 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if name == "reference":
-        lay_down_reference((PACKAGE,), tmp_path)
+        write_reference((PACKAGE,), tmp_path)
     else:
-        lay_down(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), tmp_path)
+        write_mutant(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), tmp_path)
     stepped = grade(tmp_path)
     monkeypatch.setenv(TIME_VARIABLE, "real")
     real = grade(tmp_path)
@@ -61,7 +61,7 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
 
 
 def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_path: Path) -> None:
-    lay_down_reference((PACKAGE,), tmp_path)
+    write_reference((PACKAGE,), tmp_path)
     text = (tmp_path / NODE).read_text()
     assert "self.create_timer(CONTROL_PERIOD, self.control_loop)" in text
     text = text.replace("self.control_loop)", "self.control_loop, clock=Clock(clock_type=ClockType.STEADY_TIME))")
@@ -101,7 +101,7 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
 def test_a_node_that_spins_in_a_thread_earns_its_marks_in_real_time(
     assignment: str, file: str, checks: tuple[str, ...], tmp_path: Path
 ) -> None:
-    lay_down_reference(suites.load(assignment).sources, tmp_path)
+    write_reference(suites.hidden(assignment).sources, tmp_path)
     spin_in_a_thread(tmp_path / "src" / file)
     result = grade(tmp_path, assignment, checks)
     assert outcomes(result, checks) == dict.fromkeys(checks, "passed")
@@ -114,7 +114,7 @@ def test_programs_that_run_with_one_that_cannot_be_stepped_are_met_in_real_time_
     checks = ("build", "clearance_message", "health_message", "interface_package", "processor", "controller", "monitor")
     checks = (*checks, "sectors", "drives", "stops", "enable", "health_levels", "declared")
     assignment, package = "08_capstone", tmp_path / "src/robot_navigation_tutorial/robot_navigation_tutorial"
-    lay_down_reference(suites.load(assignment).sources, tmp_path)
+    write_reference(suites.hidden(assignment).sources, tmp_path)
     (package / "threaded.py").write_text((package / "running.py").read_text())
     spin_in_a_thread(package / "threaded.py")
     monitor = package / "status_monitor.py"
@@ -138,7 +138,7 @@ def spin_in_a_thread(path: Path) -> None:
 
 def workspace_of(scratch: Path, text: str) -> Any:
     """Lay down a workspace with one program."""
-    from autograder.lab import Workspace
+    from autograder.harness import Workspace
     from autograder.ros import activate
 
     folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
@@ -149,19 +149,19 @@ def workspace_of(scratch: Path, text: str) -> Any:
 
 
 def met(scratch: Path, text: str) -> Any:
-    """Open a lab on a program twice; return how it was met, what it said, and the sentence about it."""
+    """Open a harness on a program twice; return how it was met, what it said, and the sentence about it."""
     from std_msgs.msg import String
 
-    from autograder.lab import EitherLab, either
+    from autograder.harness import AutoHarness, auto
 
     workspace = workspace_of(scratch, text)
     ways = []
     for _ in range(2):
-        with EitherLab(workspace, "pkg", "node", listens={"/said": String}) as lab:
-            began = lab.seconds
-            lab.run(1.0)
-            ways.append([lab.time, 8 <= len(lab.messages("/said", since=began)) <= 12])
-    return ways, either.explain()
+        with AutoHarness(workspace, "pkg", "node", listens={"/said": String}) as harness:
+            began = harness.seconds
+            harness.run(1.0)
+            ways.append([harness.time, 8 <= len(harness.messages("/said", since=began)) <= 12])
+    return ways, auto.explain()
 
 
 @pytest.mark.parametrize(
@@ -189,18 +189,18 @@ def unheard(scratch: Path) -> int:
 
     from std_msgs.msg import String
 
-    from autograder.lab import RealtimeLab
+    from autograder.harness import RealTimeHarness
 
     text = "class Tick(Speaker):\n    def __init__(self):\n        super().__init__()\n"
     text += "        self.create_timer(0.05, lambda: (self.say('tick'), print('tick', flush=True)))\nspin(Tick)\n"
-    with RealtimeLab(workspace_of(scratch, text), "pkg", "node", listens={"/said": String}) as lab:
-        assert lab.until(lambda: bool(lab.messages("/said")), 10.0)
-        began, ticks, deadline = lab.seconds, lab.output.count("tick"), time.monotonic() + 30.0
-        while lab.output.count("tick") < ticks + 10 and time.monotonic() < deadline:
+    with RealTimeHarness(workspace_of(scratch, text), "pkg", "node", listens={"/said": String}) as harness:
+        assert harness.until(lambda: bool(harness.messages("/said")), 10.0)
+        began, ticks, deadline = harness.seconds, harness.output.count("tick"), time.monotonic() + 30.0
+        while harness.output.count("tick") < ticks + 10 and time.monotonic() < deadline:
             time.sleep(0.01)
-        ended = lab.seconds
-        lab.run(0.2)
-        return len(lab.messages("/said", since=began, until=ended))
+        ended = harness.seconds
+        harness.run(0.2)
+        return len(harness.messages("/said", since=began, until=ended))
 
 
 def test_a_message_that_waits_for_the_grader_counts_when_it_arrived() -> None:
@@ -210,10 +210,10 @@ def test_a_message_that_waits_for_the_grader_counts_when_it_arrived() -> None:
 def refused(scratch: Path, text: str) -> list[str]:
     """Step a program that cannot be stepped; return what the student is told."""
     from autograder.exceptions import StudentError
-    from autograder.lab import LockstepLab
+    from autograder.harness import SteppedHarness
 
     try:
-        with LockstepLab(workspace_of(scratch, text), "pkg", "node"):
+        with SteppedHarness(workspace_of(scratch, text), "pkg", "node"):
             return ["", ""]
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]

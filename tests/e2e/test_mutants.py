@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder import suites
-from autograder.grading.lanes import Lanes
+from autograder.checks import suites
 from autograder.proof import Case, cases, prove
+from autograder.proof.lanes import Lanes
 from autograder.sandbox import Tier
 
 PROOF = [case for name in suites.graded() for case in cases(name, quick=True)]

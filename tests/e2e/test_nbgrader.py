@@ -9,7 +9,8 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder import layout, suites
+from autograder import layout
+from autograder.checks import suites
 from autograder.export import load
 from autograder.result import Result
 from tests.e2e.classroom import Classroom, fill_in
@@ -76,7 +77,7 @@ def test_the_gradebook_books_what_the_grader_says(student: str, graded: Classroo
     result = results[student]
     expected = {
         f"grade-{name}": (pytest.approx(sum(check.points for check in result.group(name))), worth, False)
-        for name, worth in suites.load(ASSIGNMENT).groups.items()
+        for name, worth in suites.hidden(ASSIGNMENT).groups.items()
     }
     assert graded.grades(student) == expected
     assert sum(maximum for _, maximum, _ in graded.grades(student).values()) == result.max_score
@@ -108,7 +109,7 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
     assert len(secret) > 10
     assert "YOUR CODE HERE" in text
     assert [line for line in secret if line in text] == []
-    suite = suites.load(ASSIGNMENT)
+    suite = suites.hidden(ASSIGNMENT)
     assert [check.title for check in suite.checks if check.title in text] == []
     assert [line for file in suite.files for line in code_lines(file) if line in text] == []
 
@@ -117,7 +118,7 @@ def test_the_release_holds_no_solution_and_nothing_of_the_hidden_suite(graded: C
 def test_the_feedback_explains_and_shows_no_source_of_the_suite(student: str, graded: Classroom) -> None:
     path = graded.course / "feedback" / student / ASSIGNMENT / f"{ASSIGNMENT}.html"
     html = unescape(path.read_text(encoding="utf-8"))
-    suite = suites.load(ASSIGNMENT)
+    suite = suites.hidden(ASSIGNMENT)
     (stored,) = load(graded.course / ".build" / "nbgrader" / ASSIGNMENT / student)
     for check in stored.result.checks:
         assert check.title in html
@@ -164,4 +165,4 @@ def test_one_that_drops_the_exercise_gets_nothing_for_what_is_put_back(graded: C
     graded.nbgrader("autograde", "--student=dropped")
     grades = graded.grades("dropped")
     assert {points for points, _, _ in grades.values()} == {0.0}
-    assert sum(maximum for _, maximum, _ in grades.values()) == suites.load(ASSIGNMENT).max_score
+    assert sum(maximum for _, maximum, _ in grades.values()) == suites.hidden(ASSIGNMENT).max_score

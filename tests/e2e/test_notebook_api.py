@@ -8,7 +8,7 @@ import pytest
 
 from autograder.notebook import CheckReport, DriveReport, Notice, check, drive
 from autograder.notebook.driving import FAULTS
-from autograder.suites.mutants import lay_down, lay_down_reference, mutants
+from autograder.proof.mutants import mutants, write_mutant, write_reference
 
 PACKAGE = "my_robot_package"
 
@@ -16,12 +16,12 @@ PACKAGE = "my_robot_package"
 @pytest.fixture(scope="session")
 def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("right")
-    lay_down_reference((PACKAGE,), folder)
+    write_reference((PACKAGE,), folder)
     return folder
 
 
 def _mutant(name: str, folder: Path) -> Path:
-    lay_down(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), folder)
+    write_mutant(next(mutant for mutant in mutants("02_nodes") if mutant.id == name), (PACKAGE,), folder)
     return folder
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.notebook import DriveReport, Notice, drive, side_by_side
-from autograder.suites.mutants import lay_down_reference
+from autograder.proof.mutants import write_reference
 
 PROGRAM = ("my_robot_package", "configured_node")
 WALL = 3.0  # m: the east wall of the empty room, straight ahead of the start
@@ -17,7 +17,7 @@ WALL = 3.0  # m: the east wall of the empty room, straight ahead of the start
 @pytest.fixture(scope="session")
 def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("right")
-    lay_down_reference((PROGRAM[0],), folder)
+    write_reference((PROGRAM[0],), folder)
     return folder
 
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from autograder.lab import Workspace
-from autograder.lab.launching import LaunchLab
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
 from autograder.probes import PRELOAD
 from autograder.ros import environment
 from autograder.sandbox import Mount, Sandbox, zygote
@@ -188,13 +188,13 @@ def launched(scratch: Path) -> list[Any]:
     program(prefix / "lib/pkg", "waits", LAUNCHED)
     workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
     workspace.scratch.mkdir()
-    with LaunchLab(workspace, "pkg", "both.launch.py") as lab:
-        lab.wait_for(lambda: lab.output.count("forked") == 2 and "shell" in lab.output, LONG)
-        running = [[found.package, found.name] for found in lab.programs()]
-        killed = lab.kill("waits", signal.SIGKILL)
-        lab.wait_for(lambda: lab.output.count("died") == 2, LONG)
-        stop = lab.interrupt(LONG)
-        return [lab.output, running, killed, stop.status, list(stop.left)]
+    with LaunchHarness(workspace, "pkg", "both.launch.py") as harness:
+        harness.wait_for(lambda: harness.output.count("forked") == 2 and "shell" in harness.output, LONG)
+        running = [[found.package, found.name] for found in harness.programs()]
+        killed = harness.kill("waits", signal.SIGKILL)
+        harness.wait_for(lambda: harness.output.count("died") == 2, LONG)
+        stop = harness.interrupt(LONG)
+        return [harness.output, running, killed, stop.status, list(stop.left)]
 
 
 def test_what_a_launch_starts_is_forked_and_seen_by_its_name() -> None:

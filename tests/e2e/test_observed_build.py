@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from autograder.building.observed import build_workspace
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
-from autograder.grading.observed import bring
-from autograder.lab.workspace import Workspace
 from autograder.ros import activate
+from autograder.workspace import Workspace
 
 MANIFEST = """<package format="3">
   <name>{name}</name><version>0.1.0</version><description>A package</description>
@@ -41,7 +41,7 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_one_packages_failure_is_not_the_others(workspace: Workspace) -> None:
-    seen = bring(workspace, ("bad", "good", "missing"), may_fail=True)
+    seen = build_workspace(workspace, ("bad", "good", "missing"), may_fail=True)
     assert seen.diagnoses["good"] is OK
     assert (workspace.install / "good/share/good/package.xml").is_file()
     assert seen.diagnosis is seen.diagnoses["bad"]
@@ -56,14 +56,14 @@ def test_packages_that_build_are_built_by_one_run_of_colcon(workspace: Workspace
     marker = workspace.root / "src/bad/resource/bad"
     marker.parent.mkdir()
     marker.touch()
-    seen = bring(workspace, ("bad", "good"), may_fail=True)
+    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
     assert (seen.build.ok, seen.diagnosis) == (True, OK)
     assert "2 packages finished" in seen.build.log
     assert all((workspace.install / name / "share" / name / "package.xml").is_file() for name in ("bad", "good"))
 
 
 def test_of_two_packages_that_are_there_the_one_that_fails_does_not_harm_the_other(workspace: Workspace) -> None:
-    seen = bring(workspace, ("bad", "good"), may_fail=True)
+    seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
     assert [found is OK for found in seen.diagnoses.values()] == [False, True]
     assert (workspace.install / "good/share/good/package.xml").is_file()
 
@@ -72,19 +72,19 @@ def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) 
     workspace.install.mkdir()
     (workspace.install / "bad").symlink_to("/etc")
     with pytest.raises(StudentError, match="leads out of the install space"):
-        bring(workspace, ("missing",), may_fail=True)
+        build_workspace(workspace, ("missing",), may_fail=True)
 
 
 def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match="only half written"):
-        bring(workspace, ("good",))
+        build_workspace(workspace, ("good",))
 
 
 def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Workspace) -> None:
     folder = workspace.root / "src" / "good"
     (folder / "package.xml").write_text("<package><name>good</name></package>")
     (folder / "setup.py").write_text("raise SystemExit('not yet')\n")
-    seen = bring(workspace, ("good",), may_fail=True)
+    seen = build_workspace(workspace, ("good",), may_fail=True)
     assert (seen.build.ok, seen.diagnosis.kind) == (False, Kind.BUILD_FAILED)
     assert "colcon does not see the package" in seen.diagnosis.sentence
 
@@ -93,5 +93,5 @@ def test_the_error_that_is_quoted_is_of_the_package_that_failed(workspace: Works
     folder = workspace.root / "src" / "good"
     (folder / "package.xml").write_text("<package><name></name></package>")
     (folder / "setup.py").write_text("raise NotImplementedError('not yet')\n")
-    sentence = bring(workspace, ("bad",), may_fail=True).diagnosis.sentence
+    sentence = build_workspace(workspace, ("bad",), may_fail=True).diagnosis.sentence
     assert "The first error: error: can't copy 'resource/bad'" in sentence

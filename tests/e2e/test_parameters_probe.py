@@ -27,7 +27,7 @@ rclpy.spin(node)
 
 def asked(scratch: Path) -> Any:
     from autograder.checks import CheckFailed
-    from autograder.lab import LockstepLab, RealtimeLab, Workspace
+    from autograder.harness import RealTimeHarness, SteppedHarness, Workspace
     from autograder.probes.parameters import NodeParameters
     from autograder.ros import activate
 
@@ -38,15 +38,15 @@ def asked(scratch: Path) -> Any:
         (folder / name).write_text(NODE.replace("SERVICES", services))
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
     told: list[Any] = []
-    for kind in (LockstepLab, RealtimeLab):
-        with kind(workspace, "pkg", "open") as lab:
-            parameters = NodeParameters(lab, "/tuned")
+    for kind in (SteppedHarness, RealTimeHarness):
+        with kind(workspace, "pkg", "open") as harness:
+            parameters = NodeParameters(harness, "/tuned")
             answer = parameters.change({"speed": "fast"})
             told.append(
                 [sorted(parameters.names()), parameters.values("speed", "mass"), answer.accepted, answer.reason]
             )
-    with LockstepLab(workspace, "pkg", "closed") as lab:
-        parameters = NodeParameters(lab, "/tuned")
+    with SteppedHarness(workspace, "pkg", "closed") as harness:
+        parameters = NodeParameters(harness, "/tuned")
         for ask in (lambda: parameters.values("speed"), parameters.names):
             try:
                 ask()

@@ -50,15 +50,17 @@ def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
     shown = text_of(bundle)
     hidden = {
         line.strip()
-        for path in layout.SUITES.glob("ch*/**/*")
-        if path.suffix in (".py", ".yaml") and path.name != "conftest.py"
+        for path in layout.CHECKS.glob("ch*/**/*")
+        if path.suffix in (".py", ".yaml") and not {"support", "visible"} & set(path.parts)
         for line in path.read_text().splitlines()
         if line.startswith(("def test_", "    expect(", "  - id: ")) and len(line.strip()) > 30
     }
-    public = text_of(layout.ROOT / "autograder" / "visible")
+    public = "".join(text_of(path) for path in layout.CHECKS.glob("ch*/*") if path.name in ("support", "visible"))
     assert len(hidden) > 300
     assert [line for line in sorted(hidden) if line in shown and line not in public] == []
     assert not (bundle / "solutions").exists()
+    kept = {path.name for path in (bundle / "autograder" / "checks").glob("ch*/*")}
+    assert kept == {"__init__.py", "conftest.py", "support", "visible"}
 
 
 def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:

@@ -88,7 +88,7 @@ def _run(code: str, *, network: bool = False, **limits: Any) -> dict[str, Any]:
 
 def test_nothing_of_the_grader_or_the_machine_can_be_read() -> None:
     secrets = [
-        *map(str, (layout.SUITES, layout.SOLUTIONS, layout.ROOT / "autograder", layout.ROOT / "pyproject.toml")),
+        *map(str, (layout.CHECKS, layout.SOLUTIONS, layout.ROOT / "autograder", layout.ROOT / "pyproject.toml")),
         *("/root/.bashrc", "/root/.ssh", "/home", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys", "/boot"),
     ]
     code = f"""

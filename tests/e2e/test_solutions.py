@@ -15,11 +15,11 @@ from xml.etree import ElementTree
 import pytest
 from std_msgs.msg import String
 
-from autograder.lab import Workspace
-from autograder.lab.launching import LaunchLab
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
 from autograder.layout import SOLUTIONS
 from autograder.packages import find_packages
-from autograder.probes import launching
+from autograder.probes import launch_probe
 from autograder.ros import environment
 from tests.e2e.conftest import Terminal
 
@@ -188,10 +188,14 @@ def test_two_robots_come_up_in_their_namespaces_and_end_together(
     reference: Terminal, ros_domain: int, tmp_path: Path
 ) -> None:
     workspace = Workspace(reference.root, environment.find(), tmp_path, domain=ros_domain)
-    with LaunchLab(workspace, "my_robot_bringup", "two_robots.launch.py", listens={"/fleet/status": String}) as lab:
+    with LaunchHarness(
+        workspace, "my_robot_bringup", "two_robots.launch.py", listens={"/fleet/status": String}
+    ) as harness:
         names = [f"/{robot}/{node}" for robot in ("robot1", "robot2") for node in ("driver", "reporter")]
-        launching.expect_nodes(lab, names)
-        launching.expect_parameters(lab, "/robot2/driver", {"speed": 0.2, "turn_rate": 0.4})
+        launch_probe.expect_nodes(harness, names)
+        launch_probe.expect_parameters(harness, "/robot2/driver", {"speed": 0.2, "turn_rate": 0.4})
         wanted = {f"robot{number} drives at 0.20 m/s" for number in (1, 2)}
-        assert lab.wait_for(lambda: {message.data for message in lab.messages("/fleet/status")} >= wanted, PATIENCE)
-        launching.expect_clean_stop(lab)
+        assert harness.wait_for(
+            lambda: {message.data for message in harness.messages("/fleet/status")} >= wanted, PATIENCE
+        )
+        launch_probe.expect_clean_stop(harness)

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from autograder import probes
-from autograder.grading import colcon
-from autograder.lab import launching
+from autograder.building import colcon
+from autograder.harness.launch import PRELOAD as LAUNCHES
 from autograder.lockstep import stepper
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Process, Sandbox
@@ -24,7 +24,7 @@ from tests.e2e.cell_support import in_cell, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-LOCKSTEP, PROBES, LAUNCHES = stepper.PRELOAD, probes.PRELOAD, launching.PRELOAD
+LOCKSTEP, PROBES = stepper.PRELOAD, probes.PRELOAD
 LONG = 120.0
 
 # What a process can find out about its place and its rights.

@@ -13,7 +13,7 @@ import pytest
 from nbformat import NotebookNode
 
 from autograder.course import Chapter, Form, chapters, in_form, run_notebook
-from autograder.course.hygiene import images_without_alt
+from autograder.course.notebook_rules import images_without_alt
 from autograder.layout import ROOT
 
 CHAPTERS = chapters()
@@ -33,7 +33,7 @@ def test_there_are_chapters() -> None:
 
 def test_the_chapters_are_up_to_date_clean_and_worth_what_their_suites_say() -> None:
     checked = subprocess.run(
-        [sys.executable, "-m", "autograder.course", "check"], cwd=ROOT, text=True, capture_output=True
+        [sys.executable, "-m", "autograder", "course", "check"], cwd=ROOT, text=True, capture_output=True
     )
     assert (checked.returncode, checked.stdout) == (0, ""), checked.stdout + checked.stderr
 

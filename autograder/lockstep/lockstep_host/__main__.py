@@ -17,16 +17,16 @@ def main() -> None:
     sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
     here = Path(__file__).resolve().parent
     sys.path.insert(0, str(here.parent))
-    host_module, link_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "link"))
+    host_module, pipes_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "pipes"))
     read_fd, write_fd, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
     sys.argv = sys.argv[3:]
     sys.path[:2] = [str(Path(program).parent)]  # as Python sets it for a program that is started by its path
-    host = host_module.Host(link_module.Link(read_fd, write_fd))
+    host = host_module.Host(pipes_module.Pipes(read_fd, write_fd))
     host.install()
     try:
         runpy.run_path(program, run_name="__main__")
     except Exception as error:
-        host.link.send(
+        host.pipes.send(
             event="crash",
             phase=host.phase,
             type=type(error).__name__,

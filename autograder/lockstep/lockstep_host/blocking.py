@@ -17,7 +17,7 @@ from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.timer import Rate
 
-from .crew import Worker
+from .callback_threads import Worker
 from .tasks import awaited
 
 # Who sleeps so often and so long between its first message and its first spin works in a loop, and never spins. Who has
@@ -65,7 +65,7 @@ class Blocking:
 
     def check(self, executor: Executor, end: int | None) -> None:
         """Tell the grader of a callback that waits for ever, for what its own callback group keeps from coming."""
-        for reader in self._host.ledger.owing:
+        for reader in self._host.counts.owing:
             client = reader.entity
             if not isinstance(client, Client) or executor.can_execute(client):
                 continue

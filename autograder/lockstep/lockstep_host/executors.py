@@ -15,7 +15,7 @@ from rclpy.executors import (
     TimeoutObject,
 )
 
-from .crew import Crew
+from .callback_threads import CallbackThreads
 
 
 class CrewExecutor(SingleThreadedExecutor):
@@ -23,7 +23,7 @@ class CrewExecutor(SingleThreadedExecutor):
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
-        self.crew = Crew(num_threads)
+        self.threads = CallbackThreads(num_threads)
 
     def _spin_once_impl(
         self, timeout_sec: float | TimeoutObject | None = None, wait_condition: Callable[[], bool] = lambda: False
@@ -32,7 +32,7 @@ class CrewExecutor(SingleThreadedExecutor):
             handler, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ShutdownException, ExternalShutdownException, TimeoutException, ConditionReachedException):
             return
-        self.crew.start(handler)
+        self.threads.start(handler)
 
 
 def spin_until_future_complete(

@@ -1,4 +1,4 @@
-"""Hooks: where rclpy tells the ledger what was made, what was sent and what was taken.
+"""Hooks: where rclpy tells the counts what was made, what was sent and what was taken.
 
 Sending and taking are caught at rclpy's C objects, below services, actions and executors, so nothing goes past.
 """
@@ -20,8 +20,8 @@ from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
 from . import channels
-from .crew import Worker
-from .ledger import NOT_COUNTED, Ledger, Reader
+from .callback_threads import Worker
+from .message_counts import NOT_COUNTED, MessageCounts, Reader
 
 _take_message = c.Subscription.take_message
 _is_ready = ActionClient.is_ready
@@ -34,14 +34,14 @@ _FEEDBACK = QoSProfile(depth=10)
 
 
 class Hooks:
-    """The hooks of one ledger.
+    """The hooks of one counts.
 
     Attributes:
         changed: True when there are endpoints or timers that the grader has not been told of.
     """
 
-    def __init__(self, ledger: Ledger, note: Callable[[str], None]) -> None:
-        self.ledger = ledger
+    def __init__(self, counts: MessageCounts, note: Callable[[str], None]) -> None:
+        self.counts = counts
         self._note = note
         self.changed = True
         self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth if latched
@@ -87,7 +87,7 @@ class Hooks:
             qos = subscription.qos_profile
             read = channels.read(subscription.topic_name, subscription.msg_type, qos)
             latched = qos.durability.name == "TRANSIENT_LOCAL"
-            self.ledger.add(subscription.handle, Reader(subscription, read, depth=qos.depth or 1, latched=latched))
+            self.counts.add(subscription.handle, Reader(subscription, read, depth=qos.depth or 1, latched=latched))
             self.changed = True
 
     def _made_client(self, client: Any, *_: Any, **__: Any) -> None:
@@ -120,7 +120,7 @@ class Hooks:
         topic = node.resolve_topic_name(f"{name}/_action/feedback")
         qos = options.get("feedback_sub_qos_profile", _FEEDBACK)
         read = channels.read(topic, kind.Impl.FeedbackMessage, qos)
-        self.ledger.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
+        self.counts.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
         client.lockstep_requests = self._requests(client._client_handle)
         client.lockstep_feedback = read
 
@@ -134,12 +134,12 @@ class Hooks:
 
     def _calls(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
         self._served[(handle.pointer, part)] = name, kind
-        self.ledger.add(handle, Reader(entity, (channels.response(name, kind, channels.OWN),), part=(part, index)))
+        self.counts.add(handle, Reader(entity, (channels.response(name, kind, channels.OWN),), part=(part, index)))
         self.changed = True
 
     def _serves(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
         self._served[(handle.pointer, part)] = name, kind
-        self.ledger.add(handle, Reader(entity, (channels.request(name, kind),), part=(part, index)))
+        self.counts.add(handle, Reader(entity, (channels.request(name, kind),), part=(part, index)))
         self.changed = True
 
     # What was sent.
@@ -169,14 +169,14 @@ class Hooks:
         thread = threading.current_thread()
         if thread is not threading.main_thread() and not isinstance(thread, Worker):
             self._note("thread")
-        self.ledger.sent(channel, depth)
+        self.counts.sent(channel, depth)
 
     # What was taken.
 
     def _took(self, part: str) -> Callable[..., None]:
         def took(handle: Any, *_: Any, result: Any) -> None:
             if result is not None and not (isinstance(result, tuple) and None in map(_nothing, result)):
-                self.ledger.took(handle, part)
+                self.counts.took(handle, part)
 
         return took
 
@@ -184,10 +184,10 @@ class Hooks:
         taken = _take_message(handle, kind, raw)
         if taken is None:
             return None
-        reader = self.ledger.readers.get((handle.pointer, ""))
+        reader = self.counts.readers.get((handle.pointer, ""))
         if reader is not None and reader.met and not reader.latched and taken[1]["source_timestamp"] < reader.met:
             return None  # it was under way when the program met the grader; whether it comes is a matter of luck
-        self.ledger.took(handle, "")
+        self.counts.took(handle, "")
         return taken
 
 

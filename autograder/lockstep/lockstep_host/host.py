@@ -22,15 +22,15 @@ from rclpy.executors import ConditionReachedException, Executor, TimeoutExceptio
 from rclpy.impl.rcutils_logger import Throttle
 from rclpy.time import Time
 
-from . import channels, ledger
+from . import channels, message_counts
 from .blocking import Blocking
+from .callback_threads import Worker
 from .clocks import Clocks
-from .crew import Worker
+from .description import describe
 from .executors import CrewExecutor, spin_until_future_complete
 from .hooks import Hooks
 from .idleness import idle_until
-from .link import Link
-from .survey import survey
+from .pipes import Pipes
 from .tasks import where
 
 START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "time is not known yet"
@@ -51,13 +51,13 @@ class Host:
         wakes: instants at which something wants to go on; None for what waits without a time-out.
     """
 
-    def __init__(self, link: Link) -> None:
-        self.link = link
+    def __init__(self, pipes: Pipes) -> None:
+        self.pipes = pipes
         self.time = START
         self.phase = "import"
-        self.ledger = ledger.Ledger()
+        self.counts = message_counts.MessageCounts()
         self.wakes: list[int | None] = []
-        self.hooks = Hooks(self.ledger, self.note)
+        self.hooks = Hooks(self.counts, self.note)
         self.blocking = Blocking(self)
         self.clocks = Clocks(lambda: self.time, self.blocking.sleep, str(Path(__file__).parent))
         self._nodes: list[weakref.ref[Any]] = []
@@ -116,21 +116,21 @@ class Host:
             self.note("thread")
             self.stop(event="unsteppable", reason="thread") if self.phase != "spin" else threading.Event().wait()
         end = None if timeout is None or timeout < 0 else self.time + max(1, round(timeout * 1e9))
-        crew = getattr(executor, "crew", None)
+        threads = getattr(executor, "threads", None)
         while True:
             if condition():
                 raise ConditionReachedException
-            if crew is not None and crew.resume():
+            if threads is not None and threads.resume():
                 self._progress = time.monotonic()
                 self._positions.clear()
                 continue
-            idle = crew is not None and crew.full
-            owing = self._owing(executor) if self.ledger.owing and not idle else []
+            idle = threads is not None and threads.full
+            owing = self._owing(executor) if self.counts.owing and not idle else []
             for reader, entity in owing:
                 # Callbacks run in the order of their creation once all that is owed is there; otherwise, they would
                 # run in the order in which messages happen to come in.
                 seconds = OVERFLOW if 0 < reader.depth < reader.owes else PATIENCE
-                ledger.wait_for(reader, entity, executor.context, self._progress + seconds - time.monotonic())
+                message_counts.wait_for(reader, entity, executor.context, self._progress + seconds - time.monotonic())
             work = None if idle else self._ready(executor, nodes, condition)
             if work is not None:
                 return work
@@ -163,7 +163,7 @@ class Host:
 
     def has_spoken(self) -> bool:
         """Return whether a node has sent anything, but for news of its parameters."""
-        return any(not channel.startswith("/parameter_events ") for channel in self.ledger.fresh)
+        return any(not channel.startswith("/parameter_events ") for channel in self.counts.fresh)
 
     def note(self, reason: str) -> None:
         """Remember to tell the grader why steps are not all that moves this program."""
@@ -172,8 +172,8 @@ class Host:
 
     def stop(self, **event: Any) -> None:
         """Tell the grader that the program cannot go on in lockstep."""
-        self.link.send(**event)
-        while self.link.receive()["op"] != "quit":
+        self.pipes.send(**event)
+        while self.pipes.receive()["op"] != "quit":
             pass
         self._quit = True
         raise KeyboardInterrupt
@@ -226,43 +226,43 @@ class Host:
         there = executor.get_nodes()
         return [node for node in self._alive() if node in there]
 
-    def _owing(self, executor: Executor) -> list[tuple[ledger.Reader, Any]]:
+    def _owing(self, executor: Executor) -> list[tuple[message_counts.Reader, Any]]:
         """Return the readers of an executor that have not taken all that they were sent, and could now."""
         nodes = executor.get_nodes()
         owing = []
-        for reader in list(self.ledger.owing):
+        for reader in list(self.counts.owing):
             entity = reader.entity
             if entity is None:
-                self.ledger.owing.discard(reader)
-            elif any(ledger.holds(node, entity) for node in nodes) and executor.can_execute(entity):
+                self.counts.owing.discard(reader)
+            elif any(message_counts.holds(node, entity) for node in nodes) and executor.can_execute(entity):
                 owing.append((reader, entity))
         return owing
 
-    def _give_up(self, owing: list[tuple[ledger.Reader, Any]]) -> None:
+    def _give_up(self, owing: list[tuple[message_counts.Reader, Any]]) -> None:
         waited = time.monotonic() - self._progress
         lost = [r for r, _ in owing if waited > (OVERFLOW if 0 < r.depth < r.owes else PATIENCE)]
         self._late += [reader.channels[0] for reader in lost if not 0 < reader.depth < reader.owes]
-        self.ledger.forgive(lost)
+        self.counts.forgive(lost)
 
     def _next_step(self) -> None:
         if self.phase != "spin":
             self.phase = "spin"
-            self.link.send(event="ready")
+            self.pipes.send(event="ready")
         if self._stepping:
             self._stepping = False
             wake = min((wake for wake in self.wakes if wake is not None), default=None)
             state = {"late": self._late, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
-            self.link.send(event="done", sent=self.ledger.flush(), idle=None if self._notes else self._idle, **state)
+            self.pipes.send(event="done", sent=self.counts.flush(), idle=None if self._notes else self._idle, **state)
         while True:
-            order: dict[str, Any] = {"op": "quit"} if self._quit else self.link.receive()
+            order: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
             if order["op"] == "quit":
                 self._quit = True
                 raise KeyboardInterrupt
             if order["op"] == "describe":
-                self.link.send(event="description", **self._describe())
+                self.pipes.send(event="description", **self._describe())
             elif order["op"] == "meet":
-                self.ledger.meet(self._prefix(), order["kept"], order["early"])
-                self.link.send(event="met", sent=self.ledger.flush())
+                self.counts.meet(self._prefix(), order["kept"], order["early"])
+                self.pipes.send(event="met", sent=self.counts.flush())
             else:
                 break
         self._instants = order["instants"]
@@ -271,19 +271,19 @@ class Host:
         self._positions.clear()
         self._progress = time.monotonic()
         self._set_time(self._instants.pop(0))
-        self.ledger.told(order["mail"])
+        self.counts.told(order["mail"])
 
     def _describe(self) -> dict[str, Any]:
         self.hooks.changed = False
-        told = {"early": self.ledger.fresh, "kept": self.ledger.kept, "prefix": self._prefix()}
-        return {**survey(self._alive()), **told}
+        told = {"early": self.counts.fresh, "kept": self.counts.kept, "prefix": self._prefix()}
+        return {**describe(self._alive()), **told}
 
     def _prefix(self) -> str:
         return next((prefix for node in self._alive() if (prefix := channels.own_prefix(node))), "")
 
     def _alive(self) -> list[Any]:
         """Return the nodes that the program has made and not destroyed."""
-        return [node for ref in self._nodes if (node := ref()) is not None and ledger.is_alive(node)]
+        return [node for ref in self._nodes if (node := ref()) is not None and message_counts.is_alive(node)]
 
     def _set_time(self, nanoseconds: int) -> None:
         self.time = nanoseconds

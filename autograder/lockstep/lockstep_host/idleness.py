@@ -10,7 +10,7 @@ from typing import Any
 
 from rclpy.event_handler import EventHandler
 
-from .ledger import is_alive
+from .message_counts import is_alive
 
 NEVER = 2**63 - 1  # ns
 

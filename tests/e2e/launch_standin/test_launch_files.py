@@ -215,7 +215,7 @@ def test_a_ros_timer_goes_by_simulated_time(start: Start) -> None:
 
 def test_parameters_come_from_files_with_substitutions_arguments_and_for_all_nodes(start: Start) -> None:
     launch = start("parameters")
-    launch.wait_for("ready: /a on /beat label='1e3 of the lab' rate=9.0")
+    launch.wait_for("ready: /a on /beat label='1e3 of the harness' rate=9.0")
     launch.wait_for("ready: /b on /beat label='1e3' rate=3.0")
     assert launch.interrupt() == 0
 

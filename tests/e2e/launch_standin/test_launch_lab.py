@@ -1,4 +1,4 @@
-"""The lab for launch files: what they start is seen from outside, and what they leave behind too."""
+"""The harness for launch files: what they start is seen from outside, and what they leave behind too."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from std_msgs.msg import String
 from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.lab import Workspace
-from autograder.lab.launching import LaunchLab
-from autograder.probes import launching
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe
 from autograder.ros import environment
 
 PATIENCE = 60.0  # seconds: a deadline, not an expectation
@@ -103,46 +103,46 @@ def workspace(install_fleet: Callable[[Path], None], tmp_path: Path, ros_domain:
 
 def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(workspace: Workspace) -> None:
     arguments = {"name": "lamp", "rate": "8.5"}
-    with LaunchLab(workspace, "fleet", "single.launch.py", arguments, listens={"/beat": String}) as lab:
-        launching.expect_nodes(lab, ["/lamp"])
-        assert lab.parameters("/lamp", ["rate", "label"]) == {"rate": 8.5, "label": "42"}
-        assert lab.parameters("/lamp", ["rate", "absent"]) == {"rate": 8.5, "absent": None}
-        assert lab.parameters("/nobody", ["rate"], seconds=0.5) is None
-        assert lab.wait_for(lambda: len(lab.messages("/beat")) > 1, PATIENCE)
-        assert lab.publishers("/beat") == ["/lamp"]
-        assert lab.subscribers("/beat") == []
-        assert [(program.package, program.name) for program in lab.programs()] == [("fleet", "beacon")]
-        assert lab.status is None
-        launching.expect_clean_stop(lab)
-        assert lab.programs() == []
+    with LaunchHarness(workspace, "fleet", "single.launch.py", arguments, listens={"/beat": String}) as harness:
+        launch_probe.expect_nodes(harness, ["/lamp"])
+        assert harness.parameters("/lamp", ["rate", "label"]) == {"rate": 8.5, "label": "42"}
+        assert harness.parameters("/lamp", ["rate", "absent"]) == {"rate": 8.5, "absent": None}
+        assert harness.parameters("/nobody", ["rate"], seconds=0.5) is None
+        assert harness.wait_for(lambda: len(harness.messages("/beat")) > 1, PATIENCE)
+        assert harness.publishers("/beat") == ["/lamp"]
+        assert harness.subscribers("/beat") == []
+        assert [(program.package, program.name) for program in harness.programs()] == [("fleet", "beacon")]
+        assert harness.status is None
+        launch_probe.expect_clean_stop(harness)
+        assert harness.programs() == []
 
 
 def test_a_wrong_node_is_told_with_what_there_is(workspace: Workspace) -> None:
-    with LaunchLab(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as lab:
+    with LaunchHarness(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as harness:
         with pytest.raises(CheckFailed) as caught:
-            launching.expect_nodes(lab, ["/robot1/lamp"])
+            launch_probe.expect_nodes(harness, ["/robot1/lamp"])
         assert caught.value.message == "The graph holds /lamp: /lamp runs instead of /robot1/lamp."
         with pytest.raises(CheckFailed, match=r"/lamp has rate = 4\.0, instead of 5\.0"):
-            launching.expect_parameters(lab, "/lamp", {"rate": 5.0})
+            launch_probe.expect_parameters(harness, "/lamp", {"rate": 5.0})
         with pytest.raises(CheckFailed, match="/lamp has label = '42', instead of 42"):
-            launching.expect_parameters(lab, "/lamp", {"label": 42})
+            launch_probe.expect_parameters(harness, "/lamp", {"label": 42})
 
 
 def test_a_killed_program_is_gone_and_an_idle_launch_ends(workspace: Workspace) -> None:
-    with LaunchLab(workspace, "fleet", "single.launch.py") as lab:
-        launching.expect_nodes(lab, ["/beacon"])
-        assert lab.kill("beacon", signal.SIGKILL) == 1
-        assert lab.wait_for(lambda: lab.status is not None, PATIENCE)
-        assert launching.trouble(lab.output) == "beacon died with exit code -9"
-        assert lab.kill("beacon") == 0
+    with LaunchHarness(workspace, "fleet", "single.launch.py") as harness:
+        launch_probe.expect_nodes(harness, ["/beacon"])
+        assert harness.kill("beacon", signal.SIGKILL) == 1
+        assert harness.wait_for(lambda: harness.status is not None, PATIENCE)
+        assert launch_probe.trouble(harness.output) == "beacon died with exit code -9"
+        assert harness.kill("beacon") == 0
 
 
 def test_what_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
-    there = launching.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
-    with LaunchLab(there, "fleet", "leaves_one.launch.py") as lab:
-        assert lab.wait_for(lambda: "verbosity" in lab.output, PATIENCE)
+    there = launch_probe.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
+    with LaunchHarness(there, "fleet", "leaves_one.launch.py") as harness:
+        assert harness.wait_for(lambda: "verbosity" in harness.output, PATIENCE)
         with pytest.raises(CheckFailed, match="It ended, but left a process running: sleep 600"):
-            launching.expect_clean_stop(lab)
+            launch_probe.expect_clean_stop(harness)
     assert not (workspace.install / "fleet/share/fleet/launch/leaves_one.launch.py").exists()
 
 
@@ -151,7 +151,7 @@ def starts(workspace: Workspace) -> Callable[[str], Workspace]:
     """Return a function that puts a program into `fleet`, which `given.launch.py` starts."""
 
     def put(text: str) -> Workspace:
-        there = launching.with_files(workspace, "given", "fleet", {"launch/given.launch.py": STARTS_IT})
+        there = launch_probe.with_files(workspace, "given", "fleet", {"launch/given.launch.py": STARTS_IT})
         program = there.install / "fleet/lib/fleet/given"
         program.write_text(text)
         program.chmod(0o755)
@@ -161,50 +161,50 @@ def starts(workspace: Workspace) -> Callable[[str], Workspace]:
 
 
 def test_a_program_whose_node_comes_late_is_not_overlooked(starts: Callable[[str], Workspace]) -> None:
-    both = LaunchLab(starts(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
-    with both as lab, pytest.raises(CheckFailed, match="/late not asked for"):
-        launching.expect_nodes(lab, ["/beacon"])
+    both = LaunchHarness(starts(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
+    with both as harness, pytest.raises(CheckFailed, match="/late not asked for"):
+        launch_probe.expect_nodes(harness, ["/beacon"])
 
 
 def test_ctrl_c_waits_for_a_node_that_is_seen_and_not_yet_made(starts: Callable[[str], Workspace]) -> None:
-    with LaunchLab(starts(SLOW), "fleet", "given.launch.py", {"how": "once"}) as lab:
-        launching.expect_nodes(lab, ["/slow"])
-        launching.expect_clean_stop(lab)
+    with LaunchHarness(starts(SLOW), "fleet", "given.launch.py", {"how": "once"}) as harness:
+        launch_probe.expect_nodes(harness, ["/slow"])
+        launch_probe.expect_clean_stop(harness)
 
 
 def test_a_node_that_had_to_be_killed_gets_a_second_launch_which_decides(starts: Callable[[str], Workspace]) -> None:
     there = starts(STUBBORN)
-    with LaunchLab(there, "fleet", "given.launch.py", {"how": "once"}) as lab:
-        launching.expect_nodes(lab, ["/stubborn"])
-        launching.expect_clean_stop(lab)
-        assert "exit code -9" in lab.output
-    with LaunchLab(there, "fleet", "given.launch.py", {"how": "always"}) as lab:
-        launching.expect_nodes(lab, ["/stubborn"])
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+        launch_probe.expect_nodes(harness, ["/stubborn"])
+        launch_probe.expect_clean_stop(harness)
+        assert "exit code -9" in harness.output
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "always"}) as harness:
+        launch_probe.expect_nodes(harness, ["/stubborn"])
         with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with -9"):
-            launching.expect_clean_stop(lab)
+            launch_probe.expect_clean_stop(harness)
 
 
 def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(workspace: Workspace) -> None:
     with pytest.raises(
         CheckFailed, match=r"`ros2 launch -s fleet absent.launch.py` fails: file 'absent.launch.py' was"
     ):
-        launching.shown_arguments(workspace, "fleet", "absent.launch.py")
-    with LaunchLab(workspace, "fleet", "broken.launch.py") as lab:
+        launch_probe.shown_arguments(workspace, "fleet", "absent.launch.py")
+    with LaunchHarness(workspace, "fleet", "broken.launch.py") as harness:
         with pytest.raises(
             CheckFailed, match=r"No node is up: /light missing. What the launch said: .*'config' is not"
         ):
-            launching.expect_nodes(lab, ["/light"])
-        assert lab.status == 1
+            launch_probe.expect_nodes(harness, ["/light"])
+        assert harness.status == 1
 
 
 def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
-    found = launching.shown_arguments(workspace, "fleet", "arguments.launch.py")
+    found = launch_probe.shown_arguments(workspace, "fleet", "arguments.launch.py")
     assert list(found) == ["robot", "mode", "topic"]
     assert found["mode"].choices == ("drive", "park")
 
 
 def test_a_launch_without_end_of_words_is_the_students_to_hear_of(workspace: Workspace) -> None:
-    there = launching.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
-    with LaunchLab(there, "fleet", "floods.launch.py") as lab, pytest.raises(StudentError) as caught:
-        lab.run(PATIENCE)
+    there = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
+    with LaunchHarness(there, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
+        harness.run(PATIENCE)
     assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT

@@ -126,7 +126,7 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     ("arguments", "words"),
     [
         (("grade", "/no/where", "--assignment", "02_nodes"), "/no/where: there is no such file or folder"),
-        (("grade", "/tmp", "--assignment", "77_none"), "there are no checks for '77_none'; there are for: "),
+        (("grade", "/tmp", "--assignment", "77_none"), "there are no hidden checks for '77_none'; there are for: "),
         (("check", "77_none", "/tmp"), "there are no visible checks for '77_none'"),
         (("check", "02_nodes", "/no/where"), "there is no folder /no/where/src"),
     ],

@@ -10,7 +10,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.course import CourseError, Form, in_form
 from autograder.course.cells import origin
-from autograder.course.holes import with_cuts, without_marks
+from autograder.course.solution_markers import with_cuts, without_marks
 
 MANIFEST = """<package>
   <name>a</name>

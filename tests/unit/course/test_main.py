@@ -1,14 +1,15 @@
-"""The command line: `python -m autograder.course sync|check`."""
+"""The command line: `autograder course sync|check`."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
 
-from autograder.checks import Check, Visibility
-from autograder.course import __main__ as command
+from autograder.checks import Check, Visibility, suites
+from autograder.cli import course as command
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
@@ -17,7 +18,7 @@ CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, ()
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(command, "manifest", lambda assignment: CHECKS)
+    monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS))
     (tmp_path / "solutions").mkdir()
     (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
     origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"]}
@@ -34,7 +35,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def run(course: Path, verb: str, *names: str) -> Result:
     folders = ["--chapters", str(course / "chapters"), "--solutions", str(course / "solutions")]
-    return CliRunner().invoke(command.main, [verb, *names, *folders])
+    return CliRunner().invoke(command.course, [verb, *names, *folders])
 
 
 def test_check_names_everything_that_is_wrong_and_ends_with_1(course: Path) -> None:

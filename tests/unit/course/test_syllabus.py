@@ -73,7 +73,7 @@ def test_the_course_holds_everything_and_its_pages_are_up_to_date() -> None:
     survey = Survey.of_the_course()
     assert [str(finding) for finding in survey.coverage.findings] == []
     for path, text in ((PAGE, survey.page()), (guide.PAGE, guide.guide())):
-        assert path.read_text(encoding="utf-8") == text, f"{path.name} is stale: python -m autograder.course tables"
+        assert path.read_text(encoding="utf-8") == text, f"{path.name} is stale: autograder course tables"
 
 
 def test_the_syllabus_names_all_that_the_chapter_has() -> None:

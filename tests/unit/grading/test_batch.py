@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
-from autograder import suites
+from autograder import intake
+from autograder.checks import suites
 from autograder.exceptions import UsageError
-from autograder.grading import Graded, batch, intake
+from autograder.grading import Graded, batch
 from autograder.grading.batch import Entry, discover, grade_all
 from autograder.result import Result, Status, write_json
 
@@ -96,7 +97,7 @@ class Grader:
             student,
             seed=seed,
             submission_sha256=intake.take(path, assignment).sha256,
-            suite_version=suites.load(assignment).version,
+            suite_version=suites.hidden(assignment).version,
         )
         write_json(out / "result.json", result.to_json())
         return Graded(result, None)

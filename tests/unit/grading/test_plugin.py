@@ -11,11 +11,11 @@ import pytest
 
 from autograder.checks import Outcome
 from autograder.diagnosis import OK, Diagnosis, Kind
-from autograder.grading.gallery import Gallery
+from autograder.gallery import Gallery
 from autograder.grading.job import ALL, Scope
 from autograder.grading.plugin import GradingPlugin, run
-from autograder.lab.workspace import Workspace
 from autograder.ros import activate
+from autograder.workspace import Workspace
 
 HEAD = """
 import pytest
@@ -36,8 +36,8 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
 
     def grade_text(text: str, scope: Scope = ALL) -> GradingPlugin:
         # A name of its own: pytest keeps the modules that this process has imported.
-        path = tmp_path / "suite" / f"checks_{next(_NUMBERS)}.py"
-        path.parent.mkdir(exist_ok=True)
+        path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
         plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), scope=scope)

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import CheckFailed
-from autograder.lab import Workspace
+from autograder.harness import Workspace
 from autograder.probes.linters import expect_tidy, objections
-from autograder.probes.testing import take
+from autograder.probes.test_runs import take
 from autograder.ros import environment
 
 TIDY = '"""Halves."""\n\n\ndef half(x):\n    """Return a half of x."""\n    return x / 2\n'

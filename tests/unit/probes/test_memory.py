@@ -9,7 +9,7 @@ import pytest
 
 from autograder.probes.junit import Claims, Verdict
 from autograder.probes.memory import Memory
-from autograder.probes.reports import Order, Report, Source
+from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.probes.versions import Version
 from autograder.sandbox import Ending
 
@@ -23,7 +23,7 @@ FILES = {
     "test/test_shared.py": b"SPEED = 0.3",
 }
 SOURCE = Source("half", FILES)
-HALF, OTHER = Order(("test_half.py",), RIGHT), Order(("test_other.py",), RIGHT)
+HALF, OTHER = TestRun(("test_half.py",), RIGHT), TestRun(("test_other.py",), RIGHT)
 REPORT = Report(Ending.EXITED, 0, Claims({"test_half::test_odd": Verdict.PASSED}), 0, "1 passed")
 
 
@@ -42,7 +42,7 @@ def changed(name: str, text: bytes = b"# another") -> Source:
 
 def test_the_same_run_is_recalled_whole(memory: Memory) -> None:
     assert (
-        memory.recall(Source("half", dict(FILES)), Order(("test_half.py",), Version(*vars(RIGHT).values()))) == REPORT
+        memory.recall(Source("half", dict(FILES)), TestRun(("test_half.py",), Version(*vars(RIGHT).values()))) == REPORT
     )
 
 
@@ -75,7 +75,7 @@ def test_tests_that_name_another_file_can_read_it(memory: Memory) -> None:
         replace(HALF, files=("test_half.py", "test_other.py")),
     ],
 )
-def test_another_version_or_way_to_run_is_another_run(memory: Memory, order: Order) -> None:
+def test_another_version_or_way_to_run_is_another_run(memory: Memory, order: TestRun) -> None:
     assert memory.recall(SOURCE, order) is None
 
 

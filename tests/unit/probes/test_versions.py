@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, style
 from autograder.exceptions import GraderError
-from autograder.probes.versions import WHEN, Version, disguise, lay_down, read
-from autograder.suites.ch06_testing.faults import STYLES, Fault, broken, faults, style
+from autograder.probes.versions import WHEN, Version, disguise, read, write_version
 
 SOURCE = '''"""A secret comment."""
 
@@ -69,7 +69,7 @@ def test_a_version_is_laid_down_as_if_it_had_been_built(tmp_path: Path) -> None:
         {"p/a.py": "A = 1\n", "launch/a.launch.py": "B = 2\n", "setup.py": "", "package.xml": "<package/>"},
         {"tool": "p.a"},
     )
-    source = lay_down(version, "p", {"test_it.py": b""}, tmp_path / "ws")
+    source = write_version(version, "p", {"test_it.py": b""}, tmp_path / "ws")
     install = tmp_path / "ws/install/p"
     assert source == tmp_path / "ws/src/p"
     assert {path.relative_to(source).as_posix() for path in source.rglob("*.*")} == {

@@ -11,8 +11,8 @@ from typing import Any, cast
 import pytest
 
 from autograder.grading.job import Job
-from autograder.grading.lanes import Lanes
 from autograder.proof import Case, Kind, prove
+from autograder.proof.lanes import Lanes
 from autograder.result import Result
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import CellReport

@@ -6,17 +6,16 @@ from collections import Counter
 
 import pytest
 
-from autograder import suites
-from autograder.checks import Outcome
+from autograder.checks import Outcome, suites
 from autograder.diagnosis import OK
 from autograder.proof import Claim, Kind, cases, holds, summary
 from autograder.proof.claims import as_named, full, killed, nothing
 from autograder.proof.generated import generated
+from autograder.proof.mutants import mutants
 from autograder.result import CheckResult, Result
-from autograder.suites.mutants import mutants
 
 ASSIGNMENT = "02_nodes"
-SUITE = suites.load(ASSIGNMENT)
+SUITE = suites.hidden(ASSIGNMENT)
 
 
 def result(*lost: str) -> Result:
@@ -117,13 +116,13 @@ def test_the_whole_proof_holds_every_kind_and_names_each_submission_once() -> No
 def test_the_quick_proof_fails_every_check(assignment: str) -> None:
     names = {case.name for case in cases(assignment, quick=True)}
     covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.loses}
-    assert covered == {check.id for check in suites.manifest(assignment)}
+    assert covered == {check.id for check in suites.hidden(assignment).checks}
 
 
 @pytest.mark.parametrize("assignment", suites.graded())
 def test_each_check_has_three_mutants(assignment: str) -> None:
     lost = Counter(name for mutant in mutants(assignment) for name in mutant.loses)
-    assert [check.id for check in suites.manifest(assignment) if lost[check.id] < 3] == []
+    assert [check.id for check in suites.hidden(assignment).checks if lost[check.id] < 3] == []
 
 
 def test_a_generated_mutant_is_a_different_file_and_always_the_same() -> None:

@@ -140,8 +140,8 @@ def test_each_test_has_a_domain_whose_ports_linux_gives_to_nobody_else(ros_domai
 
 
 def with_ros(*command: str) -> subprocess.CompletedProcess[str]:
-    """Run a command by `python -m autograder.ros`."""
-    whole = [sys.executable, "-m", "autograder.ros", *command]
+    """Run a command by `autograder ros`."""
+    whole = [sys.executable, "-m", "autograder", "ros", *command]
     return subprocess.run(whole, capture_output=True, text=True, timeout=120, cwd=ROOT)
 
 

@@ -54,7 +54,7 @@ def test_suites_and_solutions_are_covered_wherever_a_mount_would_show_them(tmp_p
     spec = Sandbox(tmp_path, mounts=(Mount(layout.ROOT),))
     options = _options(_sandbox(spec))
     mounted = options.index(str(layout.ROOT))
-    for secret in (layout.SUITES, layout.SOLUTIONS):
+    for secret in (*layout.check_folders(), layout.SOLUTIONS):
         assert options.index(str(secret)) > mounted
         assert str(secret) in _pairs(options, "--tmpfs")
         assert str(secret) in _pairs(options, "--remount-ro")

@@ -16,7 +16,7 @@ def generate_launch_description():
     return LaunchDescription(
         [
             DeclareLaunchArgument("robot", default_value="1e3"),
-            SetEnvironmentVariable("COURSE_SITE", "the lab"),
+            SetEnvironmentVariable("COURSE_SITE", "the harness"),
             SetParameter("rate", 9.0),
             Node(package="fleet", executable="beacon", name="a", parameters=[templated], output="screen"),
             Node(

@@ -1,0 +1,99 @@
+"""One `colcon build` in the sandbox, and what its failure means."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from autograder.building import cmake_overlay
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.lockstep.failures import tail
+from autograder.sandbox import Ending, Mount, Sandbox, zygote
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import BUILD
+from autograder.workspace import Workspace
+
+HOST, PRELOAD = Path(__file__).with_name("colcon_host.py"), Path(__file__).with_name("preload.py")
+LOG_LINES = 40
+
+
+def colcon_build(workspace: Workspace, *choice: str) -> str:
+    """Run `colcon build` on a workspace, without a network; return the end of its output.
+
+    Args:
+        workspace: it is writable for the build, and nothing else is.
+        choice: colcon's own options for choosing packages.
+
+    Raises:
+        StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
+    """
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "build"]
+    command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *choice]
+    environment = workspace.environment()
+    faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
+    environment |= {
+        "CMAKE_PREFIX_PATH": os.pathsep.join([str(faster), environment["CMAKE_PREFIX_PATH"]]),
+        "COLCON_HOME": str(workspace.scratch),
+        "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
+    }
+    system = tuple(Mount(prefix) for prefix in workspace.ros.prefixes if workspace.ros.kind == "sourced")
+    spec = Sandbox(
+        workdir=workspace.root,
+        mounts=(
+            *system,
+            *map(Mount, (HOST, zygote.HOST, *cmake_overlay.READ, *workspace.underlays)),
+            Mount(workspace.root, writable=True),
+            Mount(workspace.scratch, writable=True),
+        ),
+        environment=environment,
+        limits=BUILD,
+    )
+    with launch(command, spec, preload=PRELOAD) as process:
+        process.wait(BUILD.wall_seconds + 10)
+        output, ending, status = process.output, process.ending, process.returncode
+    if ending is not Ending.EXITED or status != 0:
+        raise StudentError(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(output, LOG_LINES)))
+    require_contained(workspace.install)
+    return tail(output, LOG_LINES)
+
+
+def require_contained(install: Path) -> None:
+    """See that no link leads out of the install space: it is mounted for nodes, and a mount would follow the link.
+
+    Raises:
+        StudentError: one does, or the folders are nested too deep to look at.
+    """
+    pending = [install]
+    while pending:
+        path = pending.pop()
+        try:
+            inside = path.resolve().is_relative_to(install.parent.resolve() / install.name)
+            children = [] if path.is_symlink() or not path.is_dir() else list(path.iterdir())
+        except (OSError, RuntimeError):  # a name too long, a loop of links
+            inside, children = False, []
+        if not inside:
+            sentence = (
+                f"The build left {str(path.relative_to(install.parent))[:200]}, which leads out of the install space: "
+                "setup.py and CMakeLists.txt must install files, not links to other places."
+            )
+            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
+        pending += children
+
+
+def _build_failure(output: str, ending: Ending | None) -> str:
+    if ending is not Ending.EXITED and ending is not None:
+        return (
+            f"colcon build was stopped ({ending.value.replace('_', ' ')}): a build should end within a minute or two."
+        )
+    if "specified with --packages-up-to was not found" in output:
+        return (
+            "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read "
+            "what follows “Failed to parse ROS package manifest”."
+        )
+    # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
+    output = output[max(output.find("Starting >>> "), 0) :]
+    errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]
+    first = f" The first error: {errors[0][:300]}" if errors else ""
+    return f"colcon build failed.{first}"

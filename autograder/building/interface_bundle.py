@@ -1,0 +1,119 @@
+"""A submission's interface packages as one bundle: built alone by colcon, and kept for whoever brings the same ones.
+
+Building messages takes ten times as long as building nodes, and most of a class brings the same messages. The bundle is
+built in a workspace of its own that holds nothing else of the submission, so that what is kept depends on nothing but
+the content that it is kept under. What student's build files made is used in sandboxes only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from autograder.building.colcon import colcon_build
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.interfaces import Cache
+from autograder.interfaces.build import identity
+from autograder.workspace import Workspace
+
+GROUP = "rosidl_interface_packages"
+DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buildtool_depend")
+VERSION = 1  # of the way in which a bundle is built and kept
+NOTE = "bundle.json"
+HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
+
+
+def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[str, Path]:
+    """Return the interface packages among the wanted ones and those that they depend on, by name.
+
+    A bundle that needs any other package of the submission is none: colcon then builds everything together.
+    """
+    needed = _closure(found, wanted)
+    bundle = {name: found[name] for name in needed if _is_interface(found[name])}
+    return bundle if _closure(found, tuple(bundle)) == set(bundle) else {}
+
+
+def bring_in(bundle: dict[str, Path], workspace: Workspace) -> str:
+    """Put a bundle's built packages into a workspace's install space; return the end of colcon's output.
+
+    Raises:
+        StudentError: it did not build.
+    """
+    cache = Cache.default("bundles")
+    try:
+        entry = cache.get(_key(bundle, workspace), partial(_make, bundle, workspace))
+        note = json.loads((entry / NOTE).read_text())
+        for name in bundle:
+            if (workspace.install / name).is_dir():  # for another package that needs it, too
+                continue
+            shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
+            _relocate(workspace.install / name, note["install"], str(workspace.install))
+    finally:
+        cache.release()
+    return str(note["log"])
+
+
+def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
+    alone = replace(workspace, root=workspace.scratch / "bundle")
+    shutil.rmtree(alone.root, ignore_errors=True)  # of a build that failed, and is tried again for another package
+    for name, folder in bundle.items():
+        shutil.copytree(folder, alone.root / "src" / name, symlinks=True)
+    log = colcon_build(alone, "--packages-select", *bundle)
+    for name in bundle:
+        if not (alone.install / name).is_dir():
+            sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
+            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence, log))
+        shutil.copytree(alone.install / name, entry / "install" / name, symlinks=True)
+    (entry / NOTE).write_text(json.dumps({"install": str(alone.install), "log": log}))
+    shutil.rmtree(alone.root)
+
+
+def _relocate(prefix: Path, old: str, new: str) -> None:
+    """Let colcon's own scripts of a package name the place where it is now; everything else in it is relative."""
+    for path in prefix.glob("share/*/*"):
+        if path.suffix in HOOKS and path.is_file() and not path.is_symlink():
+            text = path.read_bytes()
+            if old.encode() in text:
+                path.write_bytes(text.replace(old.encode(), new.encode()))
+
+
+def _key(bundle: dict[str, Path], workspace: Workspace) -> str:
+    digest = hashlib.sha256(json.dumps([VERSION, identity(workspace.ros)], sort_keys=True).encode())
+    digest.update(json.dumps([str(space) for space in workspace.underlays]).encode())
+    for name, folder in sorted(bundle.items()):
+        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+            where = f"{name}/{path.relative_to(folder)}"
+            digest.update(json.dumps([where, path.stat().st_mode & 0o111, path.stat().st_size]).encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:40]
+
+
+def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:
+    """Return the wanted packages and all packages of the submission below them."""
+    seen: set[str] = set()
+    pending = [name for name in wanted if name in found]
+    while pending:
+        name = pending.pop()
+        if name not in seen:
+            seen.add(name)
+            pending += [other for other in _dependencies(found[name]) if other in found]
+    return seen
+
+
+def _dependencies(folder: Path) -> Iterator[str]:
+    manifest = ET.fromstring((folder / "package.xml").read_bytes())
+    for tag in DEPENDS:
+        yield from (element.text.strip() for element in manifest.iter(tag) if element.text)
+
+
+def _is_interface(folder: Path) -> bool:
+    manifest = ET.fromstring((folder / "package.xml").read_bytes())
+    groups = {(element.text or "").strip() for element in manifest.iter("member_of_group")}
+    return GROUP in groups and (folder / "CMakeLists.txt").is_file()

@@ -1,0 +1,87 @@
+"""Building what a suite wants: a build that fails ends the grading, or is something that the checks see."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from autograder.building.build import build, require_packages
+from autograder.building.colcon import require_contained
+from autograder.building.interface_bundle import interface_bundle
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.packages import find_packages
+from autograder.result import Build
+from autograder.workspace import Workspace
+
+
+@dataclass(frozen=True)
+class Observed:
+    """What became of the packages of a suite.
+
+    Attributes:
+        build: how building them went, all together.
+        diagnoses: by package; OK for one that was built.
+    """
+
+    build: Build
+    diagnoses: Mapping[str, Diagnosis]
+
+    @property
+    def diagnosis(self) -> Diagnosis:
+        """The first package's that was not built, or OK."""
+        return next((found for found in self.diagnoses.values() if found is not OK), OK)
+
+
+def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> Observed:
+    """Build packages of a workspace.
+
+    Where a build may fail, and does, each package is built by itself, so that one's error is not the other's. Colcon
+    alone judges then whether a package is whole.
+
+    Args:
+        workspace: with the sources in its `src` folder.
+        packages: which to build.
+        may_fail: whether a package that is missing or does not build is seen, rather than the end.
+
+    Raises:
+        StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.
+    """
+    source = workspace.root / "src"
+    if not may_fail:
+        require_packages(source, packages)
+        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+    if together := _at_once(workspace, packages):
+        return Observed(together, dict.fromkeys(packages, OK))
+    builds: list[Build] = []
+    diagnoses: dict[str, Diagnosis] = {}
+    for name in packages:
+        try:
+            require_packages(source, (name,), whole=False)
+            builds.append(build(workspace, (name,)))
+            diagnoses[name] = OK
+        except StudentError as error:
+            builds.append(Build(False, 0.0, log=error.diagnosis.detail))
+            diagnoses[name] = error.diagnosis
+    require_contained(workspace.install)  # a build that failed was not looked at yet
+    seen = tuple(sorted({name for each in builds for name in each.packages}))
+    log = "\n".join(filter(None, (each.log for each in builds)))
+    seconds = round(math.fsum(each.seconds for each in builds), 2)
+    return Observed(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
+
+
+def _at_once(workspace: Workspace, packages: tuple[str, ...]) -> Build | None:
+    """Build several packages by one run of colcon, most of whose cost is its own; None if that is no gain or fails.
+
+    It is no gain for interfaces: they come from a cache, and colcon has one package less to build.
+    """
+    found, _ = find_packages(workspace.root / "src")
+    if len(packages) == 1 or not found.keys() >= set(packages) or interface_bundle(found, packages):
+        return None
+    try:
+        return build(workspace, packages)
+    except StudentError:
+        subprocess.run(["rm", "-rf", "--", workspace.root / "build", workspace.install], check=True)
+        return None

@@ -1,0 +1,16 @@
+"""The checks: what a check is, and one package a chapter with the checks that judge it.
+
+    chNN_name/
+        conftest.py    the fixtures of this chapter
+        support/       contract, robots and stimuli: what visible and hidden checks share
+        visible/       the checks that students run themselves
+        hidden/        the checks that grade; students never get this folder
+        mutants.yaml   flawed versions of the reference, with the checks that each loses
+        variants/      right answers in another style
+
+Visible checks and support import nothing hidden. The release and the sandbox hold no `hidden` folder.
+"""
+
+from autograder.checks.declaration import Check, CheckFailed, Outcome, Visibility, check, declared, expect
+
+__all__ = ["Check", "CheckFailed", "Outcome", "Visibility", "check", "declared", "expect"]

@@ -1,0 +1,91 @@
+"""What the student's square does: its function alone, and then the robot."""
+
+from __future__ import annotations
+
+import math
+
+from geometry_msgs.msg import Twist
+
+from autograder.checks import Visibility, check, expect
+from autograder.harness import SteppedHarness, Workspace
+from autograder.probes.calls import call, calls, value
+
+GROUP = "square"
+MODULE = "first_robot.square"
+SIDE, TURN = 4.0, 2.0  # s
+SPEED, RATE = 0.3, math.radians(90.0) / TURN
+TOLERANCE = 0.01
+DOC = "https://docs.python.org/3/library/stdtypes.html#numeric-types-int-float-complex"
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=Visibility.VISIBLE,
+    hints=("Return two numbers: return SPEED, 0.0", "The first SIDE_SECONDS of a round are a side."),
+)
+def test_side(workspace: Workspace) -> None:
+    """At the start of a round the robot drives straight on at 0.3 m/s."""
+    _expect(workspace, 0.0, SPEED, 0.0)
+    _expect(workspace, SIDE - 0.1, SPEED, 0.0)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=Visibility.VISIBLE,
+    depends=("side",),
+    hints=("After SIDE_SECONDS it turns: return 0.0, TURN_RATE", "A positive rate turns to the left."),
+)
+def test_corner(workspace: Workspace) -> None:
+    """After 4 s it turns left on the spot, 90 degrees in 2 s."""
+    _expect(workspace, SIDE, 0.0, RATE)
+    _expect(workspace, SIDE + TURN - 0.1, 0.0, RATE)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=Visibility.VISIBLE,
+    depends=("corner",),
+    hints=("seconds % (SIDE_SECONDS + TURN_SECONDS) is how far the present round is.", "7.5 % 6.0 is 1.5."),
+    doc=DOC,
+)
+def test_goes_on(workspace: Workspace) -> None:
+    """After 6 s the next side begins, and so on for ever."""
+    _expect(workspace, 7.0 * (SIDE + TURN) + 1.0, SPEED, 0.0)
+    _expect(workspace, 7.0 * (SIDE + TURN) + SIDE + 1.0, 0.0, RATE)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=Visibility.VISIBLE,
+    depends=("goes_on",),
+    hints=("The node calls command_at; leave the class as it is.", "Save the file by running its cell."),
+)
+def test_robot(workspace: Workspace) -> None:
+    """The robot itself does so, ten commands a second."""
+    with SteppedHarness(workspace, "first_robot", "square", listens={"/cmd_vel": Twist}) as harness:
+        harness.run(SIDE + TURN)
+        commands = [stamped.message for stamped in harness.messages("/cmd_vel")]
+    expect(58 <= len(commands) <= 62, f"In 6 s it published {len(commands)} commands.")
+    forward = sum(_near(command.linear.x, SPEED) for command in commands) / 10.0
+    turning = sum(_near(command.angular.z, RATE) for command in commands) / 10.0
+    right = abs(forward - SIDE) <= 0.2 and abs(turning - TURN) <= 0.2
+    expect(right, f"In 6 s it drove for {forward:.1f} s and turned for {turning:.1f} s, instead of 4 s and 2 s.")
+
+
+def _expect(workspace: Workspace, seconds: float, linear: float, angular: float) -> None:
+    shown = f"command_at({seconds:g})"
+    (outcome,) = calls(workspace, MODULE, call("command_at", seconds))
+    got = value(outcome, shown)
+    pair = isinstance(got, list) and len(got) == 2 and all(isinstance(x, int | float) for x in got)
+    expect(pair, f"{shown} returned {got} instead of two numbers.")
+    right = _near(got[0], linear) and _near(got[1], angular)
+    wanted = f"({linear:.3f}, {angular:.3f})"
+    expect(right, f"{shown} returned ({got[0]:.3f}, {got[1]:.3f}) instead of {wanted}.")
+
+
+def _near(got: float, wanted: float) -> bool:
+    return abs(got - wanted) <= TOLERANCE

@@ -1,0 +1,75 @@
+"""The dancer, started as `ros2 run` starts it."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+import yaml
+
+from autograder.checks import check, expect
+from autograder.checks.ch01_package_structure.support import contract, robots
+from autograder.harness import SteppedHarness, Workspace
+from autograder.probes.installed import Installed
+
+GROUP = "run"
+HINTS = (
+    "ros2 run square_dance dancer in a new shell, after source install/setup.bash: what does it print?",
+    "An entry point reads name = package.folder.module:function.",
+)
+
+
+@dataclass(frozen=True)
+class Dance:
+    """A dancer in the harness, and how long the side of its square is, in metres."""
+
+    harness: SteppedHarness
+    side: float
+
+
+@pytest.fixture(scope="module")
+def running(workspace: Workspace, seed: int) -> Iterator[Dance]:
+    """One dancer for the checks that it starts, and that it dances."""
+    side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
+    with robots.dancer(workspace, "-p", f"side:={side}") as harness:
+        yield Dance(harness, side)
+
+
+@check(points=2, group=GROUP, depends=("executable", "subpackages"), hints=HINTS, doc=contract.CREATE)
+def test_starts(running: Dance) -> None:
+    """`ros2 run square_dance dancer` starts a node called dancer."""
+    names = running.harness.nodes()
+    expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
+
+
+@check(points=1, group=GROUP, depends=("starts",), hints=HINTS, doc=contract.CREATE)
+def test_dances(running: Dance) -> None:
+    """It drives along a side of the square, and then turns to the left."""
+    robots.expect_dance(running.harness, running.side)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("starts", "config"),
+    hints=("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side."),
+    doc=contract.DEVELOP,
+)
+def test_configured(workspace: Workspace, dance: Installed) -> None:
+    """With the installed configuration it dances a square of the size that is written there."""
+    path = dance.prefix / "share" / dance.package / contract.DANCE_CONFIG
+    side = _side(dance.read(contract.DANCE_CONFIG) or b"")
+    with robots.dancer(workspace, "--params-file", str(path)) as harness:
+        robots.expect_dance(harness, side)
+
+
+def _side(text: bytes) -> float:
+    try:
+        side = yaml.safe_load(text)["dancer"]["ros__parameters"]["side"]
+    except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
+        side = None
+    usable = isinstance(side, float) and 0.1 <= side <= 5.0
+    expect(usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5.")
+    return float(side or 0.0)

@@ -1,0 +1,138 @@
+"""Verdicts on one package, in words; both packages, and both the visible and the hidden checks, share them."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Collection, Mapping
+from pathlib import Path
+
+from autograder.checks import CheckFailed, expect
+from autograder.checks.ch01_package_structure.support import contract
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.packages import find_packages
+from autograder.probes import imports, manifest
+from autograder.probes.installed import Installed
+from autograder.probes.manifest import Manifest
+
+TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
+
+
+def folder(workspace: Workspace, name: str) -> Path:
+    """Return the folder of a package's sources, where it should be if it is nowhere."""
+    source = workspace.root / "src"
+    return find_packages(source)[0].get(name, source / name)
+
+
+def expect_built(builds: Mapping[str, Diagnosis], name: str) -> None:
+    """Fail the check, with what colcon said, unless a package was built."""
+    if builds[name] is not OK:
+        raise StudentError(builds[name])
+
+
+def expect_manifest(workspace: Workspace, name: str) -> Manifest:
+    """Return a package's manifest; fail the check unless ROS takes it for a Python package of this name."""
+    found = manifest.read(folder(workspace, name))
+    expect(found.format == 3, f'package.xml says format="{found.format}"; the format of ROS 2 today is 3.')
+    expect(found.name == name, f"package.xml names the package {found.name}, it should be {name}.")
+    said = found.build_type or "none, and colcon takes it for CMake"
+    expect(
+        found.build_type == contract.BUILD_TYPE,
+        f"The build type in <export> is {said}; a Python package's is {contract.BUILD_TYPE}.",
+    )
+    return found
+
+
+def expect_declared(needed: Collection[imports.Import], declared: Collection[str], first: int = 0) -> None:
+    """Fail the check unless all imports are declared; part of the points for part of them.
+
+    Args:
+        needed: what is imported.
+        declared: the names in package.xml that count.
+        first: how many were missing when the exercise began; all of them if 0.
+    """
+    missing = imports.undeclared(needed, declared)
+    total = first or len(needed)
+    fraction = max(0.0, 1.0 - len(missing) / total) if total else 0.0
+    expect(not missing, f"package.xml does not declare everything: {imports.say(missing)}.", fraction=fraction)
+
+
+def expect_executable(installed: Installed, name: str) -> None:
+    """Fail the check unless a program lies where `ros2 run` looks."""
+    if name in installed.executables:
+        return
+    where = f"lib/{installed.package}"
+    if name in installed.misplaced:
+        raise CheckFailed(
+            f"{name} was installed in bin/; ros2 run and launch files look in {where}/. That is setup.cfg's."
+        )
+    there = ", ".join((*installed.executables, *installed.misplaced))
+    raise CheckFailed(
+        f"{where}/ has no {name}: {f'what was installed is {there}' if there else 'no program was installed'}."
+    )
+
+
+def expect_modules(installed: Installed, source: Path) -> None:
+    """Fail the check unless each Python file of the module was installed; part of the points for part of them."""
+    name = installed.package
+    files = sorted(path.relative_to(source) for path in (source / name).rglob("*.py"))
+    missing = [module for file in files if (module := _module(file)) not in installed.modules]
+    deeper = sum(len(file.parts) > 2 for file in files)  # what lies in the module itself is installed most easily
+    fraction = max(0.0, 1.0 - len(missing) / deeper) if deeper else 0.0
+    them = "it" if len(missing) == 1 else "them"
+    expect(
+        not missing,
+        f"{', '.join(missing[:3])} stayed behind: the package was installed without {them}.",
+        fraction=fraction,
+    )
+
+
+def _module(file: Path) -> str:
+    return file.with_suffix("").as_posix().replace("/", ".").removesuffix(".__init__")
+
+
+def expect_shared(installed: Installed, source: Path, name: str) -> None:
+    """Fail the check unless a file was installed under the same path in share, unchanged."""
+    data = installed.read(name)
+    if data is None:
+        there = [shared for shared in installed.shared if Path(shared).name == Path(name).name]
+        there = there or difflib.get_close_matches(name, installed.shared)
+        seen = f" ({there[0]} is)" if there else ""
+        raise CheckFailed(
+            f"share/{installed.package}/{name} was not installed{seen}: data_files in setup.py says what is."
+        )
+    file = source / name
+    expect(file.is_file() and file.read_bytes() == data, f"The installed {name} is not the one in src.")
+
+
+def expect_same_facts(installed: Installed, found: Manifest) -> None:
+    """Fail the check unless setup.py says the same of the package as package.xml does."""
+    emails = [email for _, email in found.maintainers]
+    pairs = (
+        ("version", installed.metadata.get("Version", ""), [found.version]),
+        ("licence", licence(installed), list(found.licences)),
+        ("maintainer's e-mail", installed.metadata.get("Maintainer-email", ""), emails),
+    )
+    wrong = [(what, said, wanted) for what, said, wanted in pairs if not any(each in said for each in wanted if each)]
+    told = "; ".join(
+        f"the {what} is {said or 'missing'} in setup.py, {', '.join(wanted)} in package.xml"
+        for what, said, wanted in wrong
+    )
+    expect(not wrong, f"The two files differ: {told}.")
+
+
+def licence(installed: Installed) -> str:
+    """Return the licence that setup.py names."""
+    return installed.metadata.get("License-Expression", installed.metadata.get("License", ""))
+
+
+def expect_pytest(installed: Installed) -> None:
+    """Fail the check unless setup.py names pytest in a way that colcon test sees."""
+    named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
+    expect(
+        "pytest" in named,
+        "The installed package names no pytest for its tests, so colcon test would run none of them: tests_require is "
+        "no longer known, extras_require={'test': ['pytest']} is.",
+    )

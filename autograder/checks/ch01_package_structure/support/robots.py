@@ -1,0 +1,79 @@
+"""The two programs in the harness: the dancer's commands, and the alarm's answer to a scan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Bool
+
+from autograder.checks import expect
+from autograder.checks.ch01_package_structure.support import contract
+from autograder.harness import Stamped, SteppedHarness, Workspace
+
+CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
+
+
+@contextmanager
+def dancer(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
+    """Start the dancer."""
+    with SteppedHarness(
+        workspace, contract.DANCE, contract.DANCER, listens={CMD_VEL: Twist}, arguments=_ros(arguments)
+    ) as harness:
+        yield harness
+
+
+@contextmanager
+def alarm(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
+    """Start the alarm."""
+    with SteppedHarness(
+        workspace,
+        contract.WATCH,
+        contract.ALARM,
+        offers={SCAN: LaserScan},
+        listens={ALARM: Bool},
+        arguments=_ros(arguments),
+    ) as harness:
+        yield harness
+
+
+def expect_dance(harness: SteppedHarness, side: float) -> None:
+    """Fail the check unless the dancer drives one side of this length and then turns to the left."""
+    straight = side / contract.SPEED
+    harness.run(straight + 2.0)
+    steps = harness.messages(CMD_VEL)
+    expect(bool(steps), "It published no command on /cmd_vel.")
+    before = [step for step in steps if step.seconds < straight - 0.3]
+    after = [step for step in steps if step.seconds > straight + 0.5]
+    expect(
+        bool(before) and all(_is(step, contract.SPEED, 0.0) for step in before),
+        f"With a side of {side:g} m it should drive straight on at {contract.SPEED} m/s for {straight:.1f} s.",
+    )
+    expect(
+        bool(after) and all(_is(step, 0.0, contract.TURN) for step in after),
+        f"With a side of {side:g} m it should turn to the left after {straight:.1f} s.",
+    )
+
+
+def expect_alarm(harness: SteppedHarness, distance: float, wanted: bool) -> None:
+    """Fail the check unless the alarm answers a scan of things at this distance as it should."""
+    expect(harness.takes(SCAN), "It does not subscribe to scan as sensor_msgs/LaserScan.")
+    began = harness.seconds
+    scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=0.1)
+    scan.ranges = [9.0] * 30 + [distance] + [9.0] * 30
+    harness.publish(SCAN, scan)
+    harness.run(0.3)
+    answers = harness.messages(ALARM, since=began)
+    expect(bool(answers), "A scan got no answer on /alarm.")
+    seen = answers[-1].message.data
+    expect(seen is wanted, f"With something at {distance:.2f} m the alarm is {seen}, it should be {wanted}.")
+
+
+def _is(step: Stamped, linear: float, angular: float) -> bool:
+    return bool(abs(step.message.linear.x - linear) < 1e-3 and abs(step.message.angular.z - angular) < 1e-3)
+
+
+def _ros(arguments: tuple[str, ...]) -> tuple[str, ...]:
+    return ("--ros-args", *arguments) if arguments else ()

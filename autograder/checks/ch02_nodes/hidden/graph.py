@@ -1,0 +1,105 @@
+"""The node in the ROS graph: its name, its topics, their types, their QoS."""
+
+from __future__ import annotations
+
+from autograder.checks import CheckFailed, check, expect
+from autograder.checks.ch02_nodes.support import contract
+from autograder.checks.ch02_nodes.support.robot import Robot, unheard
+from autograder.exceptions import StudentError
+from autograder.lockstep.failures import diagnose_ending
+
+GROUP = "graph"
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=(
+        "Run the cell that builds the workspace and read its last lines.",
+        "setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.",
+    ),
+    doc=contract.NODES,
+)
+def test_starts(robot: Robot) -> None:
+    """The executable robot_controller starts and its node spins."""
+    if robot.process.ending is not None:
+        raise StudentError(diagnose_ending(robot.process))
+
+
+@check(points=1, group=GROUP, depends=("starts",), hints=("The name is the argument of super().__init__.",))
+def test_node_name(robot: Robot) -> None:
+    """The node is called robot_controller."""
+    names = robot.nodes()
+    expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("starts",),
+    hints=("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.",),
+)
+def test_subscribes_scan(robot: Robot) -> None:
+    """It subscribes to scan as sensor_msgs/msg/LaserScan."""
+    _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("subscribes_scan",),
+    hints=(
+        "A lidar publishes best-effort; a reliable subscription never matches it.",
+        "Give create_subscription qos_profile_sensor_data instead of 10.",
+    ),
+    doc=contract.QOS,
+)
+def test_scan_qos(robot: Robot) -> None:
+    """Its scan subscription matches a lidar that publishes best-effort."""
+    reason = unheard(robot)
+    expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("starts",),
+    hints=("create_publisher(Twist, 'cmd_vel', 10) in __init__.",),
+)
+def test_publishes_cmd_vel(robot: Robot) -> None:
+    """It publishes cmd_vel as geometry_msgs/msg/Twist."""
+    _expect_endpoint(robot, "publisher", "/cmd_vel", "geometry_msgs/msg/Twist")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("starts",),
+    hints=("create_subscription(String, 'status', self.status_callback, 10) in __init__.",),
+)
+def test_subscribes_status(robot: Robot) -> None:
+    """It subscribes to status as std_msgs/msg/String."""
+    _expect_endpoint(robot, "subscription", "/status", "std_msgs/msg/String")
+
+
+def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> None:
+    find = (
+        robot.node.get_publishers_info_by_topic if kind == "publisher" else robot.node.get_subscriptions_info_by_topic
+    )
+    types = sorted({peer.topic_type for peer in find(topic) if peer.node_name != "grader"})
+    if not types:
+        list_by_node = (
+            robot.node.get_publisher_names_and_types_by_node
+            if kind == "publisher"
+            else robot.node.get_subscriber_names_and_types_by_node
+        )
+        names = [
+            name
+            for node, space in robot.node.get_node_names_and_namespaces()
+            if node != "grader"
+            for name, _ in list_by_node(node, space)
+            if name not in ("/rosout", "/parameter_events", "/clock")
+        ]
+        found = f"its {kind}s are on {', '.join(sorted(names))}" if names else f"it has no {kind}"
+        raise CheckFailed(f"There is no {kind} on {topic}: {found}.")
+    expect(types == [type_name], f"The {kind} on {topic} has the type {', '.join(types)} instead of {type_name}.")

@@ -1,0 +1,72 @@
+"""A minute in each of three hidden worlds, judged by temporal logic over the robot's track."""
+
+from __future__ import annotations
+
+import math
+import random
+
+from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks.ch02_nodes.hidden import terrain
+from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
+from autograder.gallery import Gallery
+from autograder.harness import AutoHarness, Workspace, drive
+from autograder.harness.drive import LISTENS, OFFERS
+from sim import Recording, RobotSpec, Simulation, World, clearance
+from sim.rows import row_at, state_at
+
+GROUP = "worlds"
+SECONDS = 60.0
+RADIUS = 0.18  # m
+LEAST_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
+SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
+DRIVES = ("forward_when_clear",)  # not on turning: a collision shows more than a failed reaction, and earns its share
+HINTS = (
+    "Look at the picture: what did the lidar see at the marked instant, and at which bearing?",
+    "Drive the same kind of world in the notebook, with drive(...), and print what control_loop decides.",
+)
+
+
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+    """It drives for a minute in a furnished room and touches nothing."""
+    _expect_safe_drive(workspace, terrain.furnished_room(draw), draw, gallery)
+
+
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+    """It drives for a minute in a hall of pillars and touches nothing."""
+    _expect_safe_drive(workspace, terrain.hall_of_pillars(draw), draw, gallery)
+
+
+@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
+    """It drives for a minute in a bent corridor and touches nothing."""
+    _expect_safe_drive(workspace, terrain.bent_corridor(draw), draw, gallery)
+
+
+def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, gallery: Gallery) -> None:
+    simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
+    with AutoHarness(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS) as harness:
+        recording = drive(harness, simulation, SECONDS).recording
+    verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
+    if verdict.violated_at is not None:
+        when = verdict.violated_at
+        what = _nearest(recording, when)
+        sentence = f"It touched {what} at t = {when:.1f} s."
+        gallery.track(
+            "track", recording, f"The robot's track in {world.name}. {sentence}", mark=when, note=f"touches {what}"
+        )
+        raise CheckFailed(sentence, fraction=round(when / SECONDS, 2))
+    path = _path_length(recording)
+    caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
+    gallery.track("track", recording, caption)
+    expect(path >= LEAST_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
+
+
+def _path_length(recording: Recording) -> float:
+    steps = recording.poses[1:, 0, :2] - recording.poses[:-1, 0, :2]
+    return float(sum(math.hypot(dx, dy) for dx, dy in steps.tolist()))
+
+
+def _nearest(recording: Recording, when: float) -> str:
+    return clearance(recording.simulation, state_at(recording, row_at(recording, when))).what

@@ -1,0 +1,218 @@
+"""The action drive_distance: which goals it takes, how the robot moves, and what is heard of it."""
+
+from __future__ import annotations
+
+import math
+import random
+
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Twist
+from rclpy.action import get_action_names_and_types
+
+from autograder.checks import check, expect
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
+from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, Driver, stopped
+
+GROUP = "action"
+MOVES = ("drive_moves",)
+SLACK = 0.02  # m
+SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
+LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real
+NAMES = {
+    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
+    GoalStatus.STATUS_CANCELED: "CANCELED",
+    GoalStatus.STATUS_ABORTED: "ABORTED",
+}
+EXECUTOR = (
+    "While execute runs in its loop, other callbacks need another thread: spin with a MultiThreadedExecutor.",
+    "rclpy.spin(node, executor=MultiThreadedExecutor()) in main, which is given.",
+)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("drive_distance", "generated"),
+    hints=(
+        "Start it with ros2 run my_robot_package distance_driver and read its last lines.",
+        "ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.",
+    ),
+    doc=contract.ACTION,
+)
+def test_drive_serves(driver: Driver) -> None:
+    """The node distance_driver serves the action drive_distance."""
+    names = driver.nodes()
+    expect(f"/{contract.DRIVER}" in names, f"The graph holds {', '.join(names) or 'no node'}, but no distance_driver.")
+    there: dict[str, list[str]] = {}
+
+    def is_served() -> bool:
+        there.update(get_action_names_and_types(driver.node))
+        return ACTION in there
+
+    served = driver.wait_for(is_served, SEEN_SECONDS)
+    expect(served, f"There is no action {ACTION}; the node serves {', '.join(sorted(there)) or 'no action'}.")
+    wanted = f"{contract.INTERFACES}/action/DriveDistance"
+    expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("drive_serves",),
+    hints=("Start with self.position = None, and reject while it is None.",),
+    doc=contract.ACTION,
+)
+def test_drive_needs_odometry(driver: Driver) -> None:
+    """Before any odometry has come, a goal is rejected."""
+    goal = driver.send(1.0)
+    if goal.accepted:
+        driver.abandon(goal)
+    expect(not goal.accepted, "A goal was accepted before the first odometry.")
+    expect(not driver.messages(COMMANDS), "The robot was moved before the first odometry.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("drive_serves",),
+    hints=EXECUTOR,
+    doc=contract.GROUPS,
+)
+def test_drive_moves(ready: Driver, draw: random.Random) -> None:
+    """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
+    speed = draw.uniform(0.3, 0.45)
+    goal = ready.start(3.0, speed)
+    began = ready.seconds
+    commands = ready.roll(goal, 0.6)
+    seconds = ready.seconds - began
+    ready.abandon(goal)
+    expect(bool(commands), "The goal was accepted, but no command came on cmd_vel.")
+    wrong = [command for command in commands if not straight(command, speed)]
+    expect(not wrong, f"At a speed of {speed:.2f} m/s the robot was told {_say(wrong[0]) if wrong else ''}.")
+    rate = len(commands) / seconds
+    expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
+
+
+@check(points=2, group=GROUP, depends=MOVES, hints=EXECUTOR, doc=contract.ACTION)
+def test_drive_succeeds(ready: Driver, draw: random.Random) -> None:
+    """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
+    for speed in (0.5, 0.4):
+        distance = draw.uniform(0.6, 0.8)
+        x, y = ready.x, ready.y
+        goal = ready.start(distance, speed)
+        commands = ready.finish(goal, LONG, f"With {distance:.2f} m to drive")
+        driven = math.dist((x, y), (ready.x, ready.y))
+        says = NAMES.get(goal.status, goal.status)
+        expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"After {driven:.2f} of {distance:.2f} m it ended {says}.")
+        expect(stopped(commands), "After the goal had ended, the last command was no stop.")
+        most = distance + 3 * contract.PERIOD * speed + SLACK
+        expect(distance - SLACK <= driven <= most, f"With {distance:.2f} m to drive, the robot drove {driven:.2f} m.")
+        ready.place(ready.x, ready.y, ready.heading + math.pi / 2.0)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("drive_succeeds",),
+    hints=("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.",),
+    doc=contract.ACTION,
+)
+def test_drive_result(ready: Driver, draw: random.Random) -> None:
+    """The result says how far the robot has come, and gives no reason when all is well."""
+    x, y = ready.x, ready.y
+    goal = ready.start(draw.uniform(0.15, 0.35), 0.5)
+    ready.finish(goal, LONG, "With a short way to drive")
+    driven = math.dist((x, y), (ready.x, ready.y))
+    expect(
+        abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
+    )
+    expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=MOVES,
+    hints=(
+        "goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.",
+    ),
+    doc=contract.ACTION,
+)
+def test_drive_feedback(ready: Driver, draw: random.Random) -> None:
+    """Feedback comes on the way: driven grows, and remaining is what is left."""
+    distance = draw.uniform(0.4, 0.5)
+    goal = ready.start(distance, 0.5)
+    ready.finish(goal, LONG, f"With {distance:.2f} m to drive")
+    heard = [stamped.message for stamped in goal.feedback]
+    expect(len(heard) >= 4, f"On the way came {len(heard)} feedbacks, instead of about ten a second.")
+    wrong = [one for one in heard if abs(one.driven + one.remaining - distance) > SLACK]
+    said = f"driven {wrong[0].driven:.2f} m and remaining {wrong[0].remaining:.2f} m" if wrong else ""
+    expect(not wrong, f"With {distance:.2f} m to drive, a feedback said {said}.")
+    driven = [one.driven for one in heard]
+    expect(driven == sorted(driven) and driven[-1] > driven[0], "driven did not grow on the way.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("drive_serves",),
+    hints=(
+        "goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.",
+        "0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.",
+    ),
+    doc=contract.ACTION,
+)
+def test_drive_rejects(ready: Driver, draw: random.Random) -> None:
+    """A goal whose distance or speed is out of its range is rejected, and the robot stays."""
+    over = draw.uniform(0.05, 2.0)
+    bad = (
+        (0.0, 0.2),
+        (-over, 0.2),
+        (MAX_DISTANCE + over, 0.2),
+        (math.nan, 0.2),
+        (1.0, 0.0),
+        (1.0, -over),
+        (1.0, MAX_SPEED + over),
+        (1.0, math.nan),
+    )
+    accepted = []
+    for distance, speed in bad:
+        goal = ready.send(distance, speed)
+        if goal.accepted:
+            accepted.append(f"{distance:.2f} m at {speed:.2f} m/s")
+            ready.abandon(goal)
+    share = round(1.0 - len(accepted) / len(bad), 2)
+    expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=MOVES,
+    hints=(
+        "At most means <=: 5.0 m and 0.5 m/s can be driven.",
+        "speed has a default in the goal; do not ask for more.",
+    ),
+    doc=contract.ACTION,
+)
+def test_drive_limits(ready: Driver) -> None:
+    """The largest distance, the largest speed and the default speed can be driven."""
+    for distance, speed in ((MAX_DISTANCE, None), (0.5, MAX_SPEED)):
+        goal = ready.start(distance, speed)
+        commands = ready.roll(goal, 0.4)
+        ready.abandon(goal)
+        wanted = 0.2 if speed is None else speed
+        expect(
+            bool(commands) and straight(commands[0], wanted),
+            f"With {distance} m at {wanted} m/s, the robot was told {_say(commands[0]) if commands else 'nothing'}.",
+        )
+
+
+def straight(command: Twist, speed: float) -> bool:
+    """Return whether a command drives straight on at a speed."""
+    return bool(abs(command.linear.x - speed) <= SLACK and abs(command.angular.z) <= SLACK)
+
+
+def _say(command: Twist) -> str:
+    return f"to drive at {command.linear.x:.2f} m/s and to turn at {command.angular.z:.2f} rad/s"

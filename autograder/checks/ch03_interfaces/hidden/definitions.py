@@ -1,0 +1,100 @@
+"""What the three definitions say: names, types and order first, then constants, defaults and bounds."""
+
+from __future__ import annotations
+
+from autograder.checks import CheckFailed, check
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.reading import expect_like, read
+from autograder.harness import Workspace
+from autograder.probes.interfaces import Aspect, compare
+
+GROUP = "definitions"
+READABLE = ("readable",)
+FIELDS = (Aspect.FIELDS, Aspect.TYPES)
+TABLES = (
+    "Compare your file with the exercise's table, line by line: name, type, order.",
+    "`ros2 interface show` shows what ROS has understood; show your own and read it aloud.",
+)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=(
+        "The files are msg/RobotStatus.msg, srv/CheckTrip.srv and action/DriveDistance.action in my_robot_interfaces.",
+        "`colcon build` names the line that it cannot read.",
+    ),
+    doc=contract.DEFINE,
+)
+def test_readable(workspace: Workspace) -> None:
+    """The three definitions are in my_robot_interfaces, and ROS can read them."""
+    for wanted in contract.DEFINITIONS:
+        read(workspace, wanted)
+
+
+@check(points=2, group=GROUP, depends=READABLE, hints=TABLES, doc=contract.DEFINE)
+def test_robot_status(workspace: Workspace) -> None:
+    """msg/RobotStatus.msg has the contract's fields, with their types, in their order."""
+    expect_like(workspace, contract.ROBOT_STATUS, *FIELDS)
+
+
+@check(points=2, group=GROUP, depends=READABLE, hints=TABLES, doc=contract.LANGUAGE)
+def test_check_trip(workspace: Workspace) -> None:
+    """srv/CheckTrip.srv has the contract's fields in request and response, with their types, in their order."""
+    expect_like(workspace, contract.CHECK_TRIP, *FIELDS)
+
+
+@check(points=2, group=GROUP, depends=READABLE, hints=TABLES, doc=contract.LANGUAGE)
+def test_drive_distance(workspace: Workspace) -> None:
+    """action/DriveDistance.action has the contract's fields in goal, result and feedback, with types, in order."""
+    expect_like(workspace, contract.DRIVE_DISTANCE, *FIELDS)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=READABLE,
+    hints=("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.",),
+    doc=contract.LANGUAGE,
+)
+def test_constants(workspace: Workspace) -> None:
+    """The four constants of the definitions have the contract's names, types and values."""
+    _expect_all(workspace, Aspect.CONSTANTS, 4)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=READABLE,
+    hints=("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.",),
+    doc=contract.LANGUAGE,
+)
+def test_defaults(workspace: Workspace) -> None:
+    """The four defaults of the definitions have the contract's values."""
+    _expect_all(workspace, Aspect.DEFAULTS, 4)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=READABLE,
+    hints=(
+        "`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.",
+    ),
+    doc=contract.LANGUAGE,
+)
+def test_bounds(workspace: Workspace) -> None:
+    """The array and the strings that have a bound in the contract have that bound, and the other array has none."""
+    _expect_all(workspace, Aspect.BOUNDS, 4)
+
+
+def _expect_all(workspace: Workspace, aspect: Aspect, count: int) -> None:
+    """Fail the check unless every definition is right in one aspect, which `count` elements have."""
+    wrong = [
+        difference.sentence
+        for wanted in contract.DEFINITIONS
+        for difference in compare(wanted, read(workspace, wanted))
+        if difference.aspect is aspect
+    ]
+    if wrong:
+        raise CheckFailed(" ".join(wrong[:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))

@@ -1,0 +1,109 @@
+"""The interface package: its manifest, and what the build made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from autograder.checks import CheckFailed, check, expect
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.contract import INTERFACES
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.packages import find_packages
+from autograder.probes import manifest
+from autograder.probes.installed import look
+
+GROUP = "package"
+GENERATORS, RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
+GROUP_OF_INTERFACES = "rosidl_interface_packages"
+HINTS = (
+    "Compare it with the package.xml of chapter_interfaces in this chapter.",
+    "The generators build the package: buildtool_depend. Its users need the runtime: exec_depend.",
+)
+
+
+@check(points=2, group=GROUP, hints=HINTS, doc=contract.DEFINE)
+def test_manifest(workspace: Workspace) -> None:
+    """package.xml says that the package is built by CMake and what the generators and the users need."""
+    packages, _ = find_packages(workspace.root / "src")
+    found = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
+    wrong = []
+    if found.build_type != "ament_cmake":
+        wrong.append(f"the build type is {found.build_type or 'not given'}, it should be ament_cmake")
+    if GENERATORS not in found.needs("buildtool"):
+        as_other = f", but a build tool: the tag is <buildtool_depend>{GENERATORS}</buildtool_depend>"
+        wrong.append(f"{GENERATORS} is {f'there{as_other}' if GENERATORS in found.needs() else 'missing'}")
+    if RUNTIME not in found.needs("exec"):
+        wrong.append(f"there is no <exec_depend>{RUNTIME}</exec_depend>, which users of the interfaces need")
+    if GROUP_OF_INTERFACES not in found.groups:
+        wrong.append(f"there is no <member_of_group>{GROUP_OF_INTERFACES}</member_of_group>")
+    if not {"std_msgs"} <= found.needs("build") & found.needs("exec"):
+        wrong.append("std_msgs, whose Header RobotStatus holds, is not declared by <depend>")
+    expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 5), 2))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("readable",),
+    hints=(
+        "Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.",
+        "Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.",
+    ),
+    doc=contract.DEFINE,
+)
+def test_builds(builds: Mapping[str, Diagnosis]) -> None:
+    """Colcon builds my_robot_interfaces."""
+    if builds[INTERFACES] is not OK:
+        raise StudentError(builds[INTERFACES])
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("builds",),
+    hints=(
+        "Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.",
+        "rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.",
+    ),
+    doc=contract.DEFINE,
+)
+def test_generated(workspace: Workspace) -> None:
+    """The build generates Python classes from all three definitions."""
+    installed = look(workspace.install, INTERFACES)
+    absent = []
+    for wanted in contract.DEFINITIONS:
+        kind, name = wanted.path.split(".")[0].split("/")
+        if f"{INTERFACES}.{kind}._{_snake(name)}" not in installed.modules:
+            absent.append(wanted.path)
+    if absent:
+        copied = [path for path in absent if path in installed.shared]
+        why = (
+            "the text was installed, but nothing was generated from it" if copied else "CMakeLists.txt does not name it"
+        )
+        fraction = round(1.0 - len(absent) / len(contract.DEFINITIONS), 2)
+        raise CheckFailed(f"There is no class for {', '.join(absent)}: {why}.", fraction=fraction)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("builds",),
+    hints=("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.",),
+    doc=contract.DEFINE,
+)
+def test_indexed(workspace: Workspace) -> None:
+    """The ament index knows the package, so that ros2 and other packages find it."""
+    installed = look(workspace.install, INTERFACES)
+    expect(
+        installed.marker, "share/ament_index has no my_robot_interfaces: CMakeLists.txt does not call ament_package()."
+    )
+    expect("package.xml" in installed.shared, "package.xml was not installed, which ament_package() does.")
+
+
+def _snake(name: str) -> str:
+    """Return the module of a type as rosidl names it, such as robot_status for RobotStatus."""
+    return "".join(
+        f"_{letter.lower()}" if letter.isupper() and at else letter.lower() for at, letter in enumerate(name)
+    )

@@ -1,0 +1,151 @@
+"""The service check_trip: what it makes of the battery, the legs and the reserve."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+from autograder.checks import check, expect
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.contract import METRES_PER_PERCENT, UNKNOWN
+from autograder.checks.ch03_interfaces.support.reporter import SERVICE, Reporter
+
+GROUP = "service"
+ANSWERS = ("trip_answers",)
+SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
+RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("status_starts",),
+    hints=(
+        "self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.",
+        "check_trip(self, request, response) returns the response.",
+    ),
+    doc=contract.SERVICE,
+)
+def test_trip_answers(reporter: Reporter) -> None:
+    """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
+    there: dict[str, list[str]] = {}
+
+    def is_served() -> bool:
+        there.update(reporter.node.get_service_names_and_types())
+        return SERVICE in there
+
+    reporter.wait_for(is_served, SEEN_SECONDS)
+    own = sorted(name for name, kinds in there.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
+    expect(
+        SERVICE in there, f"There is no service {SERVICE}; the node serves {', '.join(own) or 'nothing of its own'}."
+    )
+    wanted = f"{contract.INTERFACES}/srv/CheckTrip"
+    expect(there[SERVICE] == [wanted], f"{SERVICE} has the type {', '.join(there[SERVICE])}, it should be {wanted}.")
+    reporter.ask([])
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=ANSWERS,
+    hints=("An unknown battery makes no trip possible; start with possible = False.",),
+    doc=contract.SERVICE,
+)
+def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
+    """While the battery is unknown no trip is possible, and battery_at_end is -1."""
+    _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
+
+
+@check(points=2, group=GROUP, depends=ANSWERS, hints=(RULE,), doc=contract.SERVICE)
+def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
+    """battery_at_end is what the legs leave of the battery, rounded down."""
+    for _ in range(4):
+        level = draw.randrange(50, 101)
+        legs = [draw.uniform(1.0, 20.0) for _ in range(draw.randrange(1, 7))]
+        legs += [draw.uniform(0.1, 0.9), 0.0]  # a leg may be short, and it may be none
+        used = sum(legs) / METRES_PER_PERCENT
+        if abs(math.remainder(used, 1.0)) < 0.01:  # too near to a whole percent to be told apart
+            legs[0] += 0.1
+            used = sum(legs) / METRES_PER_PERCENT
+        reporter.level(level)
+        answer = reporter.ask(legs, 0)
+        left = math.floor(level - used)
+        situation = f"At {level} % and {len(legs)} legs of {sum(legs):.1f} m in all"
+        expect(answer.battery_at_end == left, f"{situation}, battery_at_end is {answer.battery_at_end}, not {left}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("trip_level",),
+    hints=(RULE, "Exactly the reserve left is enough: at least means >=."),
+    doc=contract.SERVICE,
+)
+def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
+    """A trip is possible when at least the reserve is left, and not when less is."""
+    for _ in range(2):
+        level, reserve = draw.randrange(60, 101), draw.randrange(10, 40)
+        longest = (level - reserve) * METRES_PER_PERCENT
+        reporter.level(level)
+        for legs, left in (([longest], reserve), ([longest / 2, longest / 2 + 2.5], reserve - 1), ([], level)):
+            answer = reporter.ask(legs, reserve)
+            situation = f"At {level} %, with {left} % left of a reserve of {reserve} %"
+            says = "possible" if answer.possible else "not possible"
+            expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("trip_level",),
+    hints=("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not."),
+    doc=contract.SERVICE,
+)
+def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
+    """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
+    reporter.level(draw.randrange(10, 40))
+    for reserve in (5, 0):
+        answer = reporter.ask([draw.uniform(300.0, 900.0), 50.0], reserve)
+        _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=ANSWERS,
+    hints=(
+        "A leg is a distance: at least 0, and finite. nan is not at least 0.",
+        "0.0 <= leg < math.inf holds for distances alone.",
+    ),
+    doc=contract.SERVICE,
+)
+def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
+    """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
+    reporter.level(draw.randrange(60, 101))
+    for bad in (-draw.uniform(0.1, 5.0), math.nan, math.inf):
+        legs = [draw.uniform(1.0, 9.0), bad]
+        draw.shuffle(legs)
+        _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("trip_possible",),
+    hints=("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.",),
+    doc=contract.SERVICE,
+)
+def test_trip_reason(reporter: Reporter) -> None:
+    """The reason says why a trip is not possible, and is empty when it is."""
+    reporter.level(50)
+    good, bad = reporter.ask([5.0]), reporter.ask([500.0])
+    expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
+    expect(len(bad.reason.strip()) >= 3, f"The trip is not possible, and the reason is {bad.reason!r}.")
+
+
+def _expect(answer: Any, left: int, situation: str) -> None:
+    """Fail the check unless a trip is not possible and leaves so much."""
+    found = answer.battery_at_end
+    expect(not answer.possible, f"{situation}, the trip is said to be possible.")
+    expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.")

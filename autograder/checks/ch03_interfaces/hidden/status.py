@@ -1,0 +1,214 @@
+"""The status publisher on the wire: topic, quality of service, rate, and what it makes of the sensors."""
+
+from __future__ import annotations
+
+import math
+import random
+
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+from autograder.checks import check, expect
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
+from autograder.checks.ch03_interfaces.support.reporter import TOPIC, Reporter, same
+
+GROUP = "status"
+NEEDS = ("publishes_status",)
+CASES = 4
+SOME_SECONDS = 5.0  # until a status has come, even where its period is wrong
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("robot_status", "check_trip", "generated"),
+    hints=(
+        "Start it with ros2 run my_robot_package status_publisher and read its last lines.",
+        "setup.py is given: it names my_robot_package.nodes.status_publisher:main.",
+    ),
+    doc=contract.DEFINE,
+)
+def test_status_starts(reporter: Reporter) -> None:
+    """The node status_publisher starts with the interfaces of my_robot_interfaces, and spins."""
+    names = reporter.nodes()
+    expect(f"/{contract.STATUS}" in names, f"The graph holds {', '.join(names) or 'no node'}, but no status_publisher.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("status_starts",),
+    hints=("create_publisher(RobotStatus, 'robot_status', STATUS_QOS) in __init__.",),
+    doc=contract.DEFINE,
+)
+def test_publishes_status(reporter: Reporter) -> None:
+    """It publishes robot_status as my_robot_interfaces/msg/RobotStatus."""
+    peers = reporter.node.get_publishers_info_by_topic(TOPIC)
+    there = sorted({peer.topic_type for peer in peers})
+    wanted = f"{contract.INTERFACES}/msg/RobotStatus"
+    offered = sorted(
+        topic
+        for topic, _ in reporter.node.get_publisher_names_and_types_by_node(contract.STATUS, "/")
+        if topic not in ("/rosout", "/parameter_events")
+    )
+    expect(bool(there), f"Nobody publishes on /robot_status; the node publishes on {', '.join(offered) or 'no topic'}.")
+    expect(there == [wanted], f"/robot_status carries {', '.join(there)}, it should carry {wanted}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("STATUS_QOS is defined above the class; use it instead of a number.",),
+    doc=contract.QOS,
+)
+def test_status_for_late_joiners(reporter: Reporter) -> None:
+    """Its quality of service keeps the last status for whoever joins late."""
+    for peer in reporter.node.get_publishers_info_by_topic(TOPIC):
+        durable = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+        expect(durable, "A watcher that joins late gets nothing: the publisher's durability is volatile.")
+        expect(reliable, "The publisher sends best effort; a status should arrive.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("create_timer(period, self.publish_status), with the period that read_parameters() returns.",),
+)
+def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
+    """It publishes once a second, and at another rate when status_period says so."""
+    began = reporter.seconds
+    reporter.run(4.0)
+    rate = reporter.rate(TOPIC, since=began)
+    expect(0.7 <= rate <= 1.3, f"It published {rate:.2g} messages a second, instead of 1.")
+    began = tuned_reporter.seconds
+    tuned_reporter.run(2.0)
+    rate = tuned_reporter.rate(TOPIC, since=began)
+    expect(
+        3.4 <= rate <= 4.6,
+        f"With status_period 0.25 s it published {rate:.2g} messages a second, instead of 4.",
+        fraction=0.5,
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.",),
+    doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html",
+)
+def test_status_stamp(reporter: Reporter) -> None:
+    """Each status carries the time at which it was put together."""
+    stamp = reporter.status().header.stamp
+    newest = reporter.messages(TOPIC)[-1].seconds
+    age = reporter.now_ns / 1e9 - (reporter.seconds - newest) - (stamp.sec + stamp.nanosec / 1e9)
+    expect(stamp.sec != 0, "header.stamp is 0: it was never set.")
+    expect(abs(age) <= 0.2, f"header.stamp is {age:.1f} s older than the message.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.",),
+    doc=contract.BATTERY,
+)
+def test_status_unknown(silent_reporter: Reporter) -> None:
+    """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
+    status = silent_reporter.status()
+    expect(status.battery_level == UNKNOWN, f"battery_level is {status.battery_level}, it should be {UNKNOWN}.")
+    expect(not status.is_charging, "is_charging is true, and nothing has said so.")
+    expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("self.robot_name comes from read_parameters(); put it into each message.",),
+)
+def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
+    """The status carries the name that the parameter robot_name holds."""
+    tuned_reporter.until(lambda: bool(tuned_reporter.messages(TOPIC)), SOME_SECONDS)
+    heard = tuned_reporter.messages(TOPIC)
+    expect(bool(heard), f"No message came on robot_status for {SOME_SECONDS:.0f} s.")
+    said = heard[-1].message.robot_name
+    expect(said == tuned_name, f"With robot_name {tuned_name!r} the status says {said!r}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=NEEDS,
+    hints=(
+        "percentage goes from 0.0 to 1.0; 0.855 is 86 percent.",
+        "math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would cut.",
+    ),
+    doc=contract.BATTERY,
+)
+def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
+    """battery_level is the newest battery state in whole percent."""
+    levels = [0, 100, *(draw.randrange(1, 100) for _ in range(CASES))]
+    for number, level in enumerate(levels):
+        offset = (-0.3, 0.3)[number % 2] if 0 < level < 100 else 0.0
+        reporter.tell(draw.random())
+        reporter.tell((level + offset) / 100.0)
+        said = reporter.status().battery_level
+        expect(
+            said == level, f"At percentage {(level + offset) / 100.0:.3f} battery_level is {said}, instead of {level}."
+        )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("A driver says nan when it does not know; nan is not between 0.0 and 1.0.",),
+    doc=contract.BATTERY,
+)
+def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
+    """A percentage that is nan or outside 0 to 1 is unknown."""
+    for percentage in (math.nan, 1.0 + draw.uniform(0.2, 5.0), -draw.uniform(0.2, 1.0)):
+        reporter.tell(0.5)
+        reporter.run(0.1)
+        reporter.tell(percentage)
+        said = reporter.status().battery_level
+        expect(said == UNKNOWN, f"At percentage {percentage:.2f} battery_level is {said}, instead of {UNKNOWN}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("Compare power_supply_status with BatteryState.POWER_SUPPLY_STATUS_CHARGING.",),
+    doc=contract.BATTERY,
+)
+def test_status_charging(reporter: Reporter) -> None:
+    """is_charging follows the battery's power_supply_status."""
+    for charging in (True, False):
+        reporter.tell(0.5, charging=charging)
+        said = reporter.status().is_charging
+        expect(said is charging, f"is_charging is {said} while the battery is {'' if charging else 'dis'}charging.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=NEEDS,
+    hints=("msg.joint_positions = list(self.joints.position), when there are joints.",),
+)
+def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
+    """joint_positions are the newest joint state's positions, as many as there are."""
+    for count in (draw.randrange(2, 6), draw.randrange(6, 12)):
+        positions = [draw.uniform(-3.0, 3.0) for _ in range(count)]
+        reporter.pose(positions)
+        said = list(reporter.status().joint_positions)
+        right = len(said) == count and all(map(same, said, positions))
+        expect(right, f"Of {count} positions, joint_positions holds {_some(said)} instead of {_some(positions)}.")
+
+
+def _some(numbers: list[float]) -> str:
+    return "[" + ", ".join(f"{number:.3f}" for number in numbers[:4]) + (", …]" if len(numbers) > 4 else "]")

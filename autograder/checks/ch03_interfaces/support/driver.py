@@ -1,0 +1,109 @@
+"""The student's distance driver in the harness. The grader turns its wheels: they obey every command at once."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+from autograder.checks import expect
+from autograder.checks.ch03_interfaces.support.contract import DRIVER, PACKAGE, PERIOD
+from autograder.checks.ch03_interfaces.support.types import Types
+from autograder.harness import AutoHarness, Goal, Workspace
+
+COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
+LOOK = 0.05  # s between two looks at the commands
+ANSWER_SECONDS = 10.0  # for a server to answer: no time at all in lockstep, generous where time is real
+
+
+class Driver(AutoHarness):
+    """A harness in which goals are sent, and a robot rolls.
+
+    Attributes:
+        x, y, heading: where the robot is, in m and rad.
+        stuck: whether the wheels are held.
+        deaf: whether the odometry is silent.
+    """
+
+    def __init__(self, workspace: Workspace, types: Types) -> None:
+        super().__init__(workspace, PACKAGE, DRIVER, offers={ODOMETRY: Odometry}, listens={COMMANDS: Twist})
+        self.types = types
+        self.x, self.y, self.heading = 0.0, 0.0, 0.0
+        self.stuck = self.deaf = False
+
+    def place(self, x: float, y: float, heading: float) -> None:
+        """Put the robot somewhere else, and let the driver hear of it."""
+        self.x, self.y, self.heading, self.stuck, self.deaf = x, y, heading, False, False
+        for _ in range(3):
+            self._tell()
+            self.run(LOOK)
+
+    def send(self, distance: float, speed: float | None = None) -> Goal:
+        """Send a goal; fail the check if nobody answers."""
+        goal = self.types.drive_distance.Goal(distance=distance)
+        if speed is not None:
+            goal.speed = speed
+        sent: Goal = self.send_goal(self.types.drive_distance, ACTION, goal, ANSWER_SECONDS)
+        self.until(lambda: sent.accepted is not None, ANSWER_SECONDS)
+        expect(sent.accepted is not None, "The action server drive_distance did not answer a goal.")
+        return sent
+
+    def start(self, distance: float, speed: float | None = None) -> Goal:
+        """Send a goal that must be accepted."""
+        sent = self.send(distance, speed)
+        expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
+        return sent
+
+    def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
+        """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.
+
+        Each command moves the robot for as long as it lasts, a tenth of a second.
+        """
+        before = seen = len(self.messages(COMMANDS))
+        end = self.seconds + seconds
+        while self.seconds < end and goal.result is None and not (until and until()):
+            self.run(LOOK)
+            seen = self._obey(seen)
+            self._tell()
+        self.run(2 * LOOK)  # the last command may come with the result
+        self._obey(seen)
+        return [stamped.message for stamped in self.messages(COMMANDS)[before:]]
+
+    def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
+        """Let the wheels roll until the goal has ended; fail the check if it does not."""
+        commands = self.roll(goal, seconds)
+        expect(goal.result is not None, f"{situation}, the goal had not ended after {seconds:.0f} s.")
+        return commands
+
+    def abandon(self, goal: Goal) -> None:
+        """Get rid of a goal that is of no further use, by a cancel or, if need be, by holding the wheels."""
+        goal.cancel()
+        self.stuck = True
+        self.roll(goal, 5.0)
+        self.stuck = False
+
+    def _obey(self, seen: int) -> int:
+        commands = self.messages(COMMANDS)
+        for stamped in commands[seen:]:
+            if not self.stuck:
+                self.x += PERIOD * stamped.message.linear.x * math.cos(self.heading)
+                self.y += PERIOD * stamped.message.linear.x * math.sin(self.heading)
+        return len(commands)
+
+    def _tell(self) -> None:
+        if self.deaf:
+            return
+        odometry = Odometry()
+        odometry.header.frame_id, odometry.child_frame_id = "odom", "base_link"
+        odometry.header.stamp.sec, odometry.header.stamp.nanosec = divmod(self.now_ns, 10**9)
+        odometry.pose.pose.position.x, odometry.pose.pose.position.y = self.x, self.y
+        odometry.pose.pose.orientation.z = math.sin(self.heading / 2.0)
+        odometry.pose.pose.orientation.w = math.cos(self.heading / 2.0)
+        self.publish(ODOMETRY, odometry)
+
+
+def stopped(commands: list[Twist]) -> bool:
+    """Return whether the last command is a stop."""
+    return bool(commands) and commands[-1].linear.x == 0.0 and commands[-1].angular.z == 0.0

@@ -1,0 +1,69 @@
+"""The student's status publisher in the harness, with the sensors that it sums up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from sensor_msgs.msg import BatteryState, JointState
+
+from autograder.checks import expect
+from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE, STATUS
+from autograder.checks.ch03_interfaces.support.types import Types
+from autograder.harness import AutoHarness, Workspace
+
+BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
+OFFERS = {BATTERY: BatteryState, JOINTS: JointState}
+PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
+HEARD_SECONDS = 1.5  # until a battery that has spoken shows in the status; a status may be wrong, too
+ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, generous where time is real
+
+
+class Reporter(AutoHarness):
+    """A harness in which sensors speak, the status is read, and trips are asked about."""
+
+    def __init__(self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = ()) -> None:
+        listens = {TOPIC: types.robot_status}
+        super().__init__(workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments)
+        self.types = types
+
+    def tell(self, percentage: float, *, charging: bool = False) -> None:
+        """Let the battery speak, from 0.0 to 1.0; the message is on its way until time goes on."""
+        status = BatteryState.POWER_SUPPLY_STATUS_CHARGING if charging else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
+        self.publish(BATTERY, BatteryState(percentage=percentage, power_supply_status=status))
+
+    def pose(self, positions: Sequence[float]) -> None:
+        """Let the joints speak."""
+        names = [f"joint_{number}" for number in range(len(positions))]
+        self.publish(JOINTS, JointState(name=names, position=list(positions)))
+
+    def status(self) -> Any:
+        """Return the status that comes next; fail the check if none does."""
+        began = self.seconds
+        self.run(PERIOD + 0.2)
+        heard = self.messages(TOPIC, since=began)
+        expect(bool(heard), "No message came on robot_status for more than a second.")
+        return heard[-1].message
+
+    def level(self, percent: int) -> None:
+        """Set the battery's level; wait until the status shows that the program has heard of it."""
+        began = self.seconds
+        self.tell(min(1.0, (percent + 0.25) / 100.0))
+
+        def shown() -> bool:
+            return any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC, since=began)[-1:])
+
+        self.until(shown, HEARD_SECONDS)
+
+    def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
+        """Ask about a trip; return the response, fail the check if none comes."""
+        request = self.types.check_trip.Request(legs=list(legs), reserve=reserve)
+        answer = self.call(self.types.check_trip, SERVICE, request, ANSWER_SECONDS)
+        expect(answer is not None, "check_trip did not answer.")
+        return answer
+
+
+def same(one: float, other: float) -> bool:
+    """Return whether a number came through a float32, or nearly."""
+    return math.isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)

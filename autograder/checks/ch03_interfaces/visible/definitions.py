@@ -1,0 +1,56 @@
+"""What the definitions say, and whether colcon builds them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from autograder.checks import Visibility, check
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.reading import expect_like
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.probes.interfaces import Aspect
+
+GROUP = "definitions"
+SEEN = Visibility.VISIBLE
+ALL = tuple(Aspect)
+TABLES = (
+    "Compare your file with the exercise's table, line by line.",
+    "A field is `type name`, a default stands behind it, a constant is `type NAME = value`.",
+)
+
+
+@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.DEFINE)
+def test_robot_status(workspace: Workspace) -> None:
+    """msg/RobotStatus.msg is as the table says."""
+    expect_like(workspace, contract.ROBOT_STATUS, *ALL)
+
+
+@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.LANGUAGE)
+def test_check_trip(workspace: Workspace) -> None:
+    """srv/CheckTrip.srv is as the table says."""
+    expect_like(workspace, contract.CHECK_TRIP, *ALL)
+
+
+@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.LANGUAGE)
+def test_drive_distance(workspace: Workspace) -> None:
+    """action/DriveDistance.action is as the table says."""
+    expect_like(workspace, contract.DRIVE_DISTANCE, *ALL)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    hints=(
+        "Read the first error above; `colcon build` in a terminal shows the same.",
+        "CMakeLists.txt names each file in rosidl_generate_interfaces; package.xml says ament_cmake in <export>.",
+    ),
+    doc=contract.DEFINE,
+)
+def test_builds(builds: Mapping[str, Diagnosis]) -> None:
+    """Colcon builds both packages."""
+    for diagnosis in builds.values():
+        if diagnosis is not OK:
+            raise StudentError(diagnosis)

@@ -1,0 +1,94 @@
+"""What the two nodes do, at once."""
+
+from __future__ import annotations
+
+from action_msgs.msg import GoalStatus
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch03_interfaces.support import contract
+from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
+from autograder.checks.ch03_interfaces.support.reporter import Reporter
+
+SEEN = Visibility.VISIBLE
+BUILT = ("robot_status", "check_trip", "drive_distance", "builds")
+
+
+@check(
+    points=1,
+    group="status",
+    visibility=SEEN,
+    depends=BUILT,
+    hints=(
+        "create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.",
+        "A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.",
+    ),
+    doc=contract.BATTERY,
+)
+def test_status(reporter: Reporter) -> None:
+    """The status says what the battery says: unknown at first, then 40 percent."""
+    first = reporter.status()
+    expect(
+        first.battery_level == contract.UNKNOWN, f"Before the battery has spoken its level is {first.battery_level}."
+    )
+    reporter.tell(0.4)
+    level = reporter.status().battery_level
+    expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
+
+
+@check(
+    points=1,
+    group="service",
+    visibility=SEEN,
+    depends=BUILT,
+    hints=("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.",),
+    doc=contract.SERVICE,
+)
+def test_trip(reporter: Reporter) -> None:
+    """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
+    reporter.level(40)
+    for legs, left in (([50.0, 50.0], 20), ([50.0, 51.0], 19)):
+        answer = reporter.ask(legs)
+        expect(answer.battery_at_end == left, f"Legs of {legs} leave {answer.battery_at_end} %, instead of {left} %.")
+        expect(
+            answer.possible is (left == 20), f"Legs of {legs} are said to be {'' if answer.possible else 'im'}possible."
+        )
+
+
+@check(
+    points=1,
+    group="action",
+    visibility=SEEN,
+    depends=BUILT,
+    hints=(
+        "goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.",
+        "Without a MultiThreadedExecutor, execute never hears of the odometry.",
+    ),
+    doc=contract.ACTION,
+)
+def test_drive(driver: Driver) -> None:
+    """The robot drives 0.2 m, with feedback, and stops."""
+    driver.place(0.0, 0.0, 0.0)
+    goal = driver.start(0.2, 0.5)
+    commands = driver.finish(goal, 10.0, "With 0.2 m to drive")
+    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, "The goal did not succeed.")
+    expect(0.18 <= driver.x <= 0.4, f"The robot drove {driver.x:.2f} m.")
+    expect(bool(goal.feedback), "There was no feedback on the way.")
+    expect(stopped(commands), "After the goal had ended, the last command was no stop.")
+
+
+@check(
+    points=1,
+    group="action",
+    visibility=SEEN,
+    depends=("drive",),
+    hints=("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.",),
+    doc=contract.ACTION,
+)
+def test_cancel(driver: Driver) -> None:
+    """A cancel stops the robot, and the goal ends CANCELED."""
+    goal = driver.start(4.0, 0.3)
+    driver.roll(goal, 0.3)
+    goal.cancel()
+    commands = driver.finish(goal, 5.0, "After a cancel")
+    expect(goal.status == GoalStatus.STATUS_CANCELED, "After a cancel the goal did not end CANCELED.")
+    expect(stopped(commands), "After the cancel, the last command was no stop.")

@@ -1,0 +1,169 @@
+"""Two robots from one file: namespaces, an include, one shared topic."""
+
+from __future__ import annotations
+
+from autograder.checks import check, expect
+from autograder.checks.ch04_launch.hidden.inputs import Inputs
+from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.support import contract
+from autograder.checks.ch04_launch.support.contract import FIRST, FLEET, PACKAGE, SECOND, SHARED, in_spaces
+from autograder.checks.ch04_launch.visible.launches import HEAR_SECONDS, speakers
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe
+
+GROUP = "fleet"
+MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is
+GROUPED = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
+
+
+@check(
+    points=3,
+    group=GROUP,
+    hints=("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED),
+    doc=contract.LARGE,
+)
+def test_two_robots(shared: Shared) -> None:
+    """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
+    launch_probe.expect_nodes(shared.fleet(), in_spaces(FIRST, SECOND))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("two_robots",),
+    hints=(
+        "IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)",
+        "path leads to launch/robot.launch.py in the package's share folder.",
+    ),
+    doc=contract.LARGE,
+)
+def test_includes(shared: Shared) -> None:
+    """It includes robot.launch.py, so that what is changed there is changed for both robots."""
+    wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
+    nodes = launch_probe.settle(shared.renamed_fleet(), wanted)
+    expect(
+        nodes == wanted,
+        "The checks put a robot.launch.py with one node, wheels, beside your file; it started "
+        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(wanted)}.",
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=(
+        "ros2 launch -s my_robot_bringup two_robots.launch.py shows what you have declared.",
+        "DeclareLaunchArgument('first', default_value='robot1', description='...')",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_fleet_arguments(shared: Shared) -> None:
+    """two_robots.launch.py declares first, second and speed, each with its default and a description."""
+    arguments = launch_probe.shown_arguments(shared.fleet_workspace(), PACKAGE, FLEET)  # those of what it includes, too
+    for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
+        launch_probe.expect_argument(arguments, name, default)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("two_robots",),
+    hints=("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_spaces(shared: Shared, inputs: Inputs) -> None:
+    """First and second name the two namespaces."""
+    launch_probe.expect_nodes(_renamed(shared, inputs), in_spaces(*inputs.names))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("spaces",),
+    hints=(
+        "launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.",
+        "A robot's robot_name is its own namespace's name.",
+    ),
+    doc=contract.LARGE,
+)
+def test_robot_names(shared: Shared, inputs: Inputs) -> None:
+    """Each robot reports under its own name."""
+    harness = _renamed(shared, inputs)
+    for name in inputs.names:
+        launch_probe.expect_parameters(harness, f"/{name}/reporter", {"robot_name": name})
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("spaces",),
+    hints=(
+        "The included file has an argument of its own called speed: hand yours on to it.",
+        "launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()",
+    ),
+    doc=contract.LARGE,
+)
+def test_fleet_speed(shared: Shared, inputs: Inputs) -> None:
+    """The argument speed reaches both drivers."""
+    harness = _renamed(shared, inputs)
+    for name in inputs.names:
+        launch_probe.expect_parameters(harness, f"/{name}/driver", {"speed": inputs.speed})
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("two_robots",),
+    hints=(
+        "SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.",
+        "With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.",
+    ),
+    doc=contract.LARGE,
+)
+def test_status(shared: Shared) -> None:
+    """Both robots report on /fleet/status."""
+    harness = shared.fleet()
+    wanted = [f"/{FIRST}/reporter", f"/{SECOND}/reporter"]
+    harness.wait_for(lambda: harness.publishers(SHARED) == wanted, MATCH_SECONDS)
+    on = {topic: harness.publishers(topic) for topic in (SHARED, f"/{FIRST}/status", f"/{SECOND}/status", "/status")}
+    seen = "; ".join(f"{topic}: {', '.join(names)}" for topic, names in on.items() if names)
+    share = len(set(wanted) & set(on[SHARED])) / 2
+    expect(on[SHARED] == wanted, f"Reports are published on {seen or 'no topic'}.", fraction=min(share, 0.5))
+    harness.wait_for(lambda: len(speakers(harness)) == 2, HEAR_SECONDS)
+    expect(len(speakers(harness)) > 0, f"Nothing was heard on {SHARED} within {HEAR_SECONDS:.0f} s.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("two_robots",),
+    hints=(
+        "Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.",
+        "ros2 topic info -v /robot1/cmd_vel names who is at which end.",
+    ),
+    doc=contract.LARGE,
+)
+def test_own_commands(shared: Shared) -> None:
+    """Each robot has a cmd_vel of its own, from its driver to its reporter."""
+    harness = shared.fleet()
+    for name in (FIRST, SECOND):
+        wanted = [f"/{name}/driver"], [f"/{name}/reporter"]
+        expect(
+            harness.wait_for(lambda name=name, wanted=wanted: _ends(harness, name) == wanted, MATCH_SECONDS),  # type: ignore[misc]
+            f"/{name}/cmd_vel goes from {' to '.join(', '.join(end) or 'nobody' for end in _ends(harness, name))}.",
+        )
+
+
+@check(points=1, group=GROUP, depends=("two_robots",), hints=("What Node(...) starts, the launch ends.",))
+def test_fleet_stop(shared: Shared) -> None:
+    """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
+    launch_probe.expect_clean_stop(shared.fleet())
+
+
+def _ends(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
+    return harness.publishers(f"/{name}/cmd_vel"), harness.subscribers(f"/{name}/cmd_vel")
+
+
+def _renamed(shared: Shared, inputs: Inputs) -> LaunchHarness:
+    first, second = inputs.names
+    return shared.fleet(first=first, second=second, speed=inputs.speed)

@@ -1,0 +1,154 @@
+"""One thing after another: what happens when a process ends."""
+
+from __future__ import annotations
+
+import signal
+
+from autograder.checks import check, expect
+from autograder.checks.ch04_launch.hidden.inputs import Inputs
+from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.support import contract
+from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe
+
+GROUP = "safe_start"
+RESPAWN_SECONDS = 10.0  # real time; half a second is asked for
+END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
+WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
+FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
+
+
+@check(
+    points=3,
+    group=GROUP,
+    hints=("The driver is in no list but the one that after_self_test returns.", WAITS),
+    doc=contract.EVENTS,
+)
+def test_order(shared: Shared, inputs: Inputs) -> None:
+    """The driver starts once the self-test has passed, and not before."""
+    harness = shared.safe(battery=inputs.enough)
+    nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
+    started = launch_probe.started(harness.output)
+    expect("self_test" in started, f"The self-test was not started; {', '.join(started) or 'nothing'} was.")
+    expect(
+        DRIVER in nodes,
+        f"With the battery at {inputs.enough} %, the driver does not run. {launch_probe.trouble(harness.output)}",
+    )
+    before = harness.output.partition("[driver-")[0]
+    expect("self_test" in launch_probe.ended(before), "The driver was started before the self-test had ended.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("order",),
+    hints=(
+        "The reporter waits for nobody: it stands in the LaunchDescription itself.",
+        "What stands in the list is started at once, one thing after the other, without waiting.",
+    ),
+    doc=contract.EVENTS,
+)
+def test_reporter_first(shared: Shared, inputs: Inputs) -> None:
+    """The reporter starts at once, while the self-test still runs."""
+    harness = shared.safe(battery=inputs.enough)
+    expect(REPORTER in harness.nodes(), "The reporter does not run.")
+    before = harness.output.partition("process has finished cleanly")[0]
+    expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
+
+
+@check(
+    points=3,
+    group=GROUP,
+    hints=(
+        "event.returncode is the exit status of the process that has ended; 0 is success.",
+        "return [Shutdown(reason='...')] where it is not 0.",
+    ),
+    doc=contract.EVENTS,
+)
+def test_fails_safe(shared: Shared, inputs: Inputs) -> None:
+    """When the self-test fails, the driver is never started and everything ends."""
+    harness = shared.safe(battery=inputs.empty)
+    harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
+    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
+    launch_probe.require_written(harness.output)
+    started = launch_probe.started(harness.output)
+    expect("self_test" in started, f"The self-test was not started. {launch_probe.trouble(harness.output)}".strip())
+    what = f"With the battery at {inputs.empty} %,"
+    expect("driver" not in started, f"{what} the driver was started.")
+    expect(over, f"{what} the driver was not started, but the launch goes on.", fraction=0.5)
+    expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("order",),
+    hints=(
+        "80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.",
+        "ParameterValue(LaunchConfiguration('battery'), value_type=float)",
+    ),
+)
+def test_whole_battery(shared: Shared) -> None:
+    """The default, 80 without a point, is a battery too."""
+    harness = shared.safe()
+    nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
+    expect(
+        DRIVER in nodes, f"Without an argument, the driver does not run. {launch_probe.trouble(harness.output)}".strip()
+    )
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("reporter_first",),
+    hints=("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own."),
+    doc=contract.LAUNCH,
+)
+def test_respawns(shared: Shared, inputs: Inputs) -> None:
+    """A reporter that dies is started again."""
+    harness = shared.safe(battery=inputs.enough)
+    before = _pids(harness, "reporter")
+    harness.kill("reporter")
+    back = harness.wait_for(lambda: bool(_pids(harness, "reporter") - before), RESPAWN_SECONDS)
+    expect(back, "The reporter was killed, and stayed away.")
+    expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("order",),
+    hints=("The handler's target_action is the very Node that is started.", FOLLOWS),
+    doc=contract.EVENTS,
+)
+def test_driver_crash(shared: Shared, inputs: Inputs) -> None:
+    """When the driver crashes, everything ends."""
+    _expect_end(shared.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("whole_battery",),
+    hints=("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS),
+    doc=contract.EVENTS,
+)
+def test_driver_end(shared: Shared) -> None:
+    """When the driver ends by itself, with exit status 0, everything ends too."""
+    _expect_end(shared.safe(), signal.SIGINT, "The driver ended with exit status 0")
+
+
+def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> None:
+    expect(
+        harness.kill("driver", number) == 1, f"There is not one driver. {launch_probe.trouble(harness.output)}".strip()
+    )
+    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
+    expect(over, f"{what}, and the launch goes on without it.")
+    expect(
+        not harness.left(), f"{what} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
+    )
+
+
+def _pids(harness: LaunchHarness, name: str) -> set[int]:
+    return {program.pid for program in harness.programs() if program.name == name}

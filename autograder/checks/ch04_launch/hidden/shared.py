@@ -1,0 +1,82 @@
+"""Launches, and what they declare, that several checks look at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+
+from std_msgs.msg import String
+
+from autograder.checks.ch04_launch.hidden import given
+from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_values
+from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes.launch_probe import Argument, shown_arguments, with_files
+
+CONFIG = "config/robot.yaml"
+GIVEN = {"like": given.LIKE_THE_REFERENCE, "wheels": given.WITH_ONE_NODE}
+
+
+class Shared:
+    """Starts each launch once, when it is first asked for, and ends all at the end.
+
+    One robot is launched with other numbers in its parameters file. Two robots include a robot.launch.py of the
+    grader's own, so that a mistake in the student's counts once.
+    """
+
+    def __init__(self, workspace: Workspace, inputs: Inputs) -> None:
+        self._workspace, self._inputs = workspace, inputs
+        self._stack = ExitStack()
+        self._labs: dict[str, LaunchHarness] = {}
+        self._copies: dict[str, Workspace] = {}
+        self._arguments: dict[str, Argument] = {}
+
+    def robot(self, **arguments: object) -> LaunchHarness:
+        """Return robot.launch.py as it runs with these arguments."""
+        return self._harness(ROBOT, arguments, {})
+
+    def robot_arguments(self) -> dict[str, Argument]:
+        """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
+        self._arguments = self._arguments or shown_arguments(self._workspace, PACKAGE, ROBOT)
+        return self._arguments
+
+    def fleet(self, **arguments: object) -> LaunchHarness:
+        """Return two_robots.launch.py as it runs with these arguments."""
+        return self._harness(FLEET, arguments, {SHARED: String}, robot="like")
+
+    def fleet_workspace(self) -> Workspace:
+        """Return the workspace in which two_robots.launch.py runs."""
+        return self._copy(FLEET, "like")
+
+    def renamed_fleet(self) -> LaunchHarness:
+        """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
+        return self._harness(FLEET, {}, {}, robot="wheels")
+
+    def safe(self, **arguments: object) -> LaunchHarness:
+        """Return safe_start.launch.py as it runs with these arguments."""
+        return self._harness(SAFE, arguments, {})
+
+    def close(self) -> None:
+        """End what still runs."""
+        self._stack.close()
+
+    def _harness(
+        self, file: str, arguments: Mapping[str, object], listens: Mapping[str, type], robot: str | None = None
+    ) -> LaunchHarness:
+        key = f"{file} {robot} {sorted(arguments.items())}"
+        if key not in self._labs:
+            words = {name: str(value) for name, value in arguments.items()}
+            harness = LaunchHarness(self._copy(file, robot), PACKAGE, file, words, listens=listens)
+            self._labs[key] = self._stack.enter_context(harness)
+        return self._labs[key]
+
+    def _copy(self, file: str, robot: str | None) -> Workspace:
+        name = robot or file.partition(".")[0]
+        if name not in self._copies:
+            files = {} if robot is None else {f"launch/{ROBOT}": GIVEN[robot]}
+            config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
+            if config.is_file():
+                files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)
+            self._copies[name] = with_files(self._workspace, name, PACKAGE, files)
+        return self._copies[name]

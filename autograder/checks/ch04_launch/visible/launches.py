@@ -1,0 +1,139 @@
+"""What the three launch files start, at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import pytest
+from std_msgs.msg import String
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch04_launch.support import contract
+from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe
+
+SEEN = Visibility.VISIBLE
+HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
+
+
+@dataclass(frozen=True)
+class Launches:
+    """Every launch that the checks look at."""
+
+    robot: LaunchHarness
+    quiet: LaunchHarness
+    fleet: LaunchHarness
+    full: LaunchHarness
+    empty: LaunchHarness
+
+
+@pytest.fixture(scope="module")
+def launches(workspace: Workspace) -> Iterator[Launches]:
+    """Start them all with the first check that asks: together they are up in half the time, and a student waits."""
+    with ExitStack() as stack:
+
+        def start(file: str, arguments: dict[str, str], listens: dict[str, type] | None = None) -> LaunchHarness:
+            return stack.enter_context(LaunchHarness(workspace, PACKAGE, file, arguments, listens=listens))
+
+        yield Launches(
+            robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
+            quiet=start(ROBOT, {"report": "false"}),
+            fleet=start(FLEET, {}, {SHARED: String}),
+            full=start(SAFE, {"battery": "90"}),
+            empty=start(SAFE, {"battery": "5"}),
+        )
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    hints=(
+        "DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.",
+        "The names are robot_name, speed and report.",
+    ),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_arguments(workspace: Workspace) -> None:
+    """robot.launch.py declares robot_name, speed and report."""
+    arguments = launch_probe.shown_arguments(workspace, PACKAGE, ROBOT)
+    for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
+        launch_probe.expect_argument(arguments, name, default)
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    depends=("arguments",),
+    hints=(
+        "Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).",
+        "parameters=[config, {'speed': speed}]: what stands later wins.",
+    ),
+    doc=contract.LAUNCH,
+)
+def test_robot(launches: Launches) -> None:
+    """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
+    launch_probe.expect_nodes(launches.robot, [DRIVER, REPORTER])
+    launch_probe.expect_parameters(launches.robot, DRIVER, {"speed": 1.0})
+    launch_probe.expect_parameters(launches.robot, REPORTER, {"robot_name": "42"})
+    launch_probe.expect_clean_stop(launches.robot)
+
+
+@check(
+    points=1,
+    group="robot",
+    visibility=SEEN,
+    depends=("robot",),
+    hints=("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.",),
+    doc=contract.SUBSTITUTIONS,
+)
+def test_quiet(launches: Launches) -> None:
+    """With report:=false, robot.launch.py starts the driver alone."""
+    launch_probe.expect_nodes(launches.quiet, [DRIVER])
+
+
+@check(
+    points=1,
+    group="fleet",
+    visibility=SEEN,
+    hints=(
+        "GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])",
+        "SetRemap must stand before the include: it holds for what follows it in its group.",
+    ),
+    doc=contract.LARGE,
+)
+def test_two_robots(launches: Launches) -> None:
+    """two_robots.launch.py starts two robots, and both report on /fleet/status."""
+    harness = launches.fleet
+    launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, contract.SECOND))
+    harness.wait_for(lambda: len(speakers(harness)) == 2, HEAR_SECONDS)
+    expect(len(speakers(harness)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(harness))) or 'nobody'} was heard.")
+
+
+@check(
+    points=1,
+    group="safe_start",
+    visibility=SEEN,
+    hints=(
+        "The driver is in no list but the one that after_self_test returns.",
+        "event.returncode is the exit status of the process that has ended; 0 is success.",
+    ),
+    doc=contract.EVENTS,
+)
+def test_safe_start(launches: Launches) -> None:
+    """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
+    launch_probe.expect_nodes(launches.full, [DRIVER, REPORTER])
+    harness = launches.empty
+    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
+    expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+
+
+def speakers(harness: LaunchHarness) -> set[str]:
+    """Return the names of the robots that have reported on the shared topic."""
+    return {str(message.data).split(" ", maxsplit=1)[0] for message in harness.messages(SHARED)}

@@ -1,0 +1,143 @@
+"""The node started with other values than its defaults: it has them, drives by them, or refuses to start."""
+
+from __future__ import annotations
+
+import random
+
+from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks.ch05_parameters.hidden.conftest import Custom
+from autograder.checks.ch05_parameters.support import contract
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.gallery import Gallery
+from autograder.harness import Workspace, drive
+from autograder.probes.parameters import Value, differences
+from sim import Pose, RobotSpec, Simulation, World, box
+
+GROUP = "start"
+RADIUS = 0.18  # m
+SECONDS = 20.0
+NEAR = 0.02  # m between where it stands and where it should
+REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("names",),
+    hints=(
+        "declare_parameter takes an override by itself; a set_parameters after it would undo that.",
+        "ignore_override=True lets the default win over a file: leave it out.",
+    ),
+    doc=contract.ARGUMENTS,
+)
+def test_overrides(custom: Custom) -> None:
+    """Started with values from the command line, it has these values."""
+    wrong = differences(custom.robot.parameters.values(*custom.values), custom.values)
+    expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(custom.values)), 2))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("overrides",),
+    hints=("speed, which is given, asks for max_linear_velocity at each command: leave it so.",),
+)
+def test_start_speed(custom: Custom) -> None:
+    """Where the way is clear, it drives at the speed that it was started with."""
+    speed = custom.robot.speed_at(custom.slow + 0.3)
+    expect_speed(speed, custom.velocity, f"Started with max_linear_velocity {custom.velocity}")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("overrides",),
+    hints=("create_timer gets a period in seconds: 1.0 / frequency.",),
+)
+def test_start_rate(custom: Custom) -> None:
+    """It publishes at the frequency that it was started with."""
+    expect_rate(custom.robot.command_rate(), custom.frequency, f"Started with control_frequency {custom.frequency}")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("overrides",),
+    hints=("A battery below battery_threshold, in percent, means: stand still.",),
+)
+def test_start_threshold(custom: Custom) -> None:
+    """It stands still with a battery below its threshold, and drives with one above."""
+    for charge, speed in ((custom.threshold - 5, 0.0), (custom.threshold + 5, custom.velocity)):
+        custom.robot.charge(charge)
+        situation = f"With a threshold of {custom.threshold} percent and a charge of {charge}"
+        expect_speed(custom.robot.speed_at(3.0), speed, situation)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("start_speed", "start_threshold"),
+    hints=(
+        "Look at the picture: where does it stand, and where should it?",
+        "Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).",
+    ),
+)
+def test_stops(custom: Custom, draw: random.Random, gallery: Gallery) -> None:
+    """In the simulator, it drives up to a wall and stops at its safety distance."""
+    recording = drive(custom.robot, _towards_a_wall(draw), SECONDS).recording
+    ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
+    end = ahead[-1]
+    sentence = f"With a safety distance of {custom.safety} m, it stood {end:.2f} m before the wall in the end."
+    gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m")
+    verdict = temporal.always("gap > 0", recording.times.tolist(), {"gap": [x - custom.safety + NEAR for x in ahead]})
+    if verdict.violated_at is not None:
+        raise CheckFailed(f"It came nearer than {custom.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
+    expect(end < custom.safety + NEAR, sentence, fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("overrides",),
+    hints=(
+        "After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.",
+        "Equal distances do not fit together, either: it divides by their difference.",
+    ),
+)
+def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
+    """It does not start with a safety distance that is not below the slow distance."""
+    distance = draw.randrange(40, 90) / 100
+    for safety, slow in ((round(distance + 0.4, 2), distance), (distance, distance)):
+        values: dict[str, Value] = {"safety_distance": safety, "slow_distance": slow}
+        words = _last_words(workspace, values)
+        told = f"safety_distance {safety} and slow_distance {slow}"
+        expect(words is not None, f"Started with {told}, the node runs.")
+        expect(all(name in (words or "") for name in values), f"It ends, but does not name {told}.", fraction=0.5)
+
+
+def _last_words(workspace: Workspace, values: dict[str, Value]) -> str | None:
+    """Return what a program said when it refused to start, None if it did not refuse.
+
+    Raises:
+        StudentError: something else is wrong with it.
+    """
+    try:
+        with Robot(workspace, values):
+            return None
+    except StudentError as error:
+        if error.diagnosis.kind not in REFUSED:
+            raise
+        return f"{error.diagnosis.sentence}\n{error.diagnosis.detail}"
+
+
+def _towards_a_wall(draw: random.Random) -> Simulation:
+    """Return a hall whose east wall is straight ahead of the robot, well beyond any slow distance."""
+    world = World.from_segments(
+        box(draw.uniform(6.5, 7.5), 4.0).tolist(),
+        name="a hall",
+        segment_names=["south wall", "east wall", "north wall", "west wall"],
+        starts=[Pose(draw.uniform(-0.5, 0.0), draw.uniform(-0.5, 0.5), 0.0)],
+    )
+    return Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))

@@ -1,0 +1,208 @@
+"""Changes while the node runs: judged together, without side effects, and carried out at once."""
+
+from __future__ import annotations
+
+import random
+import re
+
+from autograder.checks import check, expect
+from autograder.checks.ch05_parameters.support import contract
+from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, scan
+from autograder.probes.parameters import Value, differences
+
+GROUP = "changes"
+DISTANCES = ("safety_distance", "slow_distance")
+SPEED = 0.3  # m/s, the default
+ROUNDED = 0.051  # a value in a sentence may be rounded to one decimal
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("names",),
+    hints=(
+        "add_on_set_parameters_callback(self.validate) in __init__; it returns SetParametersResult(successful=...).",
+        "A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).",
+    ),
+    doc=contract.PARAMETERS,
+)
+def test_contradiction(robot: Robot, draw: random.Random) -> None:
+    """A safety distance that would not be below the slow distance is refused, whichever of the two is set."""
+    above, below = round(draw.uniform(1.1, 2.5), 2), round(draw.uniform(0.25, 0.45), 2)
+    requests: list[dict[str, Value]] = [
+        {"safety_distance": above},
+        {"slow_distance": below},
+        {"safety_distance": 1.0},
+        {"safety_distance": above, "slow_distance": round(above - 0.2, 2)},
+    ]
+    for request in requests:
+        answer = robot.change(request)
+        expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+        wrong = differences(robot.parameters.values(*DISTANCES), {name: DEFAULTS[name] for name in DISTANCES})
+        expect(not wrong, f"It refused {_told(request)}, and yet {'; '.join(wrong)}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("contradiction",),
+    hints=("SetParametersResult(successful=False, reason=...), with contradiction's sentence.",),
+)
+def test_reason(robot: Robot, draw: random.Random) -> None:
+    """Its reason names both parameters and their values."""
+    safety = draw.randrange(120, 280) / 100
+    reason = robot.change({"safety_distance": safety}).reason
+    missing = [name for name in DISTANCES if name not in reason]
+    numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", reason)]
+    missing += [str(value) for value in (safety, 1.0) if not any(abs(number - value) < ROUNDED for number in numbers)]
+    expect(
+        not missing, f"Its reason is “{reason}”: it does not name {', '.join(missing)}.", fraction=0.5 if reason else 0
+    )
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("contradiction",),
+    hints=("Judge what will be, with all the values of the request; not one value after the other.",),
+)
+def test_together(robot: Robot, draw: random.Random) -> None:
+    """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
+    far = round(draw.uniform(1.4, 1.8), 2)
+    up: dict[str, Value] = {"safety_distance": far, "slow_distance": round(far + 0.5, 2)}
+    down: dict[str, Value] = {"slow_distance": 0.6, "safety_distance": 0.3}
+    for request in (up, down):
+        answer = robot.change(request)
+        expect(answer.accepted, f"It refused {_told(request)} in one request: “{answer.reason}”.")
+        wrong = differences(robot.parameters.values(*request), request)
+        expect(not wrong, f"It took {_told(request)}, and yet {'; '.join(wrong)}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("contradiction",),
+    hints=(
+        "validate says yes or no and does nothing else: no attribute, no timer, no log of a change.",
+        "What is to be done once a request was accepted stands in apply.",
+    ),
+    doc=contract.PARAMETERS,
+)
+def test_no_side_effects(fresh_robot: Robot) -> None:
+    """A refused request changes nothing: no value, no speed, no rate."""
+    robot = fresh_robot
+    request: dict[str, Value] = {"control_frequency": 25.0, "max_linear_velocity": 0.8, "safety_distance": 2.0}
+    _change(robot, CHANGEABLE)
+    present, before = robot.parameters.values(*request), robot.command_rate()
+    answer = robot.change(request)
+    expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+    wrong = differences(robot.parameters.values(*request), present)
+    expect(not wrong, f"It refused the request, and yet {'; '.join(wrong)}.")
+    expect_speed(robot.speed_at(2.5), SPEED, "After a refused request for 0.8 m/s, with a wall 2.5 m ahead")
+    expect_rate(robot.command_rate(), before, "After a refused request for 25 Hz")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("names",),
+    hints=(
+        "A value that was copied to an attribute in __init__ stays what it was.",
+        "speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.",
+    ),
+    doc=contract.IN_A_CLASS,
+)
+def test_speed_change(robot: Robot, draw: random.Random) -> None:
+    """A new max_linear_velocity is driven at once."""
+    expect_speed(robot.speed_at(2.5), SPEED, "With its defaults and 2.5 m of free way")
+    speed = draw.randrange(45, 90) / 100
+    _change(robot, {"max_linear_velocity": speed})
+    expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("together",),
+    hints=("Both distances decide about the speed at each command, as they are then.",),
+)
+def test_distance_change(robot: Robot, draw: random.Random) -> None:
+    """New distances decide at once where it slows down and where it stops."""
+    safety = draw.randrange(110, 150) / 100
+    slow = safety + 0.6
+    _change(robot, {"safety_distance": safety, "slow_distance": round(slow, 2)})
+    for distance, speed in ((safety - 0.1, 0.0), (safety + 0.3, SPEED / 2), (slow + 0.1, SPEED)):
+        situation = f"With {safety:.2f} m and {slow:.2f} m, and a wall {distance:.2f} m ahead"
+        expect_speed(robot.speed_at(distance), speed, situation)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("names",),
+    hints=("The threshold is asked for at each command, as it is then.",),
+)
+def test_threshold_change(robot: Robot) -> None:
+    """A new battery_threshold decides at once whether it stands still."""
+    robot.charge(50.0)
+    expect_speed(robot.speed_at(2.5), SPEED, "With a threshold of 20 percent and a charge of 50")
+    _change(robot, {"battery_threshold": 60})
+    expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("names",),
+    hints=(
+        "add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...",
+        "A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.",
+    ),
+)
+def test_rate_change(robot: Robot, draw: random.Random) -> None:
+    """A new control_frequency sets the rate of its commands, up and down."""
+    for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
+        _change(robot, {"control_frequency": frequency})
+        expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("rate_change", "speed_change"),
+    hints=("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.",),
+)
+def test_undisturbed(robot: Robot) -> None:
+    """Its commands keep coming while somebody turns at another parameter all the time."""
+    robot.see(2.5)
+    began, turns = robot.seconds, 40
+    for turn in range(turns):
+        if turn % 2 == 0:
+            robot.publish("/scan", scan(2.5))
+        _change(robot, {"max_linear_velocity": 0.2 + 0.01 * turn})
+        robot.live(0.05)
+    rate = robot.rate("/cmd_vel", since=began)
+    expect_rate(rate, 10.0, "While max_linear_velocity was changed all the time")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("names",),
+    hints=("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.",),
+)
+def test_passes(robot: Robot) -> None:
+    """Requests that have nothing to do with the distances pass."""
+    _change(robot, robot.parameters.values("use_sim_time"))  # what it is: the harness's time goes by it
+    _change(robot, {"battery_threshold": 30, "max_linear_velocity": 0.4})
+    expect_speed(robot.speed_at(2.5), 0.4, "After these requests")
+
+
+def _change(robot: Robot, request: dict[str, Value]) -> None:
+    answer = robot.change(request)
+    expect(answer.accepted, f"It refused {_told(request)}: “{answer.reason}”.")
+
+
+def _told(request: dict[str, Value]) -> str:
+    return " and ".join(f"{name} = {value}" for name, value in request.items())

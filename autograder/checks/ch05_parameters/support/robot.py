@@ -1,0 +1,129 @@
+"""The student's node in the harness: what it sees, what it is told, and how fast it drives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+
+from sensor_msgs.msg import BatteryState, LaserScan
+
+from autograder.checks import expect
+from autograder.checks.ch05_parameters.support.contract import EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
+from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness.drive import LISTENS, OFFERS
+from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared
+
+BEAMS = 360
+SCAN_SECONDS = 0.1
+SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
+TOLERANCE = 0.01  # m/s
+TICK_NS = 10_000_000
+
+
+class Robot(AutoHarness):
+    """A harness in which the node sees distances, hears of its battery, and has parameters.
+
+    Attributes:
+        parameters: those of the node.
+    """
+
+    def __init__(
+        self,
+        workspace: Workspace,
+        values: Mapping[str, Value] | None = None,
+        *,
+        arguments: Sequence[str] = (),
+        name: str = NODE,
+    ) -> None:
+        given = [part for key, value in (values or {}).items() for part in ("-p", f"{key}:={text(value)}")]
+        offers = {**OFFERS, "/battery_state": BatteryState}
+        super().__init__(
+            workspace,
+            PACKAGE,
+            EXECUTABLE,
+            offers=offers,
+            listens=LISTENS,
+            arguments=("--ros-args", *given, *arguments),
+        )
+        self.parameters = NodeParameters(self, name)
+
+    @classmethod
+    def of_fleet(cls, workspace: Workspace, name: str) -> Robot:
+        """Return a harness whose node has a robot's name and the fleet's file."""
+        arguments = ("-r", f"__node:={name}", "--params-file", str(fleet_path(workspace)))
+        return cls(workspace, arguments=arguments, name=f"/{name}")
+
+    @cached_property
+    def initial(self) -> dict[str, Value]:
+        """The values with which it started; to be read before anything is changed."""
+        return self.parameters.values(*WANTED)
+
+    def change(self, values: Mapping[str, Value]) -> Answer:
+        """Ask for a change of several parameters in one request, numbers in the types that the node declares."""
+        return self.parameters.change(as_declared(values, self.initial))
+
+    def see(self, distance: float, seconds: float = 0.5) -> list[Stamped]:
+        """Show a wall at `distance` metres straight ahead, ten times a second; return the commands once settled."""
+        began = self.seconds
+        for _ in range(round(seconds / SCAN_SECONDS)):
+            self.publish("/scan", scan(distance))
+            self.live(SCAN_SECONDS)
+        return self.messages("/cmd_vel", since=began + SETTLED)
+
+    def live(self, seconds: float) -> None:
+        """Let time pass in steps that hit each period that a change may bring; `run` hits those of the start."""
+        for _ in range(round(seconds * 1e9) // TICK_NS):
+            self.step(TICK_NS)
+
+    def speed_at(self, distance: float) -> float:
+        """Return the speed in m/s that the node settles on, nan without a command."""
+        commands = self.see(distance)
+        return float(commands[-1].message.linear.x) if commands else math.nan
+
+    def command_rate(self, seconds: float = 2.0) -> float:
+        """Return how many commands a second come while the way is clear."""
+        self.see(3.0, 0.3)  # a period that has just been changed counts from now on
+        began = self.seconds
+        self.see(3.0, seconds)
+        return self.rate("/cmd_vel", since=began)
+
+    def charge(self, percent: float) -> None:
+        """Let the battery say its charge."""
+        self.publish("/battery_state", BatteryState(percentage=percent / 100.0))
+
+
+def fleet_path(workspace: Workspace) -> Path:
+    """Return where the fleet's file is installed."""
+    return workspace.install / PACKAGE / "share" / PACKAGE / "config" / FLEET
+
+
+def scan(distance: float) -> LaserScan:
+    """Return a scan that reads `distance` within 20 degrees of straight ahead, and 3 m elsewhere."""
+    message = LaserScan(angle_increment=math.tau / BEAMS, scan_time=SCAN_SECONDS, range_min=0.12, range_max=3.5)
+    message.angle_max = message.angle_increment * (BEAMS - 1)
+    message.header.frame_id = "laser"
+    message.ranges = [distance if min(beam, BEAMS - beam) <= 20 else 3.0 for beam in range(BEAMS)]
+    return message
+
+
+def text(value: Value) -> str:
+    """Return a value as it is written on the command line."""
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def expect_speed(speed: float, wanted: float, situation: str) -> None:
+    """Fail the check unless the speed is the wanted one."""
+    expect(not math.isnan(speed), f"{situation}, no command came on /cmd_vel.")
+    expect(
+        abs(speed - wanted) <= TOLERANCE, f"{situation}, it drove at {speed:.2f} m/s; it should drive at {wanted:.2f}."
+    )
+
+
+def expect_rate(rate: float, wanted: float, situation: str) -> None:
+    """Fail the check unless commands come at the wanted rate, within a tenth of it and one command."""
+    expect(
+        abs(rate - wanted) <= 0.1 * wanted + 0.5,
+        f"{situation}, it published {rate:.1f} commands a second; it should publish {wanted:.0f}.",
+    )

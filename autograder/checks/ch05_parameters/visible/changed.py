@@ -1,0 +1,66 @@
+"""What becomes of a change while the node runs, at once."""
+
+from __future__ import annotations
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch05_parameters.support import contract
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
+from autograder.probes.parameters import Value
+
+GROUP = "changes"
+SEEN = Visibility.VISIBLE
+PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    depends=("table",),
+    hints=(
+        "proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.",
+        "proposed.get('slow_distance', self.value('slow_distance')) is what it will be.",
+    ),
+    doc=contract.PARAMETERS,
+)
+def test_contradiction(robot: Robot) -> None:
+    """It refuses a safety distance above the slow distance, and its reason names both."""
+    answer = robot.change({"safety_distance": 1.5})
+    expect(not answer.accepted, "With a slow_distance of 1.0 m, it took 1.5 m for safety_distance.")
+    named = all(name in answer.reason for name in PAIR)
+    expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    depends=("contradiction",),
+    hints=(
+        "Judge what will be, with all the values of the request; not one value after the other.",
+        "speed, which is given, asks for both distances at each command.",
+    ),
+)
+def test_together(robot: Robot) -> None:
+    """It takes both distances in one request, and stops where they say."""
+    answer = robot.change(PAIR)
+    expect(answer.accepted, f"It refused 1.5 m and 2.0 m in one request: “{answer.reason}”.")
+    expect_speed(robot.speed_at(1.4), 0.0, "With a safety distance of 1.5 m and a wall 1.4 m ahead")
+    expect_speed(robot.speed_at(2.1), 0.3, "With a slow distance of 2.0 m and a wall 2.1 m ahead")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    depends=("table",),
+    hints=(
+        "In apply, look for control_frequency among the names of what has changed.",
+        "self.timer.timer_period_ns = round(1e9 / frequency)",
+    ),
+)
+def test_rate(robot: Robot) -> None:
+    """A new control_frequency sets the rate of its commands."""
+    answer = robot.change({"control_frequency": 20.0})
+    expect(answer.accepted, f"It refused 20 Hz: “{answer.reason}”.")
+    expect_rate(robot.command_rate(1.0), 20.0, "After control_frequency was set to 20.0")

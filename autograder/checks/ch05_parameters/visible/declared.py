@@ -1,0 +1,71 @@
+"""What the node declares, at once."""
+
+from __future__ import annotations
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch05_parameters.support import contract
+from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
+from autograder.checks.ch05_parameters.support.robot import Robot
+from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, said
+
+GROUP = "declaration"
+SEEN = Visibility.VISIBLE
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    hints=(
+        "Read the sentence above, then the last lines of the traceback below it.",
+        "Both files have to be saved: run the cells of exercise 1 and of exercise 2.",
+    ),
+    doc=contract.IN_A_CLASS,
+)
+def test_starts(robot: Robot) -> None:
+    """The package builds and its node configured_node spins."""
+    names = robot.nodes()
+    expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    depends=("starts",),
+    hints=(
+        "One node.declare_parameter(name, default, descriptor) for each line of the table.",
+        "The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.",
+    ),
+    doc=contract.PARAMETERS,
+)
+def test_table(robot: Robot) -> None:
+    """It declares the six parameters with the types and defaults of the table."""
+    expect(not (sentence := missing_sentence(WANTED, robot.parameters.names())), sentence)
+    wrong = [
+        f"{name} is {TYPES.get(found.type, 'an array')} instead of {TYPES[WANTED[name].type]}"
+        for name, found in robot.parameters.descriptors(*WANTED).items()
+        if found.type != WANTED[name].type
+    ]
+    wrong = wrong or differences(robot.parameters.values(*DEFAULTS), DEFAULTS)
+    expect(not wrong, f"{'; '.join(wrong)}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    visibility=SEEN,
+    depends=("table",),
+    hints=(
+        "floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.",
+        "An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.",
+    ),
+    doc=contract.PARAMETERS,
+)
+def test_refuses(robot: Robot) -> None:
+    """It refuses -1 m/s, 101 percent and another name, each with a reason."""
+    requests: dict[str, Value] = {"max_linear_velocity": -1.0, "battery_threshold": 101, "robot_name": "R2"}
+    for name, value in requests.items():
+        answer = robot.parameters.change({name: value})
+        expect(not answer.accepted, f"It took {said(value)} for {name}.")
+        expect(bool(answer.reason), f"It refused {said(value)} for {name}, but gave no reason.")

@@ -1,0 +1,16 @@
+"""Fixtures of the suite: one examination for all checks."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.checks import declared
+from autograder.checks.ch06_testing.hidden.examination import Examination
+from autograder.harness import Workspace
+
+
+@pytest.fixture(scope="session")
+def examination(request: pytest.FixtureRequest, workspace: Workspace, seed: int) -> Examination:
+    """The runs of the student's tests, as far as this session's checks ask for them."""
+    checks = (declared(getattr(item, "function", None)) for item in request.session.items)
+    return Examination(workspace, seed, frozenset(check.id for check in checks if check is not None))

@@ -1,0 +1,85 @@
+"""How the tests are made: they wait without sleeping, they end, and colcon runs them, the linters among them."""
+
+from __future__ import annotations
+
+from autograder.checks import check, expect
+from autograder.checks.ch06_testing.hidden.examination import Examination
+from autograder.checks.ch06_testing.support import contract
+from autograder.checks.ch06_testing.support.contract import LEAST
+from autograder.checks.ch06_testing.support.verdicts import expect_awake
+from autograder.harness import Workspace
+from autograder.probes import linters
+from autograder.probes.junit import Verdict
+
+GROUP = "craft"
+LINTERS = ("test_flake8", "test_pep257")
+EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest; tests_require is no longer read."
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("guard_pass",),
+    hints=contract.NO_SLEEP,
+    doc=contract.PYTEST,
+)
+def test_no_sleep(examination: Examination) -> None:
+    """No test waits with time.sleep."""
+    expect_awake(examination.source)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("guard_right", "launch_right"),
+    hints=(
+        "Each loop that waits needs a deadline, after which the test fails.",
+        "spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.",
+    ),
+    doc=contract.PYTEST,
+)
+def test_ends(examination: Examination) -> None:
+    """The tests end by themselves on a node that never answers."""
+    endless = examination.endless()
+    expect(
+        not endless, f"On a faulty version, the tests in {' and '.join(endless)} did not end, and had to be stopped."
+    )
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("limits_pass",),
+    hints=("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS),
+    doc=contract.CLI,
+)
+def test_colcon(examination: Examination) -> None:
+    """`colcon test` runs the tests of all three files."""
+    report = examination.colcon
+    verdicts = report.claims.verdicts
+    expect(bool(verdicts), "`colcon test` ran 0 tests.")
+    files = {name.partition("::")[0] + ".py" for name in verdicts}
+    missing = [name for name in LEAST if name not in files]
+    expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("colcon",),
+    hints=(
+        "A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.",
+        "Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.",
+    ),
+    doc=contract.CLI,
+)
+def test_linters(workspace: Workspace, examination: Examination) -> None:
+    """The linters flake8 and pep257 run as tests, and find nothing."""
+    verdicts = examination.colcon.claims.verdicts
+    ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
+    names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not Verdict.SKIPPED}
+    missing = [name for name in LINTERS if name not in names]
+    expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
+    bad = [name.partition("::")[2] for name, verdict in ran.items() if verdict is not Verdict.PASSED]
+    expect(not bad, f"{' and '.join(bad)} found something in the package.", fraction=0.5)
+    linters.expect_tidy(workspace, examination.source, fraction=0.5)

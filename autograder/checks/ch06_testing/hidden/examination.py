@@ -1,0 +1,145 @@
+"""All runs of one student's tests: first on a right version, then on many, right and faulty, in a drawn order.
+
+Right versions and faulty ones are mixed and run alike, so that neither the time nor the circumstances of a run tell
+which it has. What does not pass on the first right version meets no other.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
+
+from autograder.checks import CheckFailed, expect
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, right
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE
+from autograder.checks.ch06_testing.support.verdicts import fit, trouble
+from autograder.harness import Workspace
+from autograder.probes import test_runs
+from autograder.probes.colcon_test import colcon_test
+from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.sandbox import Ending
+
+RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
+FILES = {
+    **{check: name for name, check in RIGHT.items()},
+    **dict.fromkeys(
+        ("limits_pass", "stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS
+    ),
+    **dict.fromkeys(("guard_pass", "alone", "nothing_left", "name", "first_distance", "newest", "turn"), GUARD),
+    **dict.fromkeys(("one_answer", "parameters", "sensor_qos", "stale", "watchdog"), GUARD),
+    **dict.fromkeys(("launch_pass", "configuration", "runs"), LAUNCH),
+}
+COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
+SECOND, BACKWARDS = "second", "backwards"
+ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
+
+
+class Examination:
+    """The runs of a submission's tests; each is made when it is first asked for, once.
+
+    Args:
+        workspace: the student's.
+        seed: styles, disguises and the order of the runs are drawn from it.
+        checks: those that will ask; what only others would ask for is not run.
+    """
+
+    def __init__(self, workspace: Workspace, seed: int, checks: frozenset[str]) -> None:
+        self._workspace = workspace
+        self._seed = seed
+        self._checks = checks
+
+    @cached_property
+    def source(self) -> Source:
+        """The student's package, read once: later, `colcon test` lets its code write there."""
+        return test_runs.take(self._workspace, PACKAGE)
+
+    @cached_property
+    def trial(self) -> dict[str, Report]:
+        """What the tests of each file say of a right version; those of the node are overheard."""
+        asked = {FILES[check] for check in self._checks if check in FILES}
+        wanted = {
+            name: TestRun((name,), right(STYLES[0], self._draw(name)), overheard=name == GUARD)
+            for name in LEAST
+            if name in asked and name in self.source.tests
+        }
+        return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
+
+    @cached_property
+    def runs(self) -> dict[tuple[str, str], Report]:
+        """The other runs: by file, and what is special about the version or the run."""
+        wanted: dict[tuple[str, str], TestRun] = {}
+        # What takes long comes first. Which file it is, a test knows anyway.
+        for name in (name for name in reversed(LEAST) if fit(name, self.trial.get(name))):
+            mine = self._wanted(name)
+            whats = sorted(mine)
+            self._draw(name, "order").shuffle(whats)
+            wanted |= {(name, what): mine[what] for what in whats}
+        with ThreadPoolExecutor(1) as beside:  # colcon waits most of its time, too
+            if self._checks & COLCON:
+                beside.submit(lambda: self.colcon)
+            return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
+
+    @cached_property
+    def colcon(self) -> Report:
+        """What `colcon test` does with the student's own package."""
+        return colcon_test(self._workspace, PACKAGE)
+
+    def expect_right(self, name: str, *whats: str) -> None:
+        """Fail the check unless a file's tests pass on the right version in other words, or backwards."""
+        for what in whats:
+            if not self.runs[name, what].passed:
+                raise CheckFailed(trouble(name, self.runs[name, what], _WHERE[what]))
+
+    def expect_objection(self, check: str, promise: str) -> None:
+        """Fail the check unless the tests of its file object to every fault that belongs to it.
+
+        A run that has to be stopped objects, too; that it does not end by itself is another check's matter.
+        """
+        name = FILES[check]
+        mine = [fault for fault in faults() if fault.check == check]
+        found = [fault for fault in mine if self._objects(name, fault)]
+        expect(
+            len(found) == len(mine),
+            f"{len(mine) - len(found)} of {len(mine)} faulty versions that break this line of the contract "
+            f"pass all tests in {name}: {promise}",
+            fraction=len(found) / len(mine) if len(found) < len(mine) else 0.0,
+        )
+
+    def endless(self) -> list[str]:
+        """Return the files whose tests had to be stopped on a faulty version."""
+        ids = {fault.id for fault in faults()}
+        return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
+
+    def _objects(self, name: str, fault: Fault) -> bool:
+        report = self.runs[name, fault.id]
+        return report.ending is Ending.WALL_TIME or report.objects(self.trial[name])
+
+    def _wanted(self, name: str) -> dict[str, TestRun]:
+        """Return the runs of a file that are asked for, by what is special about each."""
+        wanted: dict[str, TestRun] = {}
+        if RIGHT[name] in self._checks:
+            wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND)), first_failure=True)
+            if name in ORDERED:
+                version = right(STYLES[0], self._draw(name, BACKWARDS))
+                wanted[BACKWARDS] = TestRun((name,), version, backwards=True, first_failure=True)
+        for fault in faults():
+            if FILES[fault.check] == name and self._checks & {fault.check, ENDS}:
+                draw = self._draw(name, fault.id)
+                wanted[fault.id] = TestRun((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
+        return wanted
+
+    def _draw(self, *what: str) -> random.Random:
+        """Return what is drawn from for one purpose: the same, whatever else is run."""
+        return random.Random(":".join((str(self._seed), *what)))
+
+    def _run(self, wanted: Sequence[TestRun]) -> list[Report]:
+        return test_runs.run(self._workspace, self.source, wanted)
+
+
+# What a test says of these versions stays here: only the first version's text is public.
+_WHERE = {
+    SECOND: "on a right speed_guard that is written differently: test the contract, no attributes and no inner names",
+    BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
+}

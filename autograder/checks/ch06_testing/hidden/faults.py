@@ -1,0 +1,80 @@
+"""The versions of speed_guard that a student's tests meet: right ones in two styles, and faulty ones of each."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from autograder import layout
+from autograder.checks.ch06_testing.support.contract import PACKAGE, SCRIPTS
+from autograder.exceptions import GraderError
+from autograder.probes.versions import Version, disguise, read
+
+STYLES = ("first", "second")
+FOLDER = Path(__file__).parent / "versions"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One way to break the contract.
+
+    Attributes:
+        id: its name.
+        check: the check that it belongs to.
+        file: the file that is changed.
+        edits: by style, what is found and what it becomes.
+        last: styles whose last match is changed; elsewhere there is just one.
+    """
+
+    id: str
+    check: str
+    file: str
+    edits: dict[str, tuple[str, str]]
+    last: frozenset[str]
+
+
+@cache
+def faults() -> tuple[Fault, ...]:
+    """Return every fault, in the order of the file."""
+    return tuple(_fault(entry) for entry in yaml.safe_load((FOLDER / "faults.yaml").read_text()))
+
+
+@cache
+def style(name: str) -> Version:
+    """Return the right version in a style."""
+    first = read(layout.SOLUTIONS / PACKAGE, SCRIPTS)
+    if name == STYLES[0]:
+        return first
+    return Version({**first.files, **read(FOLDER / name, SCRIPTS).files}, SCRIPTS)
+
+
+def right(name: str, draw: random.Random) -> Version:
+    """Return a right version in a style, disguised."""
+    return disguise(style(name), draw.getrandbits(32))
+
+
+def broken(fault: Fault, name: str, draw: random.Random) -> Version:
+    """Return a faulty version in a style, disguised.
+
+    Raises:
+        GraderError: the fault no longer fits the style's text.
+    """
+    version, (find, replace) = style(name), fault.edits[name]
+    text = version.files[fault.file]
+    count = text.count(find)
+    if count == 0 or (count > 1 and name not in fault.last):
+        raise GraderError(f"fault {fault.id}: {find!r} stands {count} times in {fault.file} of style {name}")
+    head, _, tail = text.rpartition(find)
+    files = {**version.files, fault.file: head + replace + tail}
+    return disguise(Version(files, version.scripts), draw.getrandbits(32))
+
+
+def _fault(entry: dict[str, Any]) -> Fault:
+    edits = {name: (entry[name]["find"], entry[name]["replace"]) for name in STYLES}
+    last = frozenset(name for name in STYLES if entry[name].get("last"))
+    return Fault(entry["id"], entry["check"], entry["file"], edits, last)

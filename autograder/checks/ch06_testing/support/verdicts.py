@@ -1,0 +1,60 @@
+"""What a run of a student's tests means, in the student's words."""
+
+from __future__ import annotations
+
+from autograder.checks import CheckFailed, expect
+from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
+from autograder.probes.sleeping import sleeps
+from autograder.probes.test_reports import Report, Source
+from autograder.sandbox import Ending
+
+UNFINISHED = "still to be written"
+
+
+def fit(name: str, report: Report | None) -> bool:
+    """Whether the tests of a file pass on a right version, and are enough to judge others by."""
+    return report is not None and report.passed and len(report.executed) >= LEAST[name]
+
+
+def expect_passed(name: str, report: Report | None) -> None:
+    """Fail the check unless a file's tests pass on the package as it is, and are enough."""
+    if report is None:
+        raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
+    if not report.passed:
+        raise CheckFailed(trouble(name, report, "on the package as it is", said=True))
+    count = len(report.executed)
+    expect(
+        count >= LEAST[name],
+        f"Only {count} of at least {LEAST[name]} tests in {name} ran: a case of parametrize counts as one.",
+        fraction=0.5,
+    )
+
+
+def expect_awake(source: Source) -> None:
+    """Fail the check if a test file sleeps."""
+    python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
+    found = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
+    expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
+
+
+def trouble(name: str, report: Report, where: str, *, said: bool = False) -> str:
+    """Say why a run that should have passed did not.
+
+    Args:
+        name: the test file.
+        report: its run.
+        where: the version, or the circumstances.
+        said: whether what the test said is repeated; only of a version whose text the student has.
+    """
+    if report.ending is Ending.WALL_TIME:
+        return f"The tests in {name} do not end {where}."
+    if report.failed:
+        test = report.failed[0]
+        message = report.claims.messages[test] if said else ""
+        if UNFINISHED in message:
+            return f"{name} is still to be written: {test.partition('::')[2]} raises NotImplementedError."
+        count = f"{len(report.failed)} of {len(report.claims.verdicts)} tests in {name} fail"
+        return f"{count} {where}: {test.partition('::')[2]}{f': {message}' if message else ''}"
+    if report.status in (0, 5):
+        return f"No test in {name} ran {where}."
+    return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

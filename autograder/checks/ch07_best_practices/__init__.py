@@ -1,0 +1,1 @@
+"""The checks of 07_best_practices."""

@@ -1,0 +1,24 @@
+"""Fixtures of the suite: the nodes in the harness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from autograder.checks.ch07_best_practices.support.robot import Processor
+from autograder.harness import Workspace
+
+
+@pytest.fixture(scope="module")
+def processor(workspace: Workspace) -> Iterator[Processor]:
+    """The sensor processor, which several checks share."""
+    with Processor(workspace) as harness:
+        yield harness
+
+
+@pytest.fixture
+def fresh_processor(workspace: Workspace) -> Iterator[Processor]:
+    """A sensor processor that has seen nothing yet."""
+    with Processor(workspace) as harness:
+        yield harness

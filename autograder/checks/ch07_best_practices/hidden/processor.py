@@ -1,0 +1,151 @@
+"""The sensor processor: what comes out for what goes in."""
+
+from __future__ import annotations
+
+import random
+from math import inf, isclose, isnan, nan
+from statistics import fmean
+
+from rclpy.qos import ReliabilityPolicy
+
+from autograder.checks import check, expect
+from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGGING, QOS, TOLERANCE
+from autograder.checks.ch07_best_practices.support.robot import Processor, scan
+
+GROUP = "processor"
+SECONDS = 20.0
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=(
+        "setup.py must name sensor_processor = my_robot_package.nodes.sensor_processor:main.",
+        "create_publisher twice and create_subscription once, in __init__; the names are relative.",
+    ),
+)
+def test_endpoints(processor: Processor) -> None:
+    """sensor_processor takes scan and offers scan_filtered and mean_distance."""
+    expect(processor.takes("/scan"), "It does not subscribe to scan as sensor_msgs/msg/LaserScan.")
+    for topic, kind in (("/scan_filtered", "sensor_msgs/msg/LaserScan"), ("/mean_distance", "std_msgs/msg/Float32")):
+        types = {peer.topic_type for peer in processor.node.get_publishers_info_by_topic(topic)}
+        expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("endpoints",),
+    hints=("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort."),
+    doc=QOS,
+)
+def test_sensor_qos(processor: Processor) -> None:
+    """It asks for scans as a lidar offers them, and offers its own likewise: best effort."""
+    taken = processor.node.get_subscriptions_info_by_topic("/scan")
+    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in taken)
+    expect(not reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
+    offered = processor.node.get_publishers_info_by_topic("/scan_filtered")
+    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in offered)
+    expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("endpoints",),
+    hints=("msg.ranges = self.processor.process(...).", "Hand on the message's own range_min and range_max."),
+)
+def test_filtered(processor: Processor, draw: random.Random) -> None:
+    """A scan comes out with its phantoms masked, by the lidar's own limits."""
+    far = round(draw.uniform(11.0, 15.0), 1)
+    sent = [1.0, 0.0, inf, nan, far, -inf, far + 5.0]
+    (filtered, _) = processor.show(scan(sent, range_min=0.05, range_max=far + 1.0))
+    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
+    got, wanted = list(filtered[0].ranges), [1.0, nan, inf, nan, far, -inf, nan]
+    right = len(got) == len(wanted) and all(map(_alike, got, wanted))
+    expect(right, f"{sent} (0.05 to {far + 1.0} m) came out as {[round(r, 3) for r in got]}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("filtered",),
+    hints=("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles."),
+)
+def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
+    """Header, angles, limits and intensities come out as they went in."""
+    sent = scan([1.0, 2.0, 3.0])
+    sent.header.frame_id = f"laser_{draw.randint(1, 9)}"
+    sent.header.stamp.sec = draw.randint(1, 1000)
+    sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
+    filtered, _ = processor.show(sent)
+    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
+    for field in ("header", "angle_min", "angle_max", "angle_increment", "range_min", "range_max", "intensities"):
+        got, wanted = getattr(filtered[0], field), getattr(sent, field)
+        alike = _alike(got, wanted) if isinstance(wanted, float) else got == wanted
+        expect(alike, f"{field} went in as {wanted} and came out as {got}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("filtered",),
+    hints=("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)"),
+)
+def test_mean_of_ten(fresh_processor: Processor, draw: random.Random) -> None:
+    """mean_distance is the average of the newest ten scans' means."""
+    means = [round(draw.uniform(0.5, 3.0), 2) for _ in range(14)]
+    _, said = fresh_processor.show(*(scan([mean, nan, mean]) for mean in means))
+    expect(len(said) == len(means), f"{len(means)} scans went in, {len(said)} means came out.")
+    wanted = [fmean(means[max(0, i + 1 - HISTORY) : i + 1]) for i in range(len(means))]
+    wrong = next((i for i in range(len(means)) if abs(said[i] - wanted[i]) > TOLERANCE), None)
+    i = wrong or 0
+    expect(wrong is None, f"After {i + 1} scans it said {said[i]:.3f} m instead of {wanted[i]:.3f} m.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("filtered",),
+    hints=("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None."),
+)
+def test_blind_scan(processor: Processor) -> None:
+    """A scan without a distance comes out masked, and no mean with it."""
+    filtered, means = processor.show(scan([nan, 0.0, inf]))
+    expect(len(filtered) == 1, f"One blind scan went in, {len(filtered)} came out.")
+    expect(not means, f"A scan without any distance made it say {means} m.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("blind_scan",),
+    hints=("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second."),
+    doc=LOGGING,
+)
+def test_warns_now_and_then(processor: Processor) -> None:
+    """While the lidar sees nothing, it warns, at most once a second."""
+    before = processor.output.count("[WARN]")
+    processor.show(*(scan([nan]) for _ in range(round(SECONDS * 10))))
+    warnings = processor.output.count("[WARN]") - before
+    expect(warnings > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
+    expect(warnings <= SECONDS + 2, f"Blind for {SECONDS:.0f} s, it warned {warnings} times.", fraction=0.5)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("filtered",),
+    hints=("Loop over what is there.", "Other lidars have other numbers of beams."),
+)
+def test_any_lidar(processor: Processor) -> None:
+    """It takes scans of any length, an empty one too."""
+    for beams in (0, 1, 7, 1080):
+        filtered, _ = processor.show(scan([1.0] * beams))
+        lengths = [len(message.ranges) for message in filtered]
+        expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
+
+
+def _alike(got: float, wanted: float) -> bool:
+    """Compare numbers of which one went through 32 bits."""
+    return isnan(got) if isnan(wanted) else isclose(got, wanted, rel_tol=1e-6)

@@ -1,0 +1,226 @@
+"""The robust node: what it says while its sensor fails, and after."""
+
+from __future__ import annotations
+
+import itertools
+import random
+
+from rclpy.qos import DurabilityPolicy
+
+from autograder.checks import check, expect
+from autograder.checks.ch07_best_practices.support.contract import ERRORS, LOGGING, QOS, RANDOM, ROBUST, RULE_STATUS
+from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, expected
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.probes.calls import call, calls, made, make
+from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence
+
+GROUP = "robust"
+DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
+LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=("create_timer(PERIOD, self.timer_callback) in __init__.", "Publish once in each call of timer_callback."),
+)
+def test_once_a_second(workspace: Workspace) -> None:
+    """robust_node says once a second on status how it goes; with a sensor that never fails, ok."""
+    with Robust(workspace, failure_probability=0.0) as harness:
+        said = harness.hear(10)
+        rate = harness.rate(WORDS, 0.0)
+    expect(len(said) == 10, f"In 10 s it said {len(said)} times how it goes.")
+    expect(abs(rate - 1.0) < 0.1, f"It said {rate:.1f} times a second how it goes, instead of once.")
+    expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=(
+        "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.",
+        "STATUS_QOS, not 10.",
+    ),
+    doc=QOS,
+)
+def test_late_joiners(workspace: Workspace) -> None:
+    """Who joins late can have the last status at once: it is offered transient local."""
+    with Robust(workspace) as harness:
+        offered = harness.node.get_publishers_info_by_topic(WORDS)
+    durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
+    expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=(RULE_STATUS, "A success sets the count back to 0."),
+)
+def test_counts(workspace: Workspace, draw: random.Random) -> None:
+    """It counts failures in a row, and starts again after a success."""
+    seed, probability = draw.randint(1, 2**31 - 1), round(draw.uniform(0.4, 0.7), 2)
+    with Robust(workspace, seed=seed, failure_probability=probability) as harness:
+        said = harness.hear(40)
+    wanted = expected(seed, probability, 40)
+    wrong = next((i for i, (a, b) in enumerate(zip(said, wanted, strict=False)) if a != b), min(len(said), 40))
+    got = said[wrong] if wrong < len(said) else "nothing"
+    sentence = f"With seed {seed} and failure_probability {probability}, reading {wrong + 1} made it say {got!r}"
+    expect(said == wanted, f"{sentence} instead of {wanted[min(wrong, 39)]!r}.", fraction=0.0)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=("random.Random() without a seed takes one from the operating system.", "seed 0: random.Random()."),
+    doc=RANDOM,
+)
+def test_no_seed(workspace: Workspace) -> None:
+    """Without a seed, two runs differ."""
+    runs = []
+    for _ in range(2):
+        with Robust(workspace, failure_probability=0.5) as harness:
+            runs.append(harness.hear(50))
+    expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=(RULE_STATUS, "More than max_errors, not as many as."),
+)
+def test_unstable(workspace: Workspace, draw: random.Random) -> None:
+    """More than max_errors failures in a row are called unstable, and one fewer is not."""
+    most = draw.randint(2, 5)
+    with Robust(workspace, failure_probability=1.0, max_errors=most) as harness:
+        said = harness.hear(most + 3)
+    wanted = expected(1, 1.1, most + 3, most)
+    expect(said == wanted, f"With max_errors {most} and a dead sensor it said {said}, instead of {wanted}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=("error(..., throttle_duration_sec=5.0).", "A dead sensor fails every second; one line in five is enough."),
+    doc=LOGGING,
+)
+def test_errors_throttled(workspace: Workspace) -> None:
+    """It logs failures as errors, at most one line in 5 s."""
+    with Robust(workspace, failure_probability=1.0) as harness:
+        harness.hear(30)
+        errors = harness.output.count("[ERROR]")
+    expect(errors > 0, "Its sensor failed for 30 s, and it said nothing at level ERROR.")
+    expect(errors <= 8, f"Its sensor failed for 30 s, and it logged {errors} errors.", fraction=0.5)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=("fatal only where the count is exactly max_errors + 1.", "It became unstable once."),
+    doc=LOGGING,
+)
+def test_fatal_once(workspace: Workspace) -> None:
+    """That it became unstable is logged as fatal, once."""
+    with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
+        harness.hear(3)
+        early = harness.output.count("[FATAL]")
+        harness.hear(10)
+        fatal = harness.output.count("[FATAL]")
+    expect(early == 0, "It logged as fatal what max_errors still allows.")
+    expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("counts",),
+    hints=("Log before the count is set back to 0.", "Only if there were errors: if self.error_count:"),
+)
+def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
+    """Each recovery is logged with the number of errors before it."""
+    seed = draw.randint(1, 2**31 - 1)
+    with Robust(workspace, seed=seed, failure_probability=0.5) as harness:
+        harness.hear(30)
+        output = harness.output
+    said = ["ok", *expected(seed, 0.5, 30)]
+    counts = [int(a.split()[1]) for a, b in itertools.pairwise(said) if b == "ok" and a != "ok"]
+    logged = [line.split("Recovered after ")[1] for line in output.splitlines() if "Recovered after " in line]
+    wanted = [f"{count} errors" for count in counts]
+    expect(logged == wanted, f"It recovered after {counts} errors, and logged {logged or 'nothing of it'}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen."),
+    doc=ERRORS,
+)
+def test_bugs_are_seen(workspace: Workspace) -> None:
+    """It catches SensorError and nothing else: a bug ends the node with a traceback."""
+    outcomes = calls(
+        workspace,
+        ROBUST,
+        call("init", module="rclpy"),
+        make("object", module="builtins"),  # a generator without random(): a bug
+        make("RobustNode", generator=made(1)),
+        call("timer_callback", on=2),
+        network=True,
+    )
+    built, called = outcomes[2:]
+    expect(not built.raised, f"RobustNode(generator=...) raised {built.raised}: {built.message}")
+    expect(bool(called.raised), "timer_callback with a broken generator raised nothing: the bug was swallowed.")
+    honest = called.raised == "AttributeError"
+    expect(
+        honest, f"timer_callback with a broken generator raised {called.raised} instead of the AttributeError itself."
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=(
+        "The table of the exercise names type, default and range of each.",
+        "declare_parameter(name, default, descriptor)",
+    ),
+)
+def test_declared(workspace: Workspace) -> None:
+    """Its three parameters are declared with the defaults and ranges of the contract."""
+    with Robust(workspace) as harness:
+        node = NodeParameters(harness, "/robust_node")
+        missing = missing_sentence(DEFAULTS, node.names())
+        expect(not missing, missing)
+        wrong = differences(node.values(*DEFAULTS), DEFAULTS)
+        described = node.descriptors(*DEFAULTS)
+    expect(not wrong, f"Without any file or argument, {', '.join(wrong)}.")
+    for name, limits in LIMITS.items():
+        ranges = [*described[name].floating_point_range, *described[name].integer_range]
+        found = [(each.from_value, each.to_value) for each in ranges]
+        expect(found == [limits], f"{name} is declared with {found or 'no range'}, and should have {limits}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("once_a_second",),
+    hints=("FloatingPointRange(from_value=0.0, to_value=1.0) in the descriptor.", "IntegerRange for max_errors."),
+)
+def test_ranges(workspace: Workspace) -> None:
+    """It refuses to start with a probability above 1, or with max_errors below 1."""
+    for name, impossible in (("failure_probability", 1.5), ("max_errors", 0)):
+        try:
+            with Robust(workspace, **{name: impossible}):
+                started = True
+        except StudentError as error:
+            if error.diagnosis.kind is not Kind.CRASHED_AT_START:
+                raise
+            started = False
+        expect(not started, f"It started with {name} {impossible}.")

@@ -1,0 +1,186 @@
+"""The utilities: pure functions, called in the sandbox with readings drawn from the seed."""
+
+from __future__ import annotations
+
+import random
+from math import inf, nan
+from statistics import fmean
+
+from autograder.checks import check, expect
+from autograder.checks.ch07_best_practices.support.contract import (
+    DEQUE,
+    REP_117,
+    RULE_MASK,
+    RULE_MEAN,
+    RULE_PLACE,
+    UTILS,
+)
+from autograder.harness import Workspace
+from autograder.probes.calls import Outcome, call, calls, make, same, value
+
+GROUP = "utils"
+LOW, HIGH = 0.2, 6.0
+
+
+@check(points=1, group=GROUP, hints=(RULE_PLACE, "A list comprehension with a conditional expression."), doc=REP_117)
+def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
+    """mask_invalid returns as many readings as it was given, each in its place."""
+    readings = [round(draw.uniform(LOW, HIGH), 3) if i % 3 else draw.choice((0.0, nan, 50.0)) for i in range(40)]
+    masked = _masked(workspace, readings)
+    length = len(masked) if isinstance(masked, list) else masked
+    expect(length == len(readings), f"{len(readings)} readings went in, {length} came out.")
+    kept = [i for i in range(40) if i % 3]
+    moved = next((i for i in kept if not same(masked[i], readings[i])), None)
+    expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("keeps_places",),
+    hints=(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan."),
+    doc=REP_117,
+)
+def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
+    """mask_invalid puts nan where a number cannot be a measurement."""
+    phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
+    masked = _masked(workspace, phantoms)
+    wrong = [p for p, m in zip(phantoms, masked, strict=True) if not same(m, nan)]
+    expect(not wrong, f"{wrong[0] if wrong else ''} is outside {LOW} to {HIGH} m, and was not replaced by nan.")
+
+
+@check(points=1, group=GROUP, depends=("keeps_places",), hints=(RULE_MASK, "Both limits belong to the range: <=."))
+def test_limits_count(workspace: Workspace) -> None:
+    """A reading of exactly range_min or range_max is a measurement."""
+    masked = _masked(workspace, [LOW, HIGH])
+    expect(same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("keeps_places",),
+    hints=("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK),
+    doc=REP_117,
+)
+def test_infinities_stay(workspace: Workspace) -> None:
+    """Both infinities are statements of the lidar, and stay."""
+    masked = _masked(workspace, [inf, 1.0, -inf])
+    expect(same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("keeps_places",),
+    hints=("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0."),
+)
+def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
+    """The limits are the lidar's own, not fixed numbers."""
+    near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
+    readings = [near, far, near / 2, far * 2]
+    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, near, far))
+    shown = f"mask_invalid({readings}, {near}, {far})"
+    masked = value(outcome, shown)
+    expect(same(masked, [near, far, nan, nan]), f"{shown} returned {masked}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("keeps_places",),
+    hints=("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list."),
+)
+def test_input_untouched(workspace: Workspace) -> None:
+    """mask_invalid leaves the list that it was given as it was."""
+    readings = [0.0, 1.0, 99.0]
+    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, LOW, HIGH))
+    value(outcome, "mask_invalid(...)")
+    expect(same(list(outcome.arguments[:1]), [readings]), f"The caller's {readings} became {outcome.arguments[0]}.")
+
+
+@check(points=2, group=GROUP, hints=(RULE_MEAN, "sum(...) / len(...) of the readings that are finite."))
+def test_mean(workspace: Workspace, draw: random.Random) -> None:
+    """mean_distance is the mean of the finite readings."""
+    finite = [round(draw.uniform(LOW, HIGH), 3) for _ in range(9)]
+    readings = [*finite, nan, inf, -inf]
+    draw.shuffle(readings)
+    (outcome,) = calls(workspace, UTILS, call("mean_distance", readings))
+    mean = value(outcome, "mean_distance(...)")
+    right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
+    expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("mean",),
+    hints=("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching."),
+)
+def test_no_mean(workspace: Workspace) -> None:
+    """Without a finite reading, mean_distance is None."""
+    for readings in ([], [nan, nan], [inf]):
+        (outcome,) = calls(workspace, UTILS, call("mean_distance", readings))
+        mean = value(outcome, f"mean_distance({readings})")
+        expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("keeps_places", "mean"),
+    hints=("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room."),
+    doc=DEQUE,
+)
+def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
+    """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
+    size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
+    outcomes = _processed(workspace, size, [[mean] for mean in means])
+    average, wanted = value(outcomes[-1], "average()"), fmean(means[-size:])
+    expect(
+        same(average, wanted),
+        f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {wanted:.4f}.",
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("bounded_history", "no_mean"),
+    hints=("Append the mean only if it is not None.", "A scan without a distance says nothing about distances."),
+)
+def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
+    """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
+    *_, average = _processed(workspace, 3, [[2.0], [nan], [inf, 0.0], [4.0]])
+    seen = value(average, "average()")
+    expect(same(seen, 3.0), f"After scans of 2 m, nothing, nothing and 4 m the average is {seen} instead of 3.0.")
+    *_, average = _processed(workspace, 3, [[nan]])
+    seen = value(average, "average()")
+    expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("masks_phantoms", "mean", "bounded_history"),
+    hints=("A library returns data; who calls it decides what is logged.", "Remove print()."),
+)
+def test_prints_nothing(workspace: Workspace) -> None:
+    """The utilities print nothing: what to say, and how often, is the node's business."""
+    outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
+    outcomes += calls(workspace, UTILS, call("mask_invalid", [0.0], LOW, HIGH), call("mean_distance", [nan]))
+    printed = "".join(outcome.printed for outcome in outcomes)
+    expect(not printed, f"They printed: {printed[:80]!r}")
+
+
+def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
+    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, LOW, HIGH))
+    masked = value(outcome, f"mask_invalid({readings}, {LOW}, {HIGH})")
+    expect(isinstance(masked, list), f"mask_invalid returned {masked!r} instead of a list.")
+    return list(masked)
+
+
+def _processed(workspace: Workspace, history: int, scans: list[list[float]]) -> list[Outcome]:
+    """Let a DataProcessor take scans; return the outcomes, `average()`'s last."""
+    process = [call("process", readings, LOW, HIGH, on=0) for readings in scans]
+    return calls(workspace, UTILS, make("DataProcessor", history), *process, call("average", on=0))

@@ -1,0 +1,89 @@
+"""The student's two nodes in the harness: one is shown scans, the other is left to its failing sensor."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from itertools import islice
+
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float32, String
+
+from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, PACKAGE
+from autograder.harness import AutoHarness, Workspace
+from autograder.harness.auto import LOCKSTEP
+
+SCAN_SECONDS = 0.1
+FILTERED, MEAN, WORDS = "/scan_filtered", "/mean_distance", "/status"
+LATE = 3.0  # s in real time until the first reading, and for what comes late
+
+
+class Processor(AutoHarness):
+    """The harness of sensor_processor: it is shown one scan after the other."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__(
+            workspace,
+            PACKAGE,
+            "sensor_processor",
+            offers={"/scan": LaserScan},
+            listens={FILTERED: LaserScan, MEAN: Float32},
+        )
+
+    def show(self, *scans: LaserScan) -> tuple[list[LaserScan], list[float]]:
+        """Show scans, 0.1 s apart; return the filtered ones and the means that came."""
+        began = self.seconds
+        for scan in scans:
+            self.publish("/scan", scan)
+            self.run(SCAN_SECONDS)
+        self.wait_for_late(lambda: len(self.messages(FILTERED, since=began)) >= len(scans))
+        if self.time != LOCKSTEP:
+            self.run(SCAN_SECONDS)  # of the means nobody knows how many are to come
+        filtered = [stamped.message for stamped in self.messages(FILTERED, since=began)]
+        return filtered, [stamped.message.data for stamped in self.messages(MEAN, since=began)]
+
+
+class Robust(AutoHarness):
+    """The harness of robust_node, started with parameters of the check's choice."""
+
+    def __init__(self, workspace: Workspace, **parameters: float) -> None:
+        arguments = [part for name, value in parameters.items() for part in ("-p", f"{name}:={value}")]
+        super().__init__(
+            workspace, PACKAGE, "robust_node", listens={WORDS: String}, arguments=("--ros-args", *arguments)
+        )
+        self._told = 0
+
+    def hear(self, readings: int) -> list[str]:
+        """Give it the time for so many readings, one a second; return what it said on status meanwhile."""
+        wanted = self._told + readings
+        if self.time == LOCKSTEP:
+            self.run(readings + 0.05)
+        else:  # its seconds did not begin with the harness's
+            self.until(lambda: len(self.messages(WORDS)) >= wanted, readings + LATE)
+            self.run(0.4)
+        said = [stamped.message.data for stamped in self.messages(WORDS)[self._told :]]
+        self._told += len(said)
+        return said
+
+
+def expected(seed: int, probability: float, count: int, max_errors: int = MAX_ERRORS) -> list[str]:
+    """Return what a node with this seed says at its first `count` readings, by the contract."""
+    return list(islice(_words(random.Random(seed), probability, max_errors), count))
+
+
+def _words(generator: random.Random, probability: float, max_errors: int) -> Iterator[str]:
+    errors = 0
+    while True:
+        errors = errors + 1 if generator.random() < probability else 0
+        word = "unstable" if errors > max_errors else "failed"
+        yield f"{word}: {errors} in a row" if errors else "ok"
+
+
+def scan(ranges: list[float], *, range_min: float = 0.12, range_max: float = 3.5) -> LaserScan:
+    """Return a scan with these ranges, spread over a full turn."""
+    message = LaserScan(range_min=range_min, range_max=range_max, ranges=ranges)
+    message.header.frame_id = "laser"
+    message.angle_increment = 6.283185 / max(1, len(ranges))
+    message.angle_max = message.angle_increment * max(0, len(ranges) - 1)
+    message.scan_time = SCAN_SECONDS
+    return message

@@ -1,0 +1,128 @@
+"""The drives through hidden worlds: each is made when a check first asks for it, once."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from autograder.checks.ch02_nodes.hidden import terrain
+from autograder.checks.ch08_capstone.hidden.tracks import Floats, Trouble, blocked
+from autograder.checks.ch08_capstone.support.system import System
+from autograder.harness import Stamped, drive
+from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
+
+RADIUS = 0.18  # m
+ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
+DARK = Trouble("dead", 3.0, 7.0)
+BLOCKED = Trouble("blocked", 9.5, 11.5)
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A drive: the whole run, how long it was, and the commands with the harness's time at which it began."""
+
+    recording: Recording
+    seconds: float
+    began: float
+    commands: tuple[Stamped, ...]
+
+
+class Drives:
+    """The drives of one submission, in worlds that are drawn from the seed."""
+
+    def __init__(self, system: Callable[[], System], seed: int) -> None:
+        self._system, self._seed = system, seed
+
+    @cached_property
+    def room(self) -> Driven:
+        """Twenty seconds in a furnished room."""
+        draw = random.Random(f"{self._seed}:room")
+        return self._drive(terrain.furnished_room(draw), ROOM_SECONDS, draw)
+
+    @cached_property
+    def corridor(self) -> Driven:
+        """A short corridor with one bend to the left or to the right, until the robot is round it."""
+        draw = random.Random(f"{self._seed}:corridor")
+
+        def arrived(state: State) -> bool:
+            pose = state.robots[0].pose
+            return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
+
+        return self._drive(self._bend.world, CORRIDOR_SECONDS, draw, until=arrived)
+
+    @cached_property
+    def faulty(self) -> Driven:
+        """A large empty hall, with a lidar that dies and comes back, is blocked and comes free."""
+        draw = random.Random(f"{self._seed}:faulty")
+        start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
+        hall = World.from_segments(box(13.0, 5.0).tolist(), name="an empty hall", starts=[start])
+        return self._drive(hall, FAULTY_SECONDS, draw, tamper=_tamper)
+
+    def share_of_corridor(self, recording: Recording) -> float:
+        """Return how much of the way to the end of the corridor the robot has made, at most 1."""
+        return float(self._bend.share(recording.poses[:, 0, 0], recording.poses[:, 0, 1]).max())
+
+    @cached_property
+    def _bend(self) -> Bend:
+        return draw_bend(random.Random(f"{self._seed}:bend"))
+
+    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> Driven:
+        simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
+        system = self._system()
+        began = system.seconds
+        done = drive(system.harness, simulation, seconds, **options)
+        return Driven(done.recording, system.seconds - began, began, tuple(system.said(began).commands))
+
+
+@dataclass(frozen=True)
+class Bend:
+    """A corridor along +x for `first` metres, then to a side for `second` metres.
+
+    `side` is 1 for left (+y), -1 for right.
+    """
+
+    first: float
+    second: float
+    side: float
+    world: World
+
+    def share(self, x: Floats, y: Floats) -> Floats:
+        """Return the share of the way that a robot at (x, y), metres, has made: to the bend, and on to the far end."""
+        start = self.world.starts[0]
+        along = np.clip(x - start.x, 0.0, self.first - start.x)
+        up = np.where(x > self.first - 0.9, np.clip(self.side * y, 0.0, self.second), 0.0)
+        enough = self.first - start.x + self.second - 1.5  # it turns round before the end
+        return np.minimum(1.0, (along + up) / enough)
+
+
+def draw_bend(draw: random.Random) -> Bend:
+    """Draw a corridor with one bend."""
+    width, first, second = draw.uniform(1.8, 2.2), draw.uniform(3.2, 4.0), draw.uniform(3.2, 4.0)
+    side, half = draw.choice((1.0, -1.0)), width / 2
+    corners = [
+        (-half, -half),
+        (first + half, -half),
+        (first + half, second + half),
+        (first - half, second + half),
+        (first - half, half),
+        (-half, half),
+    ]
+    corners = [(x, side * y) for x, y in corners]
+    walls = [[*a, *b] for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    names = ["the outer wall", "the outer wall", "the far end", "the inner wall", "the inner wall", "the near end"]
+    start = Pose(draw.uniform(0.0, 0.3), draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2))
+    world = World.from_segments(walls, name="a corridor with a bend", starts=[start], segment_names=names)
+    return Bend(first, second, side, world)
+
+
+def _tamper(scan: Scan, seconds: float) -> Scan | None:
+    if DARK.covers(seconds):
+        return None
+    if BLOCKED.covers(seconds):
+        return blocked(scan)
+    return scan

@@ -1,0 +1,79 @@
+"""Step 2, the monitor: what it says of the others, and how soon."""
+
+from __future__ import annotations
+
+import math
+
+from autograder.checks import check, expect
+from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch08_capstone.hidden.nodes import OPEN
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import DEGRADED, FAILED, OK, SAID_WITHIN
+from autograder.checks.ch08_capstone.support.system import System, report_in_words
+from autograder.harness import Stamped
+
+GROUP = "step_2"
+DEAD = {"scan", "clearance"}  # what falls silent with the lidar
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("processor", "controller", "monitor"),
+    hints=(
+        "A topic that was never heard is silent, too: start with None for each.",
+        "FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.",
+    ),
+    doc=contract.NODES_DOC,
+)
+def test_health_levels(system: System) -> None:
+    """Twice a second it reports: FAILED before anything was seen, OK when all is well, DEGRADED when blind."""
+    _expect_report(system.first.reports[-1:], FAILED, DEAD, "Before the first scan")
+    began = system.seconds
+    system.see(OPEN, 3.0)
+    reports = system.said(began).reports
+    _expect_report(reports[-1:], OK, set(), "With scans for 3 s", fraction=0.25)
+    rate = system.harness.rate("/health", began)
+    expect(1.6 <= rate <= 2.4, f"It published {rate:.1f} reports a second, instead of 2.", fraction=0.5)
+    blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0)
+    _expect_report(blind.reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("health_levels",),
+    hints=(
+        "Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.",
+        "A callback of the dead topic cannot tell that it is dead: only a timer can.",
+    ),
+)
+def test_dead_sensor(system: System) -> None:
+    """Within 2 s of a lidar's death health is FAILED and names what is silent; within 2 s of its return it is OK."""
+    system.see(OPEN, 2.0)
+    began = system.seconds
+    reports = system.wait(4.0).reports
+    soon = next((r for r in reports if r.message.level == FAILED), None)
+    late = "never" if soon is None else f"only {soon.seconds - began:.1f} s after"
+    expect(soon is not None and soon.seconds - began <= SAID_WITHIN, f"The lidar died, and health was FAILED {late}.")
+    hasty = reports[0].message.level == FAILED and reports[0].seconds - began < 0.5
+    expect(not hasty, "Health was FAILED less than 0.5 s after the last scan: that is no silence yet.", fraction=0.5)
+    _expect_report(reports[-1:], FAILED, DEAD, "4 s after the last scan", fraction=0.5)
+    system.see(OPEN, SAID_WITHIN)
+    back = system.harness.messages("/health")[-1:]
+    _expect_report(back, OK, set(), f"{SAID_WITHIN:.0f} s after the lidar came back", fraction=0.75)
+
+
+def _expect_report(
+    reports: tuple[Stamped, ...] | list[Stamped], level: int, silent: set[str], situation: str, *, fraction: float = 0.0
+) -> None:
+    """Fail the check unless there is a report with this level that names these topics."""
+    expect(bool(reports), f"{situation}, no report came on health.", fraction=fraction)
+    report = reports[0].message
+    given = {str(topic).lstrip("/") for topic in report.silent}
+    wanted = f"level {contract.LEVELS[level]}, silent: {', '.join(sorted(silent)) or 'none'}"
+    expect(
+        report.level == level and given == silent,
+        f"{situation}, health said {report_in_words(report)}; the contract asks {wanted}.",
+        fraction=fraction,
+    )

@@ -1,0 +1,124 @@
+"""Step 4: one command starts the three nodes, with the parameters and the clock that it is given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from random import Random
+
+import pytest
+import yaml
+
+from autograder.checks import check, expect
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import (
+    CONFIG,
+    LAUNCH_FILE,
+    PACKAGE,
+    PARAMETERS,
+    PROGRAMS,
+    Bounded,
+    name_of,
+)
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe
+
+GROUP = "step_4"
+SHARED = ("shares", "interface_package")
+STARTS = ("executables", *SHARED)
+OTHER_CONFIG = "config/of_another_robot.yaml"
+HINTS = (
+    "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
+    "parameters=[LaunchConfiguration('params_file'), {'use_sim_time': LaunchConfiguration('use_sim_time')}]",
+)
+
+
+@dataclass(frozen=True)
+class Launched:
+    """The launch file as it runs with a parameters file of the grader's own, and with simulated time."""
+
+    harness: LaunchHarness
+    values: Mapping[str, Mapping[str, float]]
+
+
+@pytest.fixture(scope="module")
+def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
+    """One launch, for all checks of this module."""
+    draw = Random(f"{seed}:launch")
+    values = {
+        node: {name: _between(draw, parameter) for name, parameter in parameters.items()}
+        for node, parameters in PARAMETERS.items()
+    }
+    text = yaml.safe_dump({node: {"ros__parameters": dict(own)} for node, own in values.items()})
+    copy = launch_probe.with_files(workspace, "launched", PACKAGE, {OTHER_CONFIG: text})
+    arguments = {"params_file": str(copy.install / PACKAGE / "share" / PACKAGE / OTHER_CONFIG), "use_sim_time": "true"}
+    with LaunchHarness(copy, PACKAGE, LAUNCH_FILE, arguments) as harness:
+        yield Launched(harness, values)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=SHARED,
+    hints=(
+        "ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.",
+        "DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.",
+    ),
+    doc=contract.LAUNCH_DOC,
+)
+def test_launch_arguments(workspace: Workspace) -> None:
+    """The launch file declares params_file, by default the package's own, and use_sim_time, by default false."""
+    arguments = launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE)
+    launch_probe.expect_argument(arguments, "use_sim_time", "false")
+    there = ", ".join(arguments)
+    expect("params_file" in arguments, f"The launch file declares no argument params_file; it declares: {there}.")
+    found = arguments["params_file"]
+    # A default that is put together when the launch runs is not shown as a text.
+    default = CONFIG if found.default is None else found.default
+    expect(
+        default.endswith(CONFIG),
+        f"The argument params_file has the default {default!r}, instead of the path of the installed {CONFIG}.",
+        fraction=0.5,
+    )
+    expect(bool(found.description), "The argument params_file has no description.", fraction=0.5)
+
+
+@check(points=2, group=GROUP, depends=STARTS, hints=HINTS, doc=contract.LAUNCH_DOC)
+def test_launch_starts(launched: Launched) -> None:
+    """The launch file starts the three nodes under their names, and nothing else."""
+    launch_probe.expect_nodes(launched.harness, [name_of(name) for name in PROGRAMS])
+    # Two nodes of one name may look like one in the graph.
+    programs = launch_probe.started(launched.harness.output)
+    said = f"The launch starts {len(programs)} programs: {', '.join(programs)}."
+    expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
+
+
+@check(points=2, group=GROUP, depends=("launch_starts",), hints=HINTS, doc=contract.LAUNCH_DOC)
+def test_launch_configures(launched: Launched) -> None:
+    """What params_file and use_sim_time say reaches all three nodes."""
+    for node, values in launched.values.items():
+        launch_probe.expect_parameters(launched.harness, name_of(node), {"use_sim_time": True})
+        declared = launched.harness.parameters(name_of(node), list(values)) or {}
+        # Which parameters a node declares is judged by itself: here it counts that the file's values arrive.
+        known = {name: value for name, value in values.items() if declared.get(name) is not None}
+        launch_probe.expect_parameters(launched.harness, name_of(node), known)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("launch_starts",),
+    hints=(
+        "Each program's main goes through run(...), which ends without a traceback.",
+        "except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.",
+    ),
+    doc=contract.LAUNCH_DOC,
+)
+def test_launch_stops(launched: Launched) -> None:
+    """Ctrl-C ends the launch and each of its nodes cleanly."""
+    launch_probe.expect_clean_stop(launched.harness)
+
+
+def _between(draw: Random, parameter: Bounded) -> float:
+    return round(draw.uniform(parameter.lowest, parameter.highest), 3)

@@ -1,0 +1,259 @@
+"""Step 2, the nodes: what they hear, what they say, and how they look in the graph."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import SetBool
+
+from autograder.checks import CheckFailed, check, expect
+from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
+from autograder.checks.ch08_capstone.conftest import Stable
+from autograder.checks.ch08_capstone.hidden.graph import expect_ends
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PARAMETERS, PROCESSOR, TOLERANCE
+from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
+
+GROUP = "step_2"
+BUILT = ("build", "clearance_message", "interface_package")
+SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
+TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
+NEAR = PARAMETERS[CONTROLLER]["safety_distance"].default
+STALE = PARAMETERS[CONTROLLER]["data_timeout"].default
+MARGIN = 0.25  # s beyond a time-out that a chain of nodes at 10 Hz may need
+OPEN = scan(fill=math.inf)
+ENDS = (
+    "Start the node in a terminal and look: ros2 node info /navigation_controller.",
+    "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
+)
+
+
+@check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
+def test_processor(stable: Stable) -> None:
+    """The node sensor_processor has its name, and its topics with their types."""
+    expect_ends(stable.system(PROCESSOR).harness.node, PROCESSOR)
+
+
+@check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
+def test_controller(stable: Stable) -> None:
+    """The node navigation_controller has its name, and its topics and its service with their types."""
+    expect_ends(stable.system(CONTROLLER).harness.node, CONTROLLER)
+
+
+@check(points=1, group=GROUP, depends=(*BUILT, "health_message"), hints=ENDS, doc=contract.NODES_DOC)
+def test_monitor(stable: Stable) -> None:
+    """The node status_monitor has its name, and its topics with their types."""
+    expect_ends(stable.system(MONITOR).harness.node, MONITOR)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("processor", "monitor"),
+    hints=(
+        "A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.",
+        "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.",
+    ),
+    doc=contract.QOS_DOC,
+)
+def test_qos(stable: Stable) -> None:
+    """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
+    graph = stable.system(PROCESSOR, MONITOR).harness.node
+    for peer in graph.get_subscriptions_info_by_topic("/scan"):
+        reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+        expect(not reliable, f"{peer.node_name} asks for reliable scans: it would get none from a lidar.", fraction=0.5)
+    for peer in graph.get_publishers_info_by_topic("/health"):
+        durable = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        expect(durable, f"{peer.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("processor",),
+    hints=(
+        "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.",
+        "The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.",
+    ),
+    doc=contract.SCAN_DOC,
+)
+def test_sectors(seeing: System, draw: random.Random) -> None:
+    """Each scan becomes one clearance: the nearest thing ahead, on the left and on the right, and the scan's header."""
+    for beams, first in ((360, 0.0), (draw.randrange(500, 700), -180.0)):
+        distances = {name: round(draw.uniform(0.7, 2.0), 2) for name in ("front", "left", "right")}
+        places = {"front": draw.uniform(-24, 20), "left": draw.uniform(66, 110), "right": draw.uniform(-114, -70)}
+        parts = [Part(places[name], places[name] + 4.0, distance) for name, distance in distances.items()]
+        shown = scan(*parts, Part(130.0, 170.0, 0.4), Part(35.0, 55.0, 0.4), beams=beams, first_bearing=first)
+        shown.header.frame_id = draw.choice(("laser", "base_scan", "lidar_top"))
+        said = seeing.see(shown).clearances
+        expect(bool(said), "No clearance came while scans did.")
+        newest = said[-1].message
+        for name, wanted in distances.items():
+            given = getattr(newest, name)
+            expect(
+                abs(given - wanted) <= TOLERANCE,
+                f"With the nearest thing {wanted:.2f} m away at {places[name] + 2:.0f}°, in a scan that starts at "
+                f"{first:.0f}°, {name} was {given:.2f}.",
+                fraction=0.25,
+            )
+        expect(bool(newest.valid), "With a reading from every beam, valid was false.", fraction=0.5)
+        frame = newest.header.frame_id
+        expect(
+            frame == shown.header.frame_id and newest.header.stamp.sec > 0,
+            f"The header is not the scan's own: frame {frame!r}, stamp {newest.header.stamp.sec} s.",
+            fraction=0.5,
+        )
+    began = seeing.seconds
+    seeing.see(OPEN, 1.0)
+    count = len(seeing.said(began).clearances)
+    expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("sectors",),
+    hints=(
+        "min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.",
+        "min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.",
+    ),
+    doc=contract.REP_117,
+)
+def test_readings(seeing: System, draw: random.Random) -> None:
+    """Readings count by REP 117, and a sector without one that counts makes the clearance invalid."""
+    bearing, wall = draw.uniform(-20.0, 10.0), draw.uniform(0.8, 1.6)
+    hole = (bearing, bearing + 4.0)
+    cases = (
+        ("a few nan beams before a wall", (*hole, math.nan), wall),
+        ("a few readings of 0.0 before a wall", (*hole, 0.0), wall),
+        ("a few readings below range_min before a wall", (*hole, 0.05), wall),
+        ("a few readings above range_max before a wall", (*hole, RANGE_MAX + 1.0), wall),
+        ("+inf from a few beams before a wall", (*hole, math.inf), wall),
+        ("-inf from a few beams", (*hole, -math.inf), -math.inf),
+    )
+    wrong = []
+    for what, (first, last, reading), wanted in cases:
+        newest = _newest(seeing, scan(Part(-25.0, 25.0, wall), Part(first, last, reading)))
+        if not (newest.valid and (newest.front == wanted or abs(newest.front - wanted) <= TOLERANCE)):
+            wrong.append(f"With {what} at {wall:.2f} m, front was {newest.front:.2f} and valid {newest.valid}.")
+    blind = (("ahead", (-35.0, 35.0)), ("on the left", (55.0, 125.0)), ("on the right", (-125.0, -55.0)))
+    for where, (first, last) in blind:
+        newest = _newest(seeing, scan(Part(first, last, draw.choice((math.nan, 0.0)))))
+        if newest.valid:
+            wrong.append(f"With no reading that counts {where}, valid was true.")
+    if wrong:
+        total = len(cases) + len(blind)
+        raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("sectors", "controller"),
+    hints=(
+        "The way is clear: linear.x is forward_speed.",
+        "The timer calls control ten times a second, and control publishes once each time, whatever happens.",
+    ),
+    doc=contract.NODES_DOC,
+)
+def test_drives(driving: System, draw: random.Random) -> None:
+    """It drives forward while the way is clear, with ten commands a second."""
+    distance = draw.uniform(0.9, 3.0)
+    began = driving.seconds
+    said = driving.see(scan(fill=distance), 2.0)
+    expect_driving(said.commands, f"With {distance:.2f} m of free space all around", SPEED)
+    rate = driving.harness.rate("/cmd_vel", began)
+    expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("drives",),
+    hints=(
+        "Compare left with right when the turn begins, and remember the choice.",
+        "The remembered turn ends when the way is clear again, not when the sides look different.",
+    ),
+)
+def test_turns(driving: System, draw: random.Random) -> None:
+    """In front of an obstacle it turns towards the side with more room, and keeps the direction until it is clear."""
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        driving.see(OPEN)
+        near, tight = draw.uniform(0.25, NEAR - 0.1), draw.uniform(0.7, 1.2)
+        obstacle = Part(-10.0, 10.0, near)
+        narrow, other = _beside(-sign, tight), _beside(sign, tight - 0.4)
+        situation = f"With something {near:.2f} m ahead and less room on the {'right' if sign > 0 else 'left'}"
+        expect_turning(driving.see(scan(obstacle, narrow)).commands, situation, side, TURN)
+        later = f"{situation}, once it turns and the sides have changed,"
+        expect_turning(driving.see(scan(obstacle, narrow, other)).commands, later, side, TURN, fraction=0.5)
+        expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("drives",),
+    hints=(
+        "No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.",
+        "Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.",
+    ),
+)
+def test_stops(driving: System) -> None:
+    """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
+    expect_still(driving.first.commands, "Before the first scan")
+    driving.see(OPEN)
+    expect_still(
+        driving.see(scan(Part(-35.0, 35.0, math.nan))).commands, "With nan from every beam ahead", fraction=0.25
+    )
+    driving.see(OPEN)
+    began = driving.seconds
+    driving.wait(2.0)
+    late = driving.said(began + STALE + MARGIN).commands
+    expect_still(late, f"More than {STALE} s after the last scan", fraction=0.5)
+    driving.see(OPEN)
+    old = driving.see(OPEN, 1.5, age=1.0).commands
+    expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("drives",),
+    hints=(
+        "self.create_service(SetBool, 'enable', self.enable_callback)",
+        "The callback remembers request.data and returns the response with success = True.",
+    ),
+    doc=contract.SERVICE_DOC,
+)
+def test_enable(driving: System, stable: Stable) -> None:
+    """The service enable holds the robot still, and lets it go again."""
+    try:
+        _hold_and_release(driving)
+    except CheckFailed:
+        stable.close()  # a robot that is still held would fail what follows
+        raise
+
+
+def _hold_and_release(system: System) -> None:
+    system.see(OPEN)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=False))
+    expect(answer.success, "Asked to hold still, it answered success = false.")
+    expect_still(system.see(OPEN).commands, "After enable with data: false")
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
+    expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
+    expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
+
+
+def _beside(sign: float, distance: float) -> Part:
+    """Return something at the left (1) or the right (-1)."""
+    return Part(90.0 * sign - 20.0, 90.0 * sign + 20.0, distance)
+
+
+def _newest(system: System, shown: LaserScan) -> Any:
+    said = system.see(shown, 0.5).clearances
+    expect(bool(said), "No clearance came while scans did.")
+    return said[-1].message

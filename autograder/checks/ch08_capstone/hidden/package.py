@@ -1,0 +1,144 @@
+"""Step 1: what package.xml declares, and what setup.py installs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from autograder.checks import check, expect
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
+from autograder.checks.ch08_capstone.support.sources import require_built, source_of
+from autograder.diagnosis import Diagnosis
+from autograder.harness import Workspace
+from autograder.probes import imports, manifest
+from autograder.probes.installed import look
+
+GROUP = "step_1"
+FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
+FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    hints=(
+        "The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.",
+        "<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_manifests(workspace: Workspace) -> None:
+    """Both packages have a package.xml that ROS accepts, with the licence, the version and the right build type."""
+    for name, build_type in ((PACKAGE, "ament_python"), (INTERFACES, "ament_cmake")):
+        found = manifest.read(source_of(workspace, name))
+        expect(found.format == 3, f"{name}/package.xml has format {found.format}, instead of 3.")
+        expect(found.version == VERSION, f"{name}/package.xml says version {found.version}, instead of {VERSION}.")
+        licences = ", ".join(found.licences)
+        expect(
+            found.licences == (LICENCE,),
+            f"{name}/package.xml says licence {licences!r}: the SPDX identifier is {LICENCE}.",
+        )
+        expect(
+            found.build_type == build_type,
+            f"{name}/package.xml exports the build type {found.build_type or 'nothing'!r}, instead of {build_type}.",
+        )
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("manifests",),
+    hints=(
+        "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
+        "machine.",
+        "The launch file needs three packages, too; the linters and launch_pytest are test_depends.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_dependencies(workspace: Workspace) -> None:
+    """The manifest of the nodes declares every package that their code, launch file and tests use."""
+    source = source_of(workspace, PACKAGE)
+    found = manifest.read(source)
+    missing = imports.missing(source, found)
+    expect(not missing["exec"], f"{imports.say(missing['exec'])}: package.xml does not declare it as a dependency.")
+    expect(not missing["test"], f"{imports.say(missing['test'])}: package.xml has no test_depend for it.", fraction=0.5)
+    for kind, names in (("exec", FOR_LAUNCH), ("test", FOR_TESTS)):
+        absent = [name for name in names if name not in found.needs("exec", kind)]
+        expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    hints=(
+        "Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.",
+        "setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_build(builds: Mapping[str, Diagnosis]) -> None:
+    """Colcon builds the package of the nodes."""
+    require_built(builds, PACKAGE)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("build",),
+    hints=(
+        "entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}",
+        "install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_executables(workspace: Workspace) -> None:
+    """The build installs the package's three executables where ros2 run looks."""
+    found = look(workspace.install, PACKAGE)
+    absent = [name for name in PROGRAMS if name not in found.executables]
+    there = ", ".join(found.executables) or "none"
+    where = f" bin/, where ros2 run does not look, has {', '.join(found.misplaced)}." if found.misplaced else ""
+    expect(
+        not absent,
+        f"The executable {', '.join(absent)} is not installed; installed are: {there}.{where}",
+        fraction=round(0.9 * (1.0 - len(absent) / len(PROGRAMS)), 2),
+    )
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("build",),
+    hints=(
+        "data_files holds pairs: a folder below share/, and the files that go there.",
+        "('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_shares(workspace: Workspace) -> None:
+    """setup.py installs the manifest, the launch file and the configuration."""
+    found = look(workspace.install, PACKAGE)
+    wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
+    absent = [path for path in wanted if path not in found.shared]
+    expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("manifests", "build"),
+    hints=("Copy the four from one file to the other, to the letter.",),
+    doc=contract.PACKAGES_DOC,
+)
+def test_agreement(workspace: Workspace) -> None:
+    """package.xml and setup.py agree on version, licence and maintainer."""
+    declared = manifest.read(source_of(workspace, PACKAGE))
+    said = look(workspace.install, PACKAGE).metadata
+    maintainer, address = declared.maintainers[0]
+    for header, wanted in (
+        ("Version", declared.version),
+        ("License", declared.licences[0]),
+        ("Maintainer", maintainer),
+        ("Maintainer-email", address),
+    ):
+        given = said.get(header, "nothing")
+        expect(given == wanted, f"{header.lower()}: package.xml says {wanted!r}, setup.py says {given!r}.")

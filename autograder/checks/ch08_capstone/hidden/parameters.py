@@ -1,0 +1,175 @@
+"""Step 5: parameters that are declared with their limits, kept in a file, and used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from autograder.checks import CheckFailed, check, expect
+from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch08_capstone.hidden.nodes import OPEN
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import (
+    CONFIG,
+    CONTROLLER,
+    FAILED,
+    MONITOR,
+    PACKAGE,
+    PARAMETERS,
+    PROCESSOR,
+)
+from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
+from autograder.harness import Stamped, Workspace
+from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
+
+GROUP = "step_5"
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("processor", "controller", "monitor"),
+    hints=(
+        "ros2 param list /navigation_controller shows what a node declares.",
+        "declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...'): name and default as in the table.",
+    ),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_declared(system: System) -> None:
+    """Each node declares its parameters, with the defaults of the contract."""
+    for node, wanted in PARAMETERS.items():
+        asked = system.parameters(node)
+        missing = missing_sentence(wanted, asked.names())
+        expect(not missing, f"{node}: {missing}")
+        wrong = differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
+        expect(not wrong, f"{node}: {'; '.join(wrong)}.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("declared",),
+    hints=(
+        "ros2 param describe /navigation_controller safety_distance shows the range.",
+        "floating_point_range=[FloatingPointRange(from_value=0.3, to_value=2.0)] in the ParameterDescriptor.",
+    ),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_ranges(system: System) -> None:
+    """Each parameter has a description and the range of the contract, and a value outside is refused."""
+    for node, wanted in PARAMETERS.items():
+        asked = system.parameters(node)
+        for name, descriptor in asked.descriptors(*wanted).items():
+            bounds = wanted[name]
+            ranges = [(each.from_value, each.to_value) for each in descriptor.floating_point_range]
+            shown = f"{ranges[0][0]:g} to {ranges[0][1]:g}" if ranges else "no range"
+            expect(
+                ranges == [(bounds.lowest, bounds.highest)],
+                f"{node}: {name} has {shown}, the contract asks {bounds.lowest:g} to {bounds.highest:g}.",
+            )
+            expect(bool(descriptor.description), f"{node}: {name} has no description.", fraction=0.5)
+            refused = not asked.change({name: bounds.highest * 2}).accepted
+            expect(refused, f"{node}: {name} can be set to {bounds.highest * 2:g}.")
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("declared", "drives", "turns", "sectors", "dead_sensor"),
+    hints=(
+        "A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.",
+        "Every parameter of the table is used: a number in the code that stands for one makes it a decoration.",
+    ),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_used(system: System) -> None:
+    """A parameter that is changed while the system runs has an effect at once."""
+    wrong = [said for said in (_effect(system, *case) for case in _CASES) if said]
+    if wrong:
+        raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / len(_CASES), 2))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("shares",),
+    hints=(
+        "By node, then ros__parameters, then name and value, each level indented by two blanks.",
+        "A name that no node declares is ignored without a word: compare letter by letter.",
+    ),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_config(workspace: Workspace) -> None:
+    """The configuration file holds every parameter with its default, by node."""
+    file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
+    for node, wanted in PARAMETERS.items():
+        values = for_node(file, node)
+        expect(bool(values), f"{CONFIG} says nothing for {node}; it has: {', '.join(file)}.")
+        wrong = differences(values, {name: bounds.default for name, bounds in wanted.items()})
+        expect(not wrong, f"{CONFIG}, {node}: {'; '.join(wrong)}.", fraction=0.5)
+        extra = sorted(set(values) - {name for bounds in PARAMETERS.values() for name in bounds})
+        expect(not extra, f"{CONFIG}, {node}: {', '.join(extra)} is not declared by any node.", fraction=0.5)
+
+
+def _safety_distance(system: System) -> None:
+    expect_turning(_settled(system, Part(-10.0, 10.0, 1.2)), "with something 1.2 m ahead", "left", 0.8)
+
+
+def _forward_speed(system: System) -> None:
+    expect_driving(_settled(system), "with nothing around", 0.12)
+
+
+def _turn_speed(system: System) -> None:
+    expect_turning(_settled(system, Part(-10.0, 10.0, 0.4)), "with something 0.4 m ahead", "left", 0.25)
+
+
+def _data_timeout(system: System) -> None:
+    _settled(system)
+    began = system.seconds
+    system.wait(1.2)
+    expect_driving(system.said(began + 0.7).commands, "with data 1.2 s old at most", 0.3)
+
+
+def _half_angle(system: System) -> None:
+    _settled(system, Part(22.0, 26.0, 1.0))
+    front = system.harness.messages("/clearance")[-1].message.front
+    expect(front > 2.0, "something at 24° was still ahead.")
+
+
+def _silence_timeout(system: System) -> None:
+    system.see(OPEN, 1.0)
+    began = system.seconds
+    system.wait(0.9)
+    said = system.said(began + 0.4).reports
+    expect(bool(said) and said[-1].message.level == FAILED, "0.9 s after the last scan, health was not FAILED.")
+
+
+_CASES: tuple[tuple[str, str, float, Callable[[System], None]], ...] = (
+    (CONTROLLER, "safety_distance", 1.5, _safety_distance),
+    (CONTROLLER, "forward_speed", 0.12, _forward_speed),
+    (CONTROLLER, "turn_speed", 0.25, _turn_speed),
+    (CONTROLLER, "data_timeout", 2.0, _data_timeout),
+    (PROCESSOR, "half_angle", 0.35, _half_angle),
+    (MONITOR, "silence_timeout", 0.3, _silence_timeout),
+)
+
+
+def _effect(system: System, node: str, name: str, value: float, look: Callable[[System], None]) -> str:
+    """Change a parameter, look at what comes of it, and change it back; say what was wrong."""
+    asked = system.parameters(node)
+    answer = asked.change({name: value})
+    if not answer.accepted:
+        return f"{node} refuses {name} = {value:g}: {answer.reason}"
+    try:
+        look(system)
+    except CheckFailed as failed:
+        return f"With {name} = {value:g}: {failed.message}"
+    finally:
+        asked.change({name: PARAMETERS[node][name].default})
+        system.see(OPEN)
+    return ""
+
+
+def _settled(system: System, *parts: Part) -> Sequence[Stamped]:
+    """Show an open space, then these things in it; return the commands that followed."""
+    system.see(OPEN)
+    return system.see(scan(*parts, fill=3.0)).commands

@@ -1,0 +1,94 @@
+"""Step 7: colcon test finds the tests, and all of them pass, the linters too."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.checks import check, expect
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import PACKAGE
+from autograder.harness import Workspace
+from autograder.probes import linters
+from autograder.probes.colcon_test import colcon_test
+from autograder.probes.junit import Verdict
+from autograder.probes.test_reports import Report
+from autograder.probes.test_runs import take
+
+GROUP = "step_7"
+LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
+SHOWN = 5
+
+
+@pytest.fixture(scope="module")
+def tested(workspace: Workspace) -> Report:
+    """What colcon test says, once for all checks."""
+    return colcon_test(workspace, PACKAGE)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("build", "interface_package"),
+    hints=(
+        "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
+        "test_flake8.py, test_pep257.py and test_integration.py are in test/, too.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_colcon_finds_tests(tested: Report) -> None:
+    """Colcon test finds the package's tests: the student's own, the integration test and both linters."""
+    ran = tested.executed
+    expect(bool(ran), "colcon test ran no test at all.")
+    modules = sorted({test.partition("::")[0] for test in ran})
+    broken = [f" {test}: {message}" for test, message in tested.claims.messages.items() if message and test in ran]
+    for name in ("test_sectors", "test_integration", "test_flake8", "test_pep257"):
+        expect(
+            name in modules,
+            f"No test of {name}.py ran; there ran: {', '.join(modules)}.{''.join(broken[:1])}",
+        )
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("colcon_finds_tests",),
+    hints=(
+        "Run colcon test in a terminal, then colcon test-result --all --verbose.",
+        "The linters name a file, a line and a rule: mend them one by one.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_linters_pass(workspace: Workspace, tested: Report) -> None:
+    """Flake8 and PEP 257 have nothing to say."""
+    for name in LINTERS:
+        verdict = tested.claims.verdicts.get(name)
+        expect(verdict is Verdict.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
+    linters.expect_tidy(workspace, take(workspace, PACKAGE))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=(
+        "colcon_finds_tests",
+        "qos",
+        "readings",
+        "turns",
+        "stops",
+        "enable",
+        "dead_sensor",
+        "launch_starts",
+        "config",
+    ),
+    hints=(
+        "Run colcon test in a terminal, then colcon test-result --all --verbose.",
+        "test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_tests_pass(tested: Report) -> None:
+    """Every test of the package passes, the one that launches the whole system, too."""
+    bad = [name for name in tested.failed if name not in LINTERS]
+    messages = tested.claims.messages
+    shown = "; ".join(f"{name}: {messages.get(name, '')}" for name in bad[:SHOWN])
+    expect(not bad, f"{len(bad)} of {len(tested.executed)} tests fail: {shown}")

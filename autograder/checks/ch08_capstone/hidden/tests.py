@@ -1,0 +1,86 @@
+"""Step 6: the student's tests of the sectors, against a right version and against broken ones."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+
+import pytest
+
+from autograder.checks import CheckFailed, check, expect
+from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, faulty, right
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import PACKAGE
+from autograder.checks.ch08_capstone.support.sources import source_of
+from autograder.harness import Workspace
+from autograder.probes import test_runs
+from autograder.probes.test_reports import Report, TestRun
+
+GROUP = "step_6"
+FILE = "test_sectors.py"
+LEAST = 4
+BROKEN = 3  # of the faults, drawn from the seed: each costs a process
+
+
+@dataclass(frozen=True)
+class Examined:
+    """What the tests say of a right version, and of faulty ones."""
+
+    right: Report
+    faulty: tuple[tuple[Fault, Report], ...]
+
+
+@pytest.fixture(scope="module")
+def examined(workspace: Workspace, seed: int) -> Examined:
+    """The runs of the student's tests, in a drawn order, once for all checks."""
+    if not (source_of(workspace, PACKAGE) / "test" / FILE).is_file():
+        raise CheckFailed(f"There is no test/{FILE} in the package {PACKAGE}.")
+    draw = random.Random(f"{seed}:sectors")
+    faults = draw.sample(FAULTS, BROKEN)
+    versions = [right(draw), *faulty(faults, draw)]
+    order = draw.sample(range(len(versions)), len(versions))
+    source = test_runs.take(workspace, PACKAGE)
+    runs = test_runs.run(workspace, source, [TestRun((FILE,), versions[i], first_failure=i > 0) for i in order])
+    by_version = dict(zip(order, runs, strict=True))
+    return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(faults, 1)))
+
+
+@check(
+    points=2,
+    group=GROUP,
+    hints=(
+        "Run pytest on test/test_sectors.py in a terminal, in the package's folder.",
+        "Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_sector_tests_pass(examined: Examined) -> None:
+    """The tests of the sectors pass on a right sectors.py, and there are at least four of them."""
+    report = examined.right
+    if report.failed:
+        first = report.failed[0]
+        said = report.claims.messages.get(first, "")
+        raise CheckFailed(f"On a right sectors.py, {len(report.failed)} tests fail: {first}: {said}")
+    expect(report.passed, f"On a right sectors.py, pytest ran no test: {report.output.strip()[-300:]}")
+    count = len(report.executed)
+    expect(count >= LEAST, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
+
+
+@check(
+    points=4,
+    group=GROUP,
+    depends=("sector_tests_pass",),
+    hints=(
+        "One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.",
+        "Put the odd reading before a wall and after it: the order of the beams must not matter.",
+    ),
+    doc=contract.REP_117,
+)
+def test_sector_tests_find_faults(examined: Examined) -> None:
+    """The tests of the sectors fail on broken versions of sectors.py."""
+    missed = [fault.what for fault, report in examined.faulty if not report.objects(examined.right)]
+    expect(
+        not missed,
+        f"Your tests are content with {'; with '.join(missed)}.",
+        fraction=round(1.0 - len(missed) / len(examined.faulty), 2),
+    )

@@ -1,0 +1,99 @@
+"""Versions of the module sectors that a student's tests meet: one is right, the others have one fault each."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from autograder.checks.ch08_capstone.support.contract import PACKAGE, SECTORS
+from autograder.exceptions import GraderError
+from autograder.probes.versions import Version, disguise
+
+RIGHT = """
+import math
+
+FRONT = 0.0
+LEFT = math.pi / 2
+RIGHT = -math.pi / 2
+
+
+def nearest(scan, middle, half_angle):
+    best = math.nan
+    for index, reading in enumerate(scan.ranges):
+        angle = scan.angle_min + index * scan.angle_increment
+        away = angle - middle
+        if abs(math.atan2(math.sin(away), math.cos(away))) > half_angle:
+            continue
+        if math.isnan(reading):
+            continue
+        if math.isfinite(reading) and not scan.range_min <= reading <= scan.range_max:
+            continue
+        if math.isnan(best) or reading < best:
+            best = reading
+    return best
+"""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault, in words and as a change of the right text."""
+
+    what: str
+    find: str
+    replace: str
+
+
+FAULTS = (
+    Fault(
+        "a nan that hides what comes after it",
+        "        if math.isnan(reading):\n            continue\n",
+        "        if math.isnan(reading):\n            break\n",
+    ),
+    Fault(
+        "a phantom below range_min that counts as a distance",
+        "not scan.range_min <= reading <= scan.range_max",
+        "not reading <= scan.range_max",
+    ),
+    Fault(
+        "left and right exchanged",
+        "        away = angle - middle\n",
+        "        away = angle + middle\n",
+    ),
+    Fault(
+        "bearings that are right only for a scan that starts at 0",
+        "        angle = scan.angle_min + index * scan.angle_increment\n",
+        "        angle = index * scan.angle_increment\n",
+    ),
+    Fault(
+        "-inf, too near to measure, that is left out",
+        "        if math.isnan(reading):\n",
+        "        if math.isnan(reading) or reading == -math.inf:\n",
+    ),
+    Fault(
+        "a blind sector that counts as clear",
+        "    return best\n",
+        "    return math.inf if math.isnan(best) else best\n",
+    ),
+)
+
+
+def right(draw: random.Random) -> Version:
+    """Return the right version."""
+    return _version(RIGHT, draw)
+
+
+def faulty(faults: Sequence[Fault], draw: random.Random) -> list[Version]:
+    """Return a version for each fault."""
+    return [_version(_with(fault), draw) for fault in faults]
+
+
+def _with(fault: Fault) -> str:
+    if RIGHT.count(fault.find) != 1:
+        raise GraderError(f"the fault {fault.what!r} no longer fits the right version")
+    return RIGHT.replace(fault.find, fault.replace)
+
+
+def _version(text: str, draw: random.Random) -> Version:
+    files = {f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": text}
+    return disguise(Version(files, {}), draw.randrange(2**31))

@@ -1,0 +1,139 @@
+"""Step 2, the whole: the robot in hidden worlds, judged by temporal logic over its track."""
+
+from __future__ import annotations
+
+from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks.ch08_capstone.hidden import tracks
+from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
+from autograder.gallery import Gallery
+from sim import clearance
+from sim.rows import row_at, state_at
+
+GROUP = "step_2"
+DRIVES = ("drives",)  # not on turning: a collision shows more than a failed reaction, and earns its share
+SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
+STEADY = "changes < 3.5"  # turns that followed one to the other side, in the newest MEMORY seconds
+MEMORY = 6.0  # s
+STOPPING = 0.3  # m: 0.5 s until the data are stale, and what a chain at 10 Hz and a motor add, at 0.3 m/s
+BLIND_STOPPING = 0.15  # m: a blocked lidar says so at once
+STANDS = 0.01  # m/s
+BACK_WITHIN = 2.0  # s
+PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
+
+
+@check(points=3, group=GROUP, depends=DRIVES, hints=PICTURE)
+def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
+    """It drives through a furnished room for twenty seconds and touches nothing."""
+    driven = drives.room
+    recording = driven.recording
+    verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
+    if verdict.violated_at is not None:
+        when = verdict.violated_at
+        what = clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
+        _fail(gallery, driven, f"It touched {what} at t = {when:.1f} s.", when, "touches", when / driven.seconds)
+    metres = float(tracks.path(recording)[-1])
+    _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.")
+    expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("drives", "turns"),
+    hints=(
+        "A turn that has begun keeps its direction until the way is clear.",
+        "self.turn remembers it; the sides are compared only when a turn begins.",
+    ),
+)
+def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
+    """It does not swing to and fro between left and right."""
+    for driven in (drives.room, drives.corridor):
+        times = [command.seconds for command in driven.commands]
+        rates = [command.message.angular.z for command in driven.commands]
+        verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_mind(times, rates, MEMORY)})
+        if verdict.violated_at is not None:
+            when = verdict.violated_at - driven.began
+            sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
+            _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=DRIVES,
+    hints=(
+        "At the bend it has to turn towards the side with more room, and then drive on.",
+        "A robot that turns too far looks back to where it came from: a turn ends when the way is clear.",
+    ),
+)
+def test_gets_on(drives: Drives, gallery: Gallery) -> None:
+    """It finds its way round the bend of a corridor."""
+    driven = drives.corridor
+    share = drives.share_of_corridor(driven.recording)
+    caption = f"{100 * share:.0f} % of the way to the far end of the corridor in {driven.seconds:.0f} s."
+    if share < 1.0:
+        _fail(gallery, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share)
+    _keep(gallery, driven, caption)
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=("stops",),
+    hints=(
+        "Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?",
+        "A clearance that is not valid means stop at once.",
+    ),
+)
+def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
+    """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
+    driven = drives.faulty
+    for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
+        times = driven.recording.times
+        there = (times >= trouble.start) & (times < trouble.end)
+        metres = tracks.driven_since(driven.recording, trouble.start)[there].tolist()
+        verdict = temporal.always(f"metres < {most}", times[there].tolist(), {"metres": metres})
+        if verdict.violated_at is not None:
+            sentence = (
+                f"The lidar was {trouble.name} from t = {trouble.start:.0f} s on; at t = {verdict.violated_at:.1f} s "
+                f"the robot had driven {most:.2f} m since then and had not stopped."
+            )
+            _fail(gallery, driven, sentence, verdict.violated_at, "still drives", 0.0 if trouble is DARK else 0.5)
+    _keep(gallery, driven, "the lidar died and came back, was blocked and came free; the robot stood still meanwhile.")
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("stops_in_time",),
+    hints=("Look at the newest clearance every time: a stop is no state to be stuck in.",),
+)
+def test_drives_again(drives: Drives, gallery: Gallery) -> None:
+    """Within 2 s of its lidar's return it drives again."""
+    driven = drives.faulty
+    times, speed = driven.recording.times, tracks.speeds(driven.recording)
+    for trouble in (DARK, BLOCKED):
+        after = (times >= trouble.end) & (times <= trouble.end + BACK_WITHIN)
+        moves = bool((speed[after] > STANDS).any())
+        if not moves:
+            sentence = (
+                f"The lidar was {trouble.name} until t = {trouble.end:.0f} s; {BACK_WITHIN:.0f} s later it still stood."
+            )
+            _fail(gallery, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
+
+
+def _keep(gallery: Gallery, driven: Driven, caption: str) -> None:
+    world = driven.recording.simulation.world.name
+    gallery.track("track", driven.recording, f"The robot's track in {world}: {caption}")
+
+
+def _fail(gallery: Gallery, driven: Driven, sentence: str, when: float, note: str, fraction: float) -> None:
+    world = driven.recording.simulation.world.name
+    gallery.track(
+        "track",
+        driven.recording,
+        f"The robot's track in {world}. {sentence}",
+        mark=min(when, driven.seconds),
+        note=note,
+    )
+    raise CheckFailed(sentence, fraction=round(min(max(fraction, 0.0), 0.95), 2))

@@ -1,0 +1,95 @@
+"""The student's two messages: what they must hold, and what they hold instead."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import ModuleType
+
+from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
+from autograder.harness import Workspace
+from autograder.interfaces import load_from
+
+
+@dataclass(frozen=True)
+class Message:
+    """What a message must hold: fields by name with their types, as rosidl calls them, and constants."""
+
+    name: str
+    fields: Mapping[str, str]
+    constants: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Types:
+    """The student's two messages, as the grader has built them from their text."""
+
+    clearance: type
+    health: type
+
+
+HEADER = {"header": "std_msgs/Header"}
+CLEARANCE = Message("Clearance", {**HEADER, "valid": "boolean", "front": "float", "left": "float", "right": "float"})
+HEALTH = Message(
+    "Health",
+    {**HEADER, "level": "uint8", "silent": "sequence<string>"},
+    {name: value for value, name in enumerate(LEVELS)},
+)
+# rosidl's names of types, in the words of a .msg file.
+_WORDS = {"boolean": "bool", "float": "float32", "double": "float64", "sequence<string>": "string[]"}
+
+
+def load_messages(workspace: Workspace) -> ModuleType:
+    """Build and load the student's messages from their text. Raises as `load_from` does."""
+    return load_from(workspace, INTERFACES)
+
+
+def types(module: ModuleType) -> Types:
+    """Return the two messages of a package in which both are as they must be."""
+    return Types(module.msg.Clearance, module.msg.Health)
+
+
+def differences(module: ModuleType, wanted: Message) -> list[str]:
+    """Say where a message of the student's differs from what it must hold, near misses named."""
+    messages = getattr(module, "msg", None)
+    found = getattr(messages, wanted.name, None)
+    if found is None:
+        there = sorted(name for name in vars(messages) if name[:1].isupper()) if messages else []
+        return [f"There is no msg/{wanted.name}.msg; there is {', '.join(there) or 'no message'}."]
+    fields = found.get_fields_and_field_types()
+    said = [_field(wanted.name, name, kind, fields) for name, kind in wanted.fields.items()]
+    extra = [name for name in fields if name not in wanted.fields and not _stands_for(name, wanted, fields)]
+    said += [f"{wanted.name} has a field {name} that is not asked for." for name in extra]
+    said = [sentence for sentence in said if sentence]
+    if not said and list(fields) != list(wanted.fields):
+        said = [
+            f"The fields of {wanted.name} are in the order {', '.join(fields)}: {', '.join(wanted.fields)} is asked."
+        ]
+    return said + [
+        f"{wanted.name} has no constant uint8 {name}={value}."
+        for name, value in wanted.constants.items()
+        if getattr(found, name, None) != value
+    ]
+
+
+def _field(message: str, name: str, kind: str, fields: Mapping[str, str]) -> str:
+    if name not in fields:
+        near = _near(name, fields)
+        return f"{message} has no field {name}{f'; it has {near}' if near else ''}."
+    if fields[name] != kind:
+        return f"{message}.{name} is {_word(fields[name])}, the contract asks {_word(kind)}."
+    return ""
+
+
+def _stands_for(name: str, wanted: Message, fields: Mapping[str, str]) -> bool:
+    """Say whether a field that is not asked for was named as the near miss of one that is missing."""
+    return any(_near(missing, fields) == name for missing in wanted.fields if missing not in fields)
+
+
+def _near(name: str, fields: Mapping[str, str]) -> str:
+    return next(iter(difflib.get_close_matches(name, fields, 1, 0.6)), "")
+
+
+def _word(kind: str) -> str:
+    return _WORDS.get(kind, kind)

@@ -1,0 +1,36 @@
+"""The student's two packages as folders, and whether they were built."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from autograder.checks import CheckFailed
+from autograder.diagnosis import OK, Diagnosis
+from autograder.harness import Workspace
+from autograder.packages import find_packages
+
+
+def source_of(workspace: Workspace, package: str) -> Path:
+    """Return the folder of a package's source.
+
+    Raises:
+        CheckFailed: there is none.
+    """
+    source = workspace.root / "src"
+    found, broken = find_packages(source)
+    folder = found.get(package)
+    if folder is None:
+        raise CheckFailed(broken.get(source / package, f"There is no package {package} in src."))
+    return folder
+
+
+def require_built(builds: Mapping[str, Diagnosis], *packages: str) -> None:
+    """Fail the check unless colcon has built the packages.
+
+    Raises:
+        CheckFailed: it has not; the message says why.
+    """
+    for package in packages:
+        if builds[package] is not OK:
+            raise CheckFailed(f"{package} was not built: {builds[package].sentence}")

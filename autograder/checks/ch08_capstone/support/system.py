@@ -1,0 +1,187 @@
+"""The student's three programs, shown scans and asked for what they say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import LaserScan
+
+from autograder.checks import CheckFailed, expect
+from autograder.checks.ch02_nodes.support.robot import say
+from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
+from autograder.checks.ch08_capstone.support.messages import Types
+from autograder.harness import AutoHarness, Program, Stamped, Workspace
+from autograder.probes.installed import look
+from autograder.probes.parameters import NodeParameters
+
+SCAN_SECONDS = 0.1
+SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
+ANSWER_SECONDS = 5.0  # s of ROS time for a service
+ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
+
+
+@dataclass(frozen=True)
+class Said:
+    """What the system said during a stretch of time, each in the order in which it came."""
+
+    clearances: tuple[Stamped, ...]
+    commands: tuple[Stamped, ...]
+    reports: tuple[Stamped, ...]
+
+
+class System:
+    """The three programs; stepped together, a scan, its clearance and the command that follows belong to one step.
+
+    Args:
+        workspace: where they are installed.
+        types: of the student's messages.
+        needed: those without which it is of no use; the others may be missing, or fail.
+
+    Attributes:
+        harness: where they run.
+        first: what they said before the first scan.
+    """
+
+    def __init__(self, workspace: Workspace, types: Types, needed: Collection[str] = PROGRAMS) -> None:
+        there = [name for name in PROGRAMS if name in needed or _is_installed(workspace, name)]
+        self.harness = AutoHarness(
+            workspace,
+            programs=tuple(Program(PACKAGE, name) for name in there),
+            offers={"/scan": LaserScan},
+            listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
+        )
+        self.need(needed)
+
+    def __enter__(self) -> System:
+        self.harness.__enter__()
+        try:
+            self.first = self.wait(ALONE_SECONDS)
+        except BaseException:
+            self.harness.__exit__(None, None, None)
+            raise
+        return self
+
+    def __exit__(self, *ending: object) -> None:
+        self.harness.__exit__(None, None, None)
+
+    def need(self, needed: Collection[str]) -> None:
+        """Say without which programs it is of no use from now on."""
+        self.harness.spared = frozenset(PROGRAMS) - frozenset(needed)
+
+    def serves(self, needed: Collection[str]) -> bool:
+        """Return whether these programs are there, and none of all has ended."""
+        return self.harness.running.issuperset(needed) and all(
+            process.ending is None for process in self.harness.processes
+        )
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of ROS time since the programs started."""
+        return self.harness.seconds
+
+    def call(self, kind: Any, service: str, request: Any) -> Any:
+        """Call a service of one of the programs and return its response.
+
+        Raises:
+            CheckFailed: there is no such service, or it does not answer.
+        """
+        response = self.harness.call(kind, service, request, ANSWER_SECONDS)
+        if response is None:
+            raise CheckFailed(f"The service {service} did not answer within {ANSWER_SECONDS:.0f} s.")
+        return response
+
+    def parameters(self, program: str) -> NodeParameters:
+        """Return the parameters of a program's node."""
+        return NodeParameters(self.harness, name_of(program))
+
+    def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Said:
+        """Show a scan ten times a second; return what is said once there was time to react.
+
+        Args:
+            scan: what the lidar sees.
+            seconds: for how long.
+            age: how old the scans' stamps are when they come.
+        """
+        began = self.seconds
+        for _ in range(round(seconds / SCAN_SECONDS)):
+            self.show(scan, age)
+        return self.said(began + SETTLED)
+
+    def show(self, scan: LaserScan, age: float = 0.0) -> None:
+        """Show one scan and let 0.1 s pass."""
+        stamp = self.harness.next_ns - round(age * 1e9)
+        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(stamp, 10**9)
+        self.harness.publish("/scan", scan)
+        self.harness.run(SCAN_SECONDS)
+
+    def wait(self, seconds: float) -> Said:
+        """Show nothing for a while; return what was said in that time."""
+        began = self.seconds
+        self.harness.run(seconds)
+        return self.said(began)
+
+    def said(self, since: float, until: float = math.inf) -> Said:
+        """Return what was said after `since`, in seconds of ROS time, and up to `until`."""
+        topics = ("/clearance", "/cmd_vel", "/health")
+        return Said(*(tuple(self.harness.messages(topic, since=since, until=until)) for topic in topics))
+
+
+def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
+    """Fail the check unless every command is zero."""
+    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should be told to stand still.")
+    bad = next((c for c in commands if not (_near(c.message.linear.x, 0.0) and _near(c.message.angular.z, 0.0))), None)
+    did = "" if bad is None else say(bad.message)
+    expect(bad is None, f"{situation}, the robot {did}: it should stand still.", fraction=fraction)
+
+
+def expect_driving(commands: Sequence[Stamped], situation: str, fastest: float, *, fraction: float = 0.0) -> None:
+    """Fail the check unless every command drives forward, at most at `fastest` m/s."""
+    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
+    bad = next((c for c in commands if not 0.0 < c.message.linear.x <= fastest + TOLERANCE), None)
+    did = "" if bad is None else say(bad.message)
+    expect(
+        bad is None,
+        f"{situation}, the robot {did}: it should drive forward, at most at {fastest:.2f} m/s.",
+        fraction=fraction,
+    )
+
+
+def expect_turning(
+    commands: Sequence[Stamped], situation: str, side: str, fastest: float, *, fraction: float = 0.0
+) -> None:
+    """Fail the check unless every command turns on the spot to a side, at most at `fastest` rad/s."""
+    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should turn.")
+    sign = 1.0 if side == "left" else -1.0
+    bad = next(
+        (
+            c
+            for c in commands
+            if not (_near(c.message.linear.x, 0.0) and 0.0 < sign * c.message.angular.z <= fastest + TOLERANCE)
+        ),
+        None,
+    )
+    did = "" if bad is None else say(bad.message)
+    expect(
+        bad is None,
+        f"{situation}, the robot {did}: it should turn {side} on the spot, at most at {fastest:.2f} rad/s.",
+        fraction=fraction,
+    )
+
+
+def report_in_words(report: Any) -> str:
+    """Put a report of the monitor into words."""
+    level = LEVELS[report.level] if 0 <= report.level < len(LEVELS) else str(report.level)
+    silent = ", ".join(str(topic)[:40] for topic in list(report.silent)[:5]) or "none"
+    return f"level {level}, silent: {silent}"
+
+
+def _is_installed(workspace: Workspace, program: str) -> bool:
+    return program in look(workspace.install, PACKAGE).executables
+
+
+def _near(value: float, wanted: float) -> bool:
+    return abs(value - wanted) <= TOLERANCE  # false for nan

@@ -1,0 +1,75 @@
+"""Steps 1 and 3 at once: do the two packages build, and are the messages as the contract says?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import INTERFACES, PACKAGE, PROGRAMS
+from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences, load_messages
+from autograder.checks.ch08_capstone.support.sources import require_built, source_of
+from autograder.diagnosis import Diagnosis
+from autograder.harness import Workspace
+from autograder.probes import imports, manifest
+from autograder.probes.installed import look
+
+SEEN = Visibility.VISIBLE
+
+
+@check(
+    points=1,
+    group="step_1",
+    visibility=SEEN,
+    hints=(
+        "The tags stand in this order: name, version, description, maintainer, license, dependencies, export.",
+        "setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)",
+    ),
+    doc=contract.PACKAGES_DOC,
+)
+def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
+    """Step 1: robot_navigation_tutorial builds, installs three executables, and declares what it imports."""
+    found = manifest.read(source_of(workspace, PACKAGE))
+    require_built(builds, PACKAGE)
+    there = look(workspace.install, PACKAGE).executables
+    absent = [name for name in PROGRAMS if name not in there]
+    expect(
+        not absent, f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(there) or 'none'}."
+    )
+    missing = imports.missing(source_of(workspace, PACKAGE), found)
+    expect(not missing["exec"], f"{imports.say(missing['exec'])}: package.xml does not declare it.")
+
+
+@check(
+    points=1,
+    group="step_3",
+    visibility=SEEN,
+    hints=(
+        "Compare with the tables of step 3, letter by letter.",
+        "float32 front, bool valid, std_msgs/Header header.",
+    ),
+    doc=contract.INTERFACES_DOC,
+)
+def test_definitions(workspace: Workspace) -> None:
+    """Step 3: both messages have the fields and constants of the contract."""
+    module = load_messages(workspace)
+    wrong = [*differences(module, CLEARANCE), *differences(module, HEALTH)]
+    expect(not wrong, " ".join(wrong[:3]))
+
+
+@check(
+    points=1,
+    group="step_3",
+    visibility=SEEN,
+    hints=(
+        'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)',
+        "find_package for ament_cmake, rosidl_default_generators and std_msgs before, ament_package() at the end.",
+    ),
+    doc=contract.INTERFACES_DOC,
+)
+def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
+    """Step 3: colcon builds the package of the messages."""
+    require_built(builds, INTERFACES)
+    shared = look(workspace.install, INTERFACES).shared
+    absent = [name for name in ("Clearance", "Health") if f"msg/{name}.msg" not in shared]
+    expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")

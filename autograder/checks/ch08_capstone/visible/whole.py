@@ -1,0 +1,122 @@
+"""Steps 4, 6 and 7 at once: does one command start it all, and do the tests and the linters pass?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import pytest
+
+from autograder.checks import Visibility, check, expect
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import CONFIG, LAUNCH_FILE, PACKAGE, PARAMETERS, PROGRAMS, name_of
+from autograder.checks.ch08_capstone.support.sources import source_of
+from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import launch_probe, test_runs
+from autograder.probes.installed import look
+from autograder.probes.parameters import for_node, read_file
+from autograder.probes.test_reports import Report, TestRun
+
+SEEN = Visibility.VISIBLE
+TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
+Reports = Mapping[tuple[str, ...], Report]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
+    """What the tests and the linters will have said; they run beside the launch, which is mostly waiting."""
+
+    def run() -> Reports:
+        there = [files for files in (TESTS, LINTERS) if not _absent(workspace, files)]
+        runs = test_runs.run(workspace, test_runs.take(workspace, PACKAGE), [TestRun(files) for files in there])
+        return dict(zip(there, runs, strict=True))
+
+    with ThreadPoolExecutor(1) as beside:
+        yield beside.submit(run)
+
+
+@check(
+    points=1,
+    group="step_4",
+    visibility=SEEN,
+    depends=("starts",),
+    hints=(
+        "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
+        "DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.",
+    ),
+    doc=contract.LAUNCH_DOC,
+)
+def test_launch(workspace: Workspace) -> None:
+    """Step 4: navigation.launch.py starts the three nodes, use_sim_time reaches them, and Ctrl-C ends them."""
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"use_sim_time": "true"}) as harness:
+        launch_probe.expect_nodes(harness, [name_of(name) for name in PROGRAMS])
+        for name in PROGRAMS:
+            launch_probe.expect_parameters(harness, name_of(name), {"use_sim_time": True})
+        launch_probe.expect_clean_stop(harness)
+
+
+@check(
+    points=1,
+    group="step_5",
+    visibility=SEEN,
+    depends=("package",),
+    hints=("A node's name, then ros__parameters, then name and value, each level indented by two blanks.",),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_config_file(workspace: Workspace) -> None:
+    """Step 5: the installed configuration holds every parameter of every node."""
+    file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
+    for node, wanted in PARAMETERS.items():
+        values = for_node(file, node)
+        absent = [name for name in wanted if name not in values]
+        expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
+
+
+@check(
+    points=1,
+    group="step_6",
+    visibility=SEEN,
+    depends=("package",),
+    hints=(
+        "Run pytest on test/test_sectors.py in a terminal, and read its last lines.",
+        "Whether your tests find errors is seen after the hand-in: break nearest by hand, and see that one fails.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
+    """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
+    expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
+    report = reports.result()[TESTS]
+    messages = report.claims.messages
+    failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
+    expect(not report.failed, f"{len(report.failed)} tests fail: {failed}")
+    expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
+
+
+@check(
+    points=1,
+    group="step_7",
+    visibility=SEEN,
+    depends=("package",),
+    hints=(
+        "The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.",
+        "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
+    ),
+    doc=contract.TESTING_DOC,
+)
+def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
+    """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
+    extras = look(workspace.install, PACKAGE).extras
+    expect(any("pytest" in found for found in extras.get("test", ())), "setup.py has no extras_require for the tests.")
+    absent = _absent(workspace, LINTERS)
+    expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")
+    report = reports.result()[LINTERS]
+    shown = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
+    expect(report.passed, f"The linters object: {shown or report.output.strip()[-300:]}")
+
+
+def _absent(workspace: Workspace, files: tuple[str, ...]) -> list[str]:
+    """Return the test files that are not there."""
+    tests = source_of(workspace, PACKAGE) / "test"
+    return [name for name in files if not (tests / name).is_file()]

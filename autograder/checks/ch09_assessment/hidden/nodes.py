@@ -1,0 +1,226 @@
+"""Question 3: what each of the three nodes does, with parameters and temperatures drawn from the seed."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+from autograder.checks import check, expect
+from autograder.checks.ch09_assessment.conftest import Start
+from autograder.checks.ch09_assessment.support import contract
+from autograder.checks.ch09_assessment.support.contract import (
+    COOL,
+    GUARD,
+    HOT,
+    SMOOTHER,
+    THERMOMETER,
+    TOLERANCE,
+    WINDOW,
+    averages,
+    decisions,
+)
+from autograder.checks.ch09_assessment.support.robot import NodeHarness, Types, near, refuses
+from autograder.harness import Workspace
+
+GROUP = "nodes"
+BUILT = ("installs",)
+BETWEEN = (COOL + 1.0, HOT - 1.0)
+FRESH = 0.1  # s that a reading may take to come
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=BUILT,
+    hints=("create_timer(period, self.timer_callback), and a count in self.", "math.sin takes radians."),
+    doc=contract.NODES_DOC,
+)
+def test_readings(start: Start) -> None:
+    """Thermometer publishes two readings a second, which swing around the mean as the contract says."""
+    with start(THERMOMETER) as harness:
+        harness.expect_in_graph()
+        harness.expect_readings(30)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("readings",),
+    hints=("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period."),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_thermometer_parameters(start: Start, draw: Random) -> None:
+    """Thermometer measures by its parameters period, mean and swing."""
+    period = draw.choice((0.1, 0.2, 0.8))
+    mean, swing = round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
+    with start(THERMOMETER, period=period, mean=mean, swing=swing) as harness:
+        harness.expect_readings(12, period, mean, swing)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("readings",),
+    hints=("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time."),
+    doc=contract.NODES_DOC,
+)
+def test_stamps(start: Start) -> None:
+    """Each reading is stamped with the node's clock at the time when it was measured."""
+    with start(THERMOMETER) as harness:
+        harness.run(2.2)
+        now_ns, now, heard = harness.now_ns, harness.seconds, harness.heard()
+    stamps = [stamped.message.stamp.sec * 10**9 + stamped.message.stamp.nanosec for stamped in heard]
+    came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
+    ages = [round((instant - stamp) / 1e9, 3) for instant, stamp in zip(came, stamps, strict=True)]
+    right = bool(ages) and all(abs(age) < FRESH for age in ages)
+    expect(right, f"By their stamps, its readings were {ages} s old when they came: a reading is sent as it is made.")
+
+
+@check(
+    points=3,
+    group=GROUP,
+    depends=BUILT,
+    hints=("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading."),
+    doc=contract.NODES_DOC,
+)
+def test_average(start: Start, draw: Random) -> None:
+    """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
+    readings = [round(draw.uniform(20.0, 80.0), 1) for _ in range(12)]
+    with start(SMOOTHER) as harness:
+        harness.expect_in_graph()
+        told = harness.tell(readings, first=7)
+    _expect_averages([message.celsius for message in told], readings, WINDOW)
+    stamps = [message.stamp.sec for message in told]
+    right = stamps == list(range(7, 7 + len(readings)))
+    expect(right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("average",),
+    hints=("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor."),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
+    """The parameter window says how many readings count; 0 and 101 are refused at the start."""
+    window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
+    with start(SMOOTHER, window=window) as harness:
+        _expect_averages([message.celsius for message in harness.tell(readings)], readings, window)
+    for impossible in (0, 101):
+        refused = refuses(workspace, types, SMOOTHER, window=impossible)
+        expect(refused, f"smoother started with window {impossible}.", fraction=0.5)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("average",),
+    hints=("math.isfinite(reading.celsius)", "A reading that does not count gets no average either."),
+)
+def test_no_number(start: Start, draw: Random) -> None:
+    """A reading that is nan or infinite does not count, and nothing is published for it."""
+    first, second = round(draw.uniform(30.0, 40.0), 1), round(draw.uniform(50.0, 60.0), 1)
+    with start(SMOOTHER) as harness:
+        told = harness.tell([first, math.nan, math.inf, -math.inf, second])
+    seen = [round(message.celsius, 2) for message in told]
+    shown = f"{first}, nan, inf, -inf, {second} °C became {seen}"
+    wanted = [first, (first + second) / 2]
+    last = bool(seen) and abs(seen[-1] - wanted[-1]) <= 0.01
+    expect(last, f"{shown}: the last average should have been {wanted[-1]:.2f}.")
+    expect(len(seen) == 2, f"{shown}: there are averages for what is no number.", fraction=0.5)
+
+
+@check(
+    points=4,
+    group=GROUP,
+    depends=BUILT,
+    hints=("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False."),
+    doc=contract.NODES_DOC,
+)
+def test_hysteresis(start: Start, draw: Random) -> None:
+    """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
+    between = [round(draw.uniform(*BETWEEN), 1) for _ in range(4)]
+    cold, warm = round(draw.uniform(10.0, 40.0), 1), round(draw.uniform(70.0, 90.0), 1)
+    with start(GUARD) as harness:
+        harness.expect_in_graph()
+        _expect_decisions(harness, [cold, warm, cold], "")
+        _expect_decisions(harness, [warm, *between[:2], cold, *between[2:]], "Between the thresholds: ", fraction=0.5)
+        _expect_decisions(harness, [HOT, COOL, HOT - 0.1, HOT, COOL + 0.1], "At the thresholds: ", fraction=0.75)
+    with start(GUARD) as harness:
+        _expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
+
+
+@check(
+    points=2,
+    group=GROUP,
+    depends=("hysteresis",),
+    hints=("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__."),
+    doc=contract.PARAMETERS_DOC,
+)
+def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
+    """Guard decides by its parameters hot and cool; it ends with an error at the start unless cool is less than hot."""
+    cool = round(draw.uniform(20.0, 30.0), 1)
+    hot = round(cool + draw.uniform(5.0, 10.0), 1)
+    with start(GUARD, hot=hot, cool=cool) as harness:
+        temperatures = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
+        _expect_decisions(harness, temperatures, f"With hot {hot} and cool {cool}: ", hot=hot, cool=cool)
+    for impossible in (hot, hot + 5.0):
+        refused = refuses(workspace, types, GUARD, hot=hot, cool=impossible)
+        expect(refused, f"guard started with hot {hot} and cool {impossible}.", fraction=0.5)
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("hysteresis",),
+    hints=("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first."),
+)
+def test_unknown(start: Start) -> None:
+    """When the temperature is no finite number, it is not known, and the fan runs."""
+    with start(GUARD) as harness:
+        for unknown in (math.nan, -math.inf):
+            _expect_decisions(harness, [20.0, unknown, 55.0], "")
+
+
+@check(
+    points=1,
+    group=GROUP,
+    depends=("hysteresis",),
+    hints=("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was."),
+)
+def test_passes_on(start: Start, draw: Random) -> None:
+    """A decision carries the stamp and the temperature that it was made of."""
+    celsius = round(draw.uniform(20.0, 80.0), 1)
+    with start(GUARD) as harness:
+        told = harness.tell([celsius], first=draw.randint(100, 999))
+        stamp = told[0].stamp.sec
+    expect(stamp >= 100, f"The decision's stamp is {stamp} s, not that of the average.")
+    given = told[0].celsius
+    expect(abs(given - celsius) <= TOLERANCE, f"The decision on {celsius} °C says {given:.1f} °C.", fraction=0.5)
+
+
+def _expect_averages(seen: list[float], readings: list[float], window: int) -> None:
+    expect(len(seen) == len(readings), f"{len(readings)} readings became {len(seen)} averages.")
+    wanted = averages(readings, window)
+    wrong = next((n for n in range(len(readings)) if not near(seen[n], wanted[n])), 0)
+    newest = ", ".join(map(str, readings[: wrong + 1][-window:]))
+    right = near(seen[wrong], wanted[wrong])
+    expect(right, f"With the window {window}, the average of {newest} °C was {seen[wrong]:.2f} °C.")
+
+
+def _expect_decisions(
+    harness: NodeHarness,
+    temperatures: list[float],
+    where: str,
+    *,
+    hot: float = HOT,
+    cool: float = COOL,
+    fraction: float = 0.0,
+) -> None:
+    seen = [bool(message.cooling) for message in harness.tell(temperatures)]
+    expect(len(seen) == len(temperatures), f"{len(temperatures)} averages became {len(seen)} decisions.")
+    wanted = decisions(temperatures, hot, cool)
+    shown = ", ".join(f"{celsius:g}" for celsius in temperatures)
+    said = f"{where}at {shown} °C, cooling was {seen} and should have been {wanted}."
+    expect(seen == wanted, said[:1].upper() + said[1:], fraction=fraction)

@@ -1,0 +1,161 @@
+"""The student's three nodes in harnesses of their own, each between messages that the grader sends and hears."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from autograder.checks import CheckFailed, expect
+from autograder.checks.ch09_assessment.support.contract import (
+    GUARD,
+    INTERFACES,
+    PACKAGE,
+    PERIOD,
+    SMOOTHER,
+    THERMOMETER,
+    TOLERANCE,
+    reading,
+)
+from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness.auto import LOCKSTEP
+from autograder.interfaces import load_from
+from autograder.packages import find_packages
+
+STEP = 0.1  # s between two messages
+HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
+_TOPICS = {
+    THERMOMETER: ({}, {"/temperature": "Temperature"}),
+    SMOOTHER: ({"/temperature": "Temperature"}, {"/smoothed": "Temperature"}),
+    GUARD: ({"/smoothed": "Temperature"}, {"/decision": "Decision"}),
+}
+
+
+@dataclass(frozen=True)
+class Types:
+    """The student's messages, built by the grader from their text."""
+
+    temperature: Any
+    decision: Any
+
+    @classmethod
+    def of(cls, workspace: Workspace) -> Types:
+        """Load them. Raises as `load_from` does."""
+        module = load_from(workspace, INTERFACES)
+        return cls(module.msg.Temperature, module.msg.Decision)
+
+
+class NodeHarness(AutoHarness):
+    """The harness of one of the three nodes, started with parameters of the check's choice."""
+
+    def __init__(self, workspace: Workspace, types: Types, name: str, **parameters: float) -> None:
+        by_name = {"Temperature": types.temperature, "Decision": types.decision}
+        offers, listens = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
+        words = [part for key, value in parameters.items() for part in ("-p", f"{key}:={value}")]
+        super().__init__(
+            workspace, PACKAGE, name, offers=offers, listens=listens, arguments=("--ros-args", *words) if words else ()
+        )
+        self._types, self._name = types, name
+        self._out, self._in = next(iter(listens)), next(iter(offers), "")
+
+    def heard(self, since: float = -1.0) -> list[Stamped]:
+        """Return what it has published."""
+        return self.messages(self._out, since=since)
+
+    def tell(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
+        """Send temperatures, stamped with the seconds `first`, `first` + 1, ...; return the messages that came."""
+        began, sent = self.seconds, list(temperatures)
+        for second, celsius in enumerate(sent, first):
+            message = self._types.temperature(celsius=float(celsius))
+            message.stamp.sec = second
+            self.publish(self._in, message)
+            self.run(STEP)
+        self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))
+        return [stamped.message for stamped in self.heard(began)]
+
+    def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
+        """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
+        began, seconds = self.seconds, (count + 0.5) * period
+        self.run(seconds)
+        seen = [stamped.message.celsius for stamped in self.heard()]
+        expect(bool(seen), f"In {seconds:.1f} s it published nothing.")
+        for number, celsius in enumerate(seen, self._missed(seen, period, shape)):
+            wanted = reading(number, *shape)
+            if not near(celsius, wanted):
+                raise CheckFailed(f"Reading number {number} was {celsius:.2f} °C, it should have been {wanted:.2f} °C.")
+        published = round(self.rate(self._out, began) * seconds)
+        right = abs(published - count) <= 1
+        expect(right, f"In {seconds:.1f} s it published {published} readings, instead of {count}.", fraction=0.5)
+
+    def _missed(self, seen: list[float], period: float, shape: tuple[float, ...]) -> int:
+        """Return how many readings were over before the grader listened: in lockstep none."""
+        most = 0 if self.time == LOCKSTEP else int((2 * self.deaf_seconds + HEAD_START) / period)
+        fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
+        return next(fits, 0)
+
+    def expect_in_graph(self) -> None:
+        """Fail the check unless the node has its name and its topics, with their types; name what it has instead."""
+        nodes = self.nodes()
+        expect(f"/{self._name}" in nodes, f"The node is called {', '.join(nodes)}, it should be /{self._name}.")
+        publishes = dict(self.node.get_publisher_names_and_types_by_node(self._name, "/"))
+        subscribes = dict(self.node.get_subscriber_names_and_types_by_node(self._name, "/"))
+        told, heard = _TOPICS[self._name]
+        _expect_topics(self._name, "publishes", publishes, heard)
+        _expect_topics(self._name, "subscribes to", subscribes, told)
+
+
+def near(one: float, other: float) -> bool:
+    """Return whether two temperatures are the same."""
+    return abs(one - other) <= TOLERANCE
+
+
+def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted: Mapping[str, str]) -> None:
+    for topic, kind in wanted.items():
+        full = f"{INTERFACES}/msg/{kind}"
+        near = next(iter(difflib.get_close_matches(topic, found, 1, 0.5)), "")
+        instead = f", {node} {verb} {near}" if near else ""
+        expect(topic in found, f"{node} should have {topic[1:]}{instead or ', and it has nothing like it'}.")
+        expect(found[topic] == [full], f"{node} {verb} {topic} as {', '.join(found[topic])}, instead of {full}.")
+
+
+def refuses(workspace: Workspace, types: Types, name: str, **parameters: float) -> bool:
+    """Return whether a node ends at its start with these parameters, by an exception or by itself."""
+    try:
+        with NodeHarness(workspace, types, name, **parameters):
+            return False
+    except StudentError as error:
+        if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):
+            raise
+        return True
+
+
+def require_built(builds: Mapping[str, Diagnosis], package: str) -> None:
+    """Fail the check, with what colcon said, unless a package was built."""
+    if builds[package] is not OK:
+        raise CheckFailed(f"{package} was not built: {builds[package].sentence}")
+
+
+def source_of(workspace: Workspace, package: str) -> Path:
+    """Return the folder of a package's source.
+
+    Raises:
+        CheckFailed: there is none.
+    """
+    source = workspace.root / "src"
+    found, broken = find_packages(source)
+    if package not in found:
+        raise CheckFailed(broken.get(source / package, f"There is no package {package} in ws/src."))
+    return found[package]
+
+
+def expect_executables(installed: Iterable[str], misplaced: Iterable[str], wanted: Iterable[str]) -> None:
+    """Fail the check unless all programs lie where `ros2 run` looks."""
+    there = set(installed)
+    absent = ", ".join(name for name in wanted if name not in there)
+    if absent and list(misplaced):
+        raise CheckFailed(f"{absent} went to bin/, where ros2 run does not look: setup.cfg says where programs go.")
+    expect(not absent, f"The program {absent} is not installed; installed are: {', '.join(sorted(there)) or 'none'}.")

@@ -1,0 +1,96 @@
+"""`autograder course`: keeps the notebooks and the reference solutions one text, and writes the instructors' pages."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.checks import suites
+from autograder.course.cells import is_graded
+from autograder.course.exceptions import CourseError
+from autograder.course.findings import Finding
+from autograder.course.notebook_rules import broken_rules
+from autograder.course.points import set_points, wrong_points
+from autograder.course.survey import PAGE, Survey
+from autograder.course.sync import Chapter, chapters, stale
+from autograder.course.sync import sync as bring_in
+from autograder.exceptions import UsageError
+from autograder.layout import CHAPTERS, SOLUTIONS
+from autograder.proof import guide
+
+_folders = click.option("--chapters", "root", type=click.Path(path_type=Path), default=CHAPTERS, show_default=True)
+_names = click.argument("names", nargs=-1, metavar="[ID]...")
+_solutions = click.option("--solutions", type=click.Path(path_type=Path), default=SOLUTIONS, show_default=True)
+
+
+@click.group()
+def course() -> None:
+    """Keep the notebooks and the reference solutions one text."""
+
+
+@course.command()
+@_names
+@_folders
+@_solutions
+def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
+    """Write the reference's text into cells and given files, and the suites' points into grade cells."""
+    for chapter in _chosen(names, root):
+        try:
+            changed = bring_in(chapter, solutions)
+            notebook = chapter.read()
+            if any(map(is_graded, notebook.cells)) and set_points(
+                chapter.path.name, notebook, suites.hidden(chapter.assignment).checks
+            ):
+                chapter.write(notebook)
+                changed.append(Finding(chapter.path.name, None, "points"))
+        except (CourseError, UsageError) as error:
+            raise click.ClickException(str(error)) from error
+        click.echo(
+            f"{chapter.assignment}: {len(changed)} brought up to date"
+            if changed
+            else f"{chapter.assignment}: as it was"
+        )
+
+
+@course.command()
+@_names
+@_folders
+@_solutions
+def check(names: tuple[str, ...], root: Path, solutions: Path) -> None:
+    """Say what is stale, or not as a notebook of the course must be; exit 1 then."""
+    found = [finding for chapter in _chosen(names, root) for finding in findings(chapter, solutions)]
+    for finding in found:
+        click.echo(str(finding))
+    sys.exit(1 if found else 0)
+
+
+def _chosen(names: tuple[str, ...], root: Path) -> list[Chapter]:
+    """Return the chapters of these names, all without any."""
+    there = {chapter.assignment: chapter for chapter in chapters(root)}
+    if unknown := set(names) - set(there):
+        raise click.UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(there)}")
+    return [there[name] for name in names or there]
+
+
+def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
+    """Return everything that is wrong with a chapter."""
+    notebook, name = chapter.read(), chapter.path.name
+    found = [*stale(chapter, solutions), *broken_rules(name, notebook)]
+    if any(map(is_graded, notebook.cells)):
+        try:
+            found += wrong_points(name, notebook, suites.hidden(chapter.assignment).checks)
+        except UsageError as error:
+            found.append(Finding(name, None, str(error)))
+    return found
+
+
+@course.command()
+def tables() -> None:
+    """Write the instructors' pages: what is taught where, which checks judge it, and what proves them."""
+    survey = Survey.of_the_course()
+    for finding in survey.coverage.findings:
+        click.echo(str(finding))
+    PAGE.write_text(survey.page(), encoding="utf-8")
+    guide.PAGE.write_text(guide.guide(), encoding="utf-8")

@@ -1,0 +1,40 @@
+"""`autograder ros`: runs a command with ROS 2 switched on."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+
+import click
+
+from autograder.ros.environment import activate, find, path_with_scripts
+from autograder.ros.exceptions import RosError
+
+
+@click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.argument("command", nargs=-1, type=click.UNPROCESSED)
+def ros(command: tuple[str, ...]) -> None:
+    """Run COMMAND with ROS 2 switched on, for example `autograder ros jupyter lab`.
+
+    Without a command, print the variables as shell lines: `eval "$(autograder ros)"` does what sourcing a ROS
+    installation's setup.bash does.
+    """
+    sys.exit(_run(command))
+
+
+def _run(command: tuple[str, ...]) -> int:
+    """Become the command, or print the variables; return the exit status when it cannot be."""
+    try:
+        if not command:
+            for name, value in {**find().variables(), "PATH": path_with_scripts()}.items():
+                click.echo(f"export {name}={shlex.quote(value)}")
+            return 0
+        activate()
+        os.execvp(command[0], command)
+    except RosError as error:
+        click.echo(f"ROS 2: {error}.", err=True)
+        return 1
+    except OSError as error:
+        click.echo(f"{command[0]}: {error.strerror}", err=True)
+        return 127

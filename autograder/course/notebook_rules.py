@@ -1,0 +1,141 @@
+"""What every committed notebook must be: without outputs, valid for nbgrader, and readable by everyone."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder.course.cells import group, is_graded, is_manual
+from autograder.course.exceptions import CourseError
+from autograder.course.findings import Finding
+from autograder.course.solution_markers import BEGIN_SCHEME as MARK_SCHEME
+
+_FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
+_HEADING = re.compile(r"^(#{1,6}) +(?!BEGIN |END )\S", re.MULTILINE)  # marks of nbgrader's look like headings
+_IMAGE = re.compile(r"!\[(?P<alt>[^\]]*)\]\((?P<target>[^)]*)\)")
+_IMG = re.compile(r"<img\b[^>]*>", re.IGNORECASE)
+_ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
+
+
+def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
+    """Find what must not be in a source notebook, or is missing from it.
+
+    Args:
+        name: the notebook's file name, for the findings.
+        notebook: the notebook as it would be committed.
+    """
+    # Before validation, which repairs ids on its own.
+    repeated = [cell_id for cell_id, count in Counter(cell.get("id") for cell in notebook.cells).items() if count > 1]
+    if repeated:
+        return [Finding(name, cell_id, "more than one cell has this id") for cell_id in repeated]
+    try:
+        nbformat.validate(notebook)
+    except nbformat.ValidationError as error:
+        return [Finding(name, None, f"is not valid nbformat: {error.message}")]
+    problems = [*_notebook(notebook), *_nbgrader(notebook), *_headings(notebook)]
+    for cell in notebook.cells:
+        problems += [(cell.id, message) for message in _cell(cell)]
+    return [Finding(name, cell, message) for cell, message in problems]
+
+
+def images_without_alt(executed: NotebookNode) -> list[str]:
+    """Return the ids of the cells of an executed notebook that show an image without alternative text."""
+    return [cell.id for cell in executed.cells if any(_is_mute(output) for output in cell.get("outputs", []))]
+
+
+def _is_mute(output: NotebookNode) -> bool:
+    data, metadata = output.get("data", {}), output.get("metadata", {})
+    html = "".join(data.get("text/html", ""))
+    if any(not _ALT.search(tag) for tag in _IMG.findall(html)):
+        return True
+    images = [kind for kind in data if kind.startswith("image/")]
+    # JupyterLab shows the HTML where there is one; otherwise an image's text is in its metadata.
+    return not html and any(not str(metadata.get(kind, {}).get("alt", "")).strip() for kind in images)
+
+
+def _notebook(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+    if (notebook.nbformat, notebook.nbformat_minor) != (4, 5):
+        yield None, f"is nbformat {notebook.nbformat}.{notebook.nbformat_minor}; the course uses 4.5, with cell ids"
+    kernel = notebook.metadata.get("kernelspec", {})
+    if kernel.get("name") != "python3" or kernel.get("language") != "python":
+        yield None, "its kernelspec must be python3, language python, so that it opens anywhere"
+
+
+def _cell(cell: NotebookNode) -> Iterator[str]:
+    if cell.cell_type == "code":
+        if cell.outputs:
+            yield "has outputs; clear them before committing"
+        if cell.execution_count is not None:
+            yield "has an execution count; clear it before committing"
+    if cell.cell_type == "markdown":
+        prose = _FENCE.sub("", cell.source)
+        for image in _IMAGE.finditer(prose):
+            if not image["alt"].strip():
+                yield f"the image {image['target']} has no alternative text"
+        for tag in _IMG.findall(prose):
+            if not _ALT.search(tag):
+                yield f"the image {tag} has no alternative text"
+
+
+def _headings(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+    level = 0
+    for cell in notebook.cells:
+        if cell.cell_type != "markdown":
+            continue
+        for match in _HEADING.finditer(_FENCE.sub("", cell.source)):
+            depth = len(match[1])
+            if level == 0 and depth != 1:
+                yield cell.id, "the first heading of a notebook is its title, with one #"
+            elif level and depth == 1:
+                yield cell.id, "a notebook has one title; a section starts with ##"
+            elif depth > level + 1:
+                yield cell.id, f"a heading of level {depth} follows one of level {level}; do not skip levels"
+            level = depth
+    if level == 0:
+        yield None, "has no title"
+
+
+def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+    from nbgrader.nbgraderformat import SCHEMA_VERSION, MetadataValidator, ValidationError
+
+    for cell in notebook.cells:
+        found = cell.metadata.get("nbgrader")
+        if found is not None and found.get("schema_version") != SCHEMA_VERSION:
+            yield cell.id, f"its nbgrader metadata must say schema_version {SCHEMA_VERSION}"
+            return
+    try:
+        MetadataValidator().validate_nb(notebook)
+    except ValidationError as error:
+        yield None, f"its nbgrader metadata is not valid: {error}"
+        return
+    for cell in notebook.cells:
+        found = cell.metadata.get("nbgrader", {})
+        try:
+            named = group(cell)
+        except CourseError as error:
+            yield cell.id, str(error)
+            continue
+        if is_graded(cell) and not is_manual(cell) and (not found.get("locked") or named is None):
+            yield cell.id, 'a grade cell is locked and names its group of checks: {"course": {"group": ...}}'
+        if is_manual(cell):
+            yield from ((cell.id, message) for message in _manual(cell, named))
+        if MARK_SCHEME in cell.source and not found.get("locked"):
+            yield cell.id, "holds a mark scheme but is not locked: autograding could not bring it back"
+        if "BEGIN SOLUTION" in cell.source and not found.get("solution"):
+            yield cell.id, "holds a solution but is not marked as a solution cell"
+
+
+def _manual(cell: NotebookNode, named: str | None) -> Iterator[str]:
+    marks = cell.metadata.nbgrader
+    if marks.get("locked"):
+        yield "students answer in this cell: it must not be locked"
+    if not marks.get("points"):
+        yield "a manually graded cell needs points above 0"
+    if named is not None:
+        yield f"a person gives its points: it cannot stand for the group {named!r} of checks, too"
+    if "BEGIN SOLUTION" not in cell.source:
+        yield "a manually graded cell holds a model answer, between the solution marks"

@@ -1,0 +1,103 @@
+"""Driving: a student's program steers the simulated robot, through real ROS messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.harness.base import Harness, Stamped
+from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
+from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
+
+OFFERS = {"/scan": LaserScan, "/odom": Odometry}
+LISTENS = {"/cmd_vel": Twist}
+PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
+SCAN_NS = 100_000_000
+
+Tamper = Callable[[Scan, float], Scan | None]
+"""Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What happened: the robot's whole run, and what its program said."""
+
+    recording: Recording
+    commands: tuple[Stamped, ...]
+    output: str
+
+
+def drive(
+    harness: Harness,
+    simulation: Simulation,
+    seconds: float,
+    *,
+    tamper: Tamper | None = None,
+    until: Callable[[State], bool] = lambda state: False,
+) -> Drive:
+    """Let the program in `harness` steer the simulation's one robot, for `seconds` of ROS time or until a state.
+
+    The harness must offer `OFFERS` and listen to `LISTENS`. Scans come at 10 Hz, as from an LDS-01; odometry with them.
+    Simulated time starts with the program: a scan's stamp is the program's own ROS time.
+    """
+    state = start(simulation)
+    recorder = Recorder(simulation, state)
+    origin = harness.now_ns
+    command: Command | None = None
+    end = round(seconds * 1e9)
+    while state.time_ns < end and not until(state):
+        target = min(state.time_ns + harness.tick_ns, end)
+        state = _move(simulation, state, command, target, recorder)
+        if target % SCAN_NS == 0:
+            _sense(harness, simulation, state, origin, recorder, tamper)
+        before = len(harness.messages("/cmd_vel"))
+        harness.step(target - (harness.now_ns - origin))
+        fresh = harness.messages("/cmd_vel")[before:]
+        command = _command(fresh[-1]) if fresh else None
+    return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
+
+
+def _command(stamped: Stamped) -> Command:
+    try:
+        return twist_to_command(stamped.message)
+    except ValueError as error:
+        sentence = f"At t = {stamped.seconds:.1f} s your node published a command that no motor can obey: {error}."
+        raise StudentError(Diagnosis(Kind.UNUSABLE_COMMAND, sentence)) from None
+
+
+def _move(simulation: Simulation, state: State, command: Command | None, target_ns: int, recorder: Recorder) -> State:
+    """Step the physics to `target_ns`; a command is given once, the robot's own watchdog keeps or drops it."""
+    while state.time_ns < target_ns:
+        dt_ns = min(PHYSICS_NS, target_ns - state.time_ns)
+        state = step(simulation, state, command, dt_ns / 1e9)
+        recorder.append(state, command)
+        command = None
+    return state
+
+
+def _sense(
+    harness: Harness, simulation: Simulation, state: State, origin: int, recorder: Recorder, tamper: Tamper | None
+) -> None:
+    scan = observe(simulation, state)
+    if scan is not None and tamper is not None:
+        scan = tamper(scan, state.time_ns / 1e9)
+    recorder.scan(scan)
+    if scan is not None:
+        message = scan_to_msg(scan)
+        _shift(message.header.stamp, origin)
+        harness.publish("/scan", message)
+    odometry = odom_to_msg(state.robots[0], state.time_ns)
+    _shift(odometry.header.stamp, origin)
+    harness.publish("/odom", odometry)
+
+
+def _shift(stamp: object, origin_ns: int) -> None:
+    """Move a stamp of simulated time to the program's ROS time, in place."""
+    total = stamp.sec * 1_000_000_000 + stamp.nanosec + origin_ns  # type: ignore[attr-defined]
+    stamp.sec, stamp.nanosec = divmod(total, 1_000_000_000)  # type: ignore[attr-defined]

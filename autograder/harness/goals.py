@@ -1,0 +1,129 @@
+"""Goals: what the grader sends to a student's action server, and what becomes of it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from action_msgs.msg import GoalInfo, GoalStatus
+from action_msgs.srv import CancelGoal
+
+ENDED = frozenset({GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED})
+
+
+@dataclass(frozen=True)
+class Stamped:
+    """A message that the student's program published.
+
+    `seconds` is when it arrived, in seconds of ROS time since the program started.
+    """
+
+    seconds: float
+    message: Any
+
+
+@dataclass(eq=False)
+class Goal:
+    """A goal that was sent to an action server.
+
+    Attributes:
+        id: its UUID.
+        accepted: whether the server took it; None while it has not answered.
+        feedback: what it has said on the way.
+        status: of `action_msgs/GoalStatus`, as last heard.
+        result: the result message once the goal has ended, None before.
+        cancelled: whether the server agreed to cancel it; None while it was not asked or has not answered.
+    """
+
+    id: Any = None
+    accepted: bool | None = None
+    feedback: list[Stamped] = field(default_factory=list)
+    status: int = GoalStatus.STATUS_UNKNOWN
+    result: Any = None
+    cancelled: bool | None = None
+    _cancel: Callable[[], None] = lambda: None
+
+    @property
+    def over(self) -> bool:
+        """Whether there is nothing left to wait for: it was rejected, or its result is there."""
+        return self.accepted is False or self.result is not None
+
+    def cancel(self) -> None:
+        """Ask the server to cancel the goal; `cancelled` is its answer, once the program has lived on."""
+        self._cancel()
+
+
+class Actions:
+    """The action clients of a harness, made of plain services and subscriptions."""
+
+    def __init__(self, grader_node: Any, when: Callable[[int], float]) -> None:
+        self._grader_node = grader_node
+        self._when = when
+        self._goals: dict[bytes, Goal] = {}
+        self._names: set[str] = set()
+        self._numbers = itertools.count(1)
+
+    def prepare(self, kind: Any, name: str, peers: Callable[[str], list[Any]]) -> list[Any]:
+        """Make what is needed to talk to an action server; return the clients that have to see it."""
+        if name not in self._names:
+            self._names.add(name)
+            feedback, status = f"{name}/_action/feedback", f"{name}/_action/status"
+            self._grader_node.listen(feedback, kind.Impl.FeedbackMessage, peers(feedback), self._hear_feedback)
+            self._grader_node.listen(status, kind.Impl.GoalStatusMessage, [], self._hear_status)
+        return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in _services(kind).items()]
+
+    def send(self, kind: Any, name: str, goal: Any) -> Goal:
+        """Send a goal, and ask for its result once it is accepted."""
+        sent = Goal(_number(next(self._numbers)))
+        self._goals[bytes(sent.id.uuid)] = sent
+        request = kind.Impl.SendGoalService.Request(goal_id=sent.id, goal=goal)
+
+        def ended(response: Any) -> None:
+            sent.status, sent.result = response.status, response.result
+
+        def answered(response: Any) -> None:
+            sent.accepted = response.accepted
+            if response.accepted:
+                sent.status = sent.status or GoalStatus.STATUS_ACCEPTED
+                asked = kind.Impl.GetResultService.Request(goal_id=sent.id)
+                self._grader_node.ask(kind.Impl.GetResultService, f"{name}/_action/get_result", asked, ended)
+
+        def cancelled(response: Any) -> None:
+            sent.cancelled = any(info.goal_id == sent.id for info in response.goals_canceling)
+
+        def cancel() -> None:
+            asked = CancelGoal.Request()
+            asked.goal_info.goal_id = sent.id
+            self._grader_node.ask(kind.Impl.CancelGoalService, f"{name}/_action/cancel_goal", asked, cancelled)
+
+        sent._cancel = cancel
+        self._grader_node.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, answered)
+        return sent
+
+    def _hear_feedback(self, message: Any, arrived_ns: int) -> None:
+        goal = self._goals.get(bytes(message.goal_id.uuid))
+        if goal is not None:
+            goal.feedback.append(Stamped(self._when(arrived_ns), message.feedback))
+
+    def _hear_status(self, message: Any, arrived_ns: int) -> None:
+        for status in message.status_list:
+            goal = self._goals.get(bytes(status.goal_info.goal_id.uuid))
+            if goal is not None and goal.result is None:
+                goal.status = status.status
+
+
+def _services(kind: Any) -> dict[str, Any]:
+    return {
+        "send_goal": kind.Impl.SendGoalService,
+        "cancel_goal": kind.Impl.CancelGoalService,
+        "get_result": kind.Impl.GetResultService,
+    }
+
+
+def _number(number: int) -> Any:
+    """Return a goal's id, which is not drawn at random, so that every run is the same."""
+    info = GoalInfo()
+    info.goal_id.uuid = list(number.to_bytes(16, "big"))
+    return info.goal_id

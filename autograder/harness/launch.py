@@ -1,0 +1,299 @@
+"""A harness for launch files: `ros2 launch` runs in the sandbox, in real time, and is looked at from outside."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import rclpy
+from rcl_interfaces.srv import GetParameters
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import parameter_value_to_python
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+import autograder
+from autograder.exceptions import StudentError
+from autograder.harness.base import DEPTH, NAME
+from autograder.lockstep.failures import diagnose_ending
+from autograder.ros.discovery import announcing_often
+from autograder.ros.domains import Domain
+from autograder.sandbox import Limits, Mount, Process, Sandbox
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.procfs import measure
+from autograder.workspace import Workspace
+
+HOST = Path(__file__).with_name("launch_host")
+PRELOAD = HOST / "preload.py"
+LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
+ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
+_STEP = 0.05  # s between two looks at a condition while nothing arrives
+_PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
+_LABS = itertools.count()
+
+
+@dataclass(frozen=True)
+class Program:
+    """A running executable of a package, as the system sees it."""
+
+    pid: int
+    package: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Stop:
+    """How a launch ended after Ctrl-C.
+
+    Attributes:
+        status: the exit status, or None if it was still running when the time was up.
+        left: the commands that it left running.
+    """
+
+    status: int | None
+    left: tuple[str, ...]
+
+
+def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
+    """Start `ros2 WORDS...`, the real one where there is one, else the stand-in.
+
+    Args:
+        words: the arguments.
+        spec: from `sandbox`.
+        status: a descriptor that gets the exit status, as a line; what is started then outlives `ros2`.
+    """
+    command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
+    return launch(command, spec, pass_fds=() if status is None else (status,), preload=PRELOAD)
+
+
+def sandbox(workspace: Workspace) -> Sandbox:
+    """Describe the sandbox of a `ros2` command: that of a node, which also sees the command."""
+    package = Path(autograder.__file__).parent
+    plain = workspace.sandbox(LIMITS)
+    path = os.pathsep.join(part for part in (plain.environment.get("PYTHONPATH", ""), str(package.parent)) if part)
+    return replace(plain, mounts=(*plain.mounts, Mount(package)), environment={**plain.environment, "PYTHONPATH": path})
+
+
+class LaunchHarness:
+    """A running `ros2 launch` and the grader's node, which meets what it started over DDS; a context manager.
+
+        with LaunchHarness(workspace, "my_robot_bringup", "robot.launch.py", {"speed": "0.3"},
+                       listens={"/cmd_vel": Twist}) as harness:
+            harness.wait_for(lambda: "/driver" in harness.nodes(), 20.0)
+            harness.parameters("/driver", "speed")
+            harness.interrupt(20.0)
+
+    A launch that ends is no error: look at `status` and `output`. `StudentError` comes out of every method that waits
+    when the launch goes over a limit.
+
+    Args:
+        workspace: the student's built workspace.
+        package: the package with the launch file.
+        file: its name.
+        arguments: launch arguments by name.
+        listens: topics that are listened to from the start, with their types.
+    """
+
+    def __init__(
+        self,
+        workspace: Workspace,
+        package: str,
+        file: str,
+        arguments: Mapping[str, str] | None = None,
+        *,
+        listens: Mapping[str, type] | None = None,
+    ) -> None:
+        self._anew = partial(LaunchHarness, workspace, package, file, arguments, listens=listens)
+        self._domain = Domain(workspace.domain + next(_LABS))
+        self._sandbox = sandbox(replace(workspace, domain=self._domain.number))
+        words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
+        # Without a terminal, it is the launch's own task to pass Ctrl-C on.
+        self._words = ("launch", "--noninteractive", package, file, *words)
+        self._listens = dict(listens or {})
+        self._received: dict[str, list[Any]] = {topic: [] for topic in self._listens}
+        self._said = b""
+
+    def __enter__(self) -> LaunchHarness:
+        self._context = Context()
+        with announcing_often():  # launched nodes come when they come
+            rclpy.init(args=[], context=self._context, domain_id=self._domain.number)
+            self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+        for topic, kind in self._listens.items():
+            self.node.create_subscription(kind, topic, self._received[topic].append, profile)
+        self._pipe, theirs = os.pipe()
+        os.set_blocking(self._pipe, False)
+        try:
+            self.process: Process = start(self._words, self._sandbox, theirs)
+        except BaseException:
+            self._leave()
+            raise
+        finally:
+            os.close(theirs)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.process.__exit__(kind, error, trace)
+        self._leave()
+
+    @property
+    def output(self) -> str:
+        """What the launch and its processes have written so far."""
+        return self.process.output
+
+    @property
+    def status(self) -> int | None:
+        """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
+        with contextlib.suppress(BlockingIOError):
+            self._said += os.read(self._pipe, 64)
+        return int(self._said) if self._said.endswith(b"\n") else None
+
+    def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Listen until `condition` holds, at most `seconds` of real time; return whether it does.
+
+        A launch that has ended is not waited for.
+
+        Raises:
+            StudentError: the launch went over a limit of its sandbox.
+        """
+        deadline = time.monotonic() + seconds
+        while True:
+            over = time.monotonic() > deadline or self.status is not None
+            self._executor.spin_once(timeout_sec=0.0 if over else _STEP)
+            if condition():
+                return True
+            if self.process.ending is not None:
+                raise StudentError(diagnose_ending(self.process))
+            if over:
+                return False
+
+    def run(self, seconds: float) -> None:
+        """Listen for `seconds` of real time, or until the launch has ended."""
+        self.wait_for(lambda: False, seconds)
+
+    def nodes(self) -> list[str]:
+        """Return the full names of the nodes that are seen now, those of one name as often as there are."""
+        found = self.node.get_node_names_and_namespaces()
+        return sorted(_full(name, space) for name, space in found if (name, space) != (NAME, "/") and name[0] != "_")
+
+    def publishers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that publish on `topic`, but for the grader's own."""
+        return _others(self.node.get_publishers_info_by_topic(topic))
+
+    def subscribers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that subscribe to `topic`, but for the grader's own."""
+        return _others(self.node.get_subscriptions_info_by_topic(topic))
+
+    def messages(self, topic: str) -> list[Any]:
+        """Return the messages that came on a topic of `listens`."""
+        return self._received[topic]
+
+    def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:
+        """Ask a node for parameters.
+
+        Args:
+            node: its full name.
+            names: of the parameters.
+            seconds: of real time for the answer.
+
+        Returns:
+            Values by name, None for one that the node has not declared; or None if it does not answer.
+        """
+        values = self._ask(node, names, seconds)
+        if values is None or len(values) == len(names):
+            return values
+        # A node that lacks one of them answers with none at all.
+        return {name: (self._ask(node, (name,), seconds) or {}).get(name) for name in names}
+
+    def programs(self) -> list[Program]:
+        """Return the running executables of packages, in the order of their process ids."""
+        found = []
+        for pid in sorted(measure(self.process.innermost()).pids):
+            # A script is the second word, behind its interpreter; a process that has ended has no words.
+            matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
+            found += [Program(pid, match["package"], match["name"]) for match in matches if match is not None]
+        return found
+
+    def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
+        """Send a signal to every program called `name`; return to how many."""
+        chosen = [program for program in self.programs() if program.name == name]
+        for program in chosen:
+            try:
+                os.kill(program.pid, number)
+            except ProcessLookupError:
+                continue
+        return len(chosen)
+
+    def interrupt(self, seconds: float) -> Stop:
+        """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
+        if self.status is None:
+            os.kill(_first_child(self.process.innermost()), signal.SIGINT)
+        self.wait_for(lambda: self.status is not None, seconds)
+        return Stop(self.status, self.left())
+
+    def another(self) -> LaunchHarness:
+        """Return a harness of the same launch, yet to be started."""
+        return self._anew()
+
+    def left(self) -> tuple[str, ...]:
+        """Return the commands that are still running now that the launch has ended."""
+        holder = self.process.innermost()
+        pids = [pid for pid in measure(holder).pids if pid != holder and _command_of(pid)]
+        return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
+
+    def _leave(self) -> None:
+        os.close(self._pipe)
+        self._executor.shutdown(timeout_sec=0)
+        self.node.destroy_node()
+        self._context.try_shutdown()
+        self._domain.close()
+
+    def _ask(self, node: str, names: Collection[str], seconds: float) -> dict[str, Any] | None:
+        client = self.node.create_client(GetParameters, f"{node}/get_parameters")
+        try:
+            if not self.wait_for(client.service_is_ready, seconds):
+                return None
+            future = client.call_async(GetParameters.Request(names=list(names)))
+            if not self.wait_for(future.done, seconds):
+                return None
+            values = [parameter_value_to_python(value) for value in future.result().values]
+        finally:
+            self.node.destroy_client(client)
+        return dict(zip(names, values, strict=False))
+
+
+def _full(name: str, space: str) -> str:
+    return f"{space.rstrip('/')}/{name}"
+
+
+def _others(endpoints: list[Any]) -> list[str]:
+    full = (_full(found.node_name, found.node_namespace) for found in endpoints)
+    return sorted(name for name in full if name != f"/{NAME}")
+
+
+def _command_of(pid: int) -> list[str]:
+    try:
+        text = Path(f"/proc/{pid}/cmdline").read_text(errors="replace").rstrip("\0")
+    except OSError:
+        return []
+    return text.split("\0") if text else []
+
+
+def _first_child(pid: int) -> int:
+    return int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])

@@ -1,0 +1,147 @@
+"""A harness in real time: the programs run as `ros2 run` would start them, and can be sent signals."""
+
+from __future__ import annotations
+
+import signal
+import statistics
+import sys
+import time
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from types import TracebackType
+from typing import Any
+
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.harness import cpu_starvation
+from autograder.harness.base import Harness
+from autograder.harness.programs import Program, error_of
+from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
+from autograder.sandbox import Process
+from autograder.sandbox.launcher import launch
+
+START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
+GRACE_NS = 300_000_000  # real time for the programs to see the grader's endpoints, too: they cannot be asked
+SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
+
+
+class RealTimeHarness(Harness):
+    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes.
+
+    Attributes:
+        spared: executables that may fail: the others live on without them.
+        deaf_seconds: for how long the nodes were seen before the grader could hear them.
+    """
+
+    spared: frozenset[str] = frozenset()
+    deaf_seconds = 0.0
+    _running: Sequence[tuple[Program, Process]] = ()
+
+    def _start(self) -> None:
+        self._began = time.monotonic()
+        for program, path in zip(self.programs, self._paths, strict=True):
+            command = [sys.executable, str(path), *program.words(self._folder)]
+            self._running = [*self._running, (program, launch(command, self._sandbox))]
+        up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
+        if not up and len(self.nodes()) < len(self.running - self.spared):
+            raise StudentError(stuck(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for process in self.processes:
+            process.__exit__(kind, error, trace)
+        super().__exit__(kind, error, trace)
+
+    @property
+    def processes(self) -> tuple[Process, ...]:
+        return tuple(process for _, process in self._running)
+
+    @property
+    def running(self) -> frozenset[str]:
+        """The executables that the harness has not lost."""
+        return frozenset(program.executable for program, _ in self._running)
+
+    @property
+    def now_ns(self) -> int:
+        return int(self.node.get_clock().now().nanoseconds)
+
+    @property
+    def seconds(self) -> float:
+        return time.monotonic() - self._began
+
+    def step(self, dt_ns: int) -> None:
+        """Listen for `dt_ns` nanoseconds of real time; not at all if there are none, as for who is late already."""
+        if dt_ns <= 0:
+            return
+        end = time.monotonic() + dt_ns / 1e9
+        with cpu_starvation.watch((process.innermost() for process in self.processes), dt_ns / 1e9):
+            while (left := end - time.monotonic()) > 0:
+                self._alive()
+                self._spin(min(left, 0.05))
+
+    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        return self.wait_for(lambda: self._alive() and condition(), seconds)
+
+    def rate(self, topic: str, since: float) -> float:
+        return usual_rate([stamped.seconds for stamped in self.messages(topic, since=since)], self.seconds - since)
+
+    def stop(self, number: signal.Signals, seconds: float) -> int | None:
+        """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""
+        for process in self.processes:
+            process.signal(number)
+        return self.process.returncode if self.process.wait(seconds) else None
+
+    def _when(self, arrived_ns: int) -> float:
+        # It may have lain there while nobody listened, to two harnesses at once, say.
+        return self.seconds - (time.time_ns() - arrived_ns) / 1e9
+
+    def _alive(self) -> bool:
+        """Go on without a program that has ended and may; of others say how they did."""
+        for program, process in self._running:
+            if process.ending is None:
+                continue
+            if program.executable not in self.spared:
+                error = StudentError(diagnose_output(process) or diagnose_ending(process))
+                raise error_of(program, error, len(self._running))
+            process.__exit__(None, None, None)
+            self._running = [other for other in self._running if other[1] is not process]
+        return True
+
+    def _meet(self) -> None:
+        began = self.seconds
+        super()._meet()
+        self.deaf_seconds = max(self.deaf_seconds, self.seconds - began)
+        self.step(GRACE_NS)
+
+    def _topics(self) -> tuple[set[str], set[str]]:
+        def complete() -> bool:
+            return all(map(self._readers, self._offers)) and all(map(self._writers, self._listens))
+
+        self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
+        return {topic for topic in self._offers if self._readers(topic)}, {
+            topic for topic in self._listens if self._writers(topic)
+        }
+
+    def _connected(self) -> bool:
+        # The programs' own view cannot be asked for; the grader's endpoints are matched once they see a peer.
+        ears = [ear.entity for ear in self._grader_node.ears if ear.kind == "subscription"]
+        return all(publisher.get_subscription_count() for publisher in self._grader_node.publishers.values()) and all(
+            self.node.count_publishers(ear.topic_name) for ear in ears
+        )
+
+    def _reach(self, client: Any, seconds: float) -> bool:
+        return self.until(client.service_is_ready, seconds)
+
+
+def usual_rate(instants: Sequence[float], seconds: float) -> float:
+    """Return how many times a second something usually happens that happened at `instants`, in `seconds` in all.
+
+    A busy machine holds a program up now and then, and what it holds up never comes: a count would blame the program.
+    The median interval does not. Where less than half of what it promises came, the count is right.
+    """
+    count = len(instants) / seconds
+    if len(instants) < 3:
+        return count
+    usual = 1.0 / max(statistics.median(after - before for before, after in pairwise(instants)), 1e-6)
+    return usual if count > usual / 2 else count

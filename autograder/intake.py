@@ -1,0 +1,269 @@
+"""Intake: what was handed in becomes a plain tree of files, or a sentence that says why it cannot.
+
+A submission is an assignment's folder (the notebook and `ws/` beside it), a zip of one, the notebook alone, or a bare
+source tree with `src/`. Nothing in it is executed here. Links, devices, absolute and parent paths are refused, sizes,
+counts and depths are bounded; `build`, `install` and `log` are never looked at.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import lzma
+import os
+import stat
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError, UsageError
+
+MAX_FILES = 2000
+MAX_FILE = 16 * 1024 * 1024
+MAX_TOTAL = 64 * 1024 * 1024
+MAX_DEPTH = 16
+MAX_NAME = 200  # bytes of a path; file systems take 255 for each part of one
+IGNORED = frozenset(
+    {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".git", ".pytest_cache", "__MACOSX"}
+)
+_EXECUTABLE = 0o100
+# What `zipfile` lets out when an archive is damaged, encrypted or packed in a way that it does not know.
+_DAMAGED = (
+    zipfile.BadZipFile,
+    zipfile.LargeZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    NotImplementedError,
+    EOFError,
+    OSError,
+    RuntimeError,
+    ValueError,
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One file of a submission: its path below the submission's root, its bytes, whether it may be executed."""
+
+    path: PurePosixPath
+    data: bytes
+    executable: bool = False
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What was handed in, laid out the one way that grading knows.
+
+    Attributes:
+        notebook: the assignment's notebook as it was handed in, or None.
+        source: files below `ws/src`, paths relative to it.
+        extra: files beside the notebook that it may read, paths relative to the assignment's folder.
+        sha256: of all files' paths and contents.
+    """
+
+    notebook: bytes | None
+    source: tuple[Entry, ...]
+    extra: tuple[Entry, ...]
+    sha256: str
+
+
+def take_source(root: Path) -> tuple[Entry, ...]:
+    """Read the packages of a workspace, `root`/src, that student's code has written to.
+
+    Raises:
+        StudentError: `src` is no folder, or holds what a submission may not hold.
+    """
+    for folder in (root, root / "src"):
+        try:
+            mode = folder.lstat().st_mode
+        except OSError:
+            mode = 0
+        if not stat.S_ISDIR(mode):
+            sentence = "After the notebook has run there is no folder ws/src: create your package there."
+            raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
+    return tuple(_from_folder(root / "src", _Budget()))
+
+
+def take(path: Path, assignment: str) -> Submission:
+    """Read a submission from disk.
+
+    Raises:
+        UsageError: there is nothing at `path`.
+        StudentError: it is no submission, or one that must not be unpacked.
+    """
+    budget = _Budget()
+    if path.is_dir():
+        entries = _from_folder(path, budget)
+    elif path.is_file() and path.suffix == ".ipynb":
+        entries = [budget.read(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)]
+    elif path.is_file():
+        entries = _from_zip(path, budget)
+    else:
+        raise UsageError(f"{path}: there is no such file or folder")
+    return arrange(entries, assignment)
+
+
+def arrange(entries: list[Entry], assignment: str) -> Submission:
+    """Recognise a submission's layout.
+
+    Raises:
+        StudentError: there is neither the notebook nor a package in it.
+    """
+    digest = hashlib.sha256()
+    for entry in sorted(entries, key=lambda entry: str(entry.path)):
+        digest.update(f"{entry.path}\0{len(entry.data)}\0".encode(errors="surrogatepass"))
+        digest.update(entry.data)
+    _require_tree(entries)
+    root = _root(entries, assignment)
+    inside = [
+        Entry(entry.path.relative_to(root), entry.data, entry.executable) for entry in entries if _below(entry, root)
+    ]
+    notebook = next((entry.data for entry in inside if str(entry.path) == f"{assignment}.ipynb"), None)
+    workspace = PurePosixPath("ws/src")
+    home = workspace if any(_below(entry, workspace) for entry in inside) else PurePosixPath("src")
+    source, extra = [], []
+    for entry in inside:
+        if _below(entry, home):
+            source.append(Entry(entry.path.relative_to(home), entry.data, entry.executable))
+        elif entry.path.parts[0] != "ws" and str(entry.path) != f"{assignment}.ipynb":
+            extra.append(entry)
+    if notebook is None and not source:
+        sentence = (
+            f"There is nothing to grade: neither {assignment}.ipynb nor a ws/src folder with a package. Hand in the "
+            "assignment's whole folder."
+        )
+        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
+    return Submission(notebook, tuple(source), tuple(extra), digest.hexdigest())
+
+
+def write_tree(entries: tuple[Entry, ...], folder: Path) -> None:
+    """Write files below `folder`, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for entry in entries:
+        target = folder / entry.path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(entry.data)
+        if entry.executable:
+            target.chmod(0o755)
+
+
+def _root(entries: list[Entry], assignment: str) -> PurePosixPath:
+    """Return the folder that holds the notebook, or the parent of `ws/src` or `src`; the shallowest one."""
+    candidates = []
+    for entry in entries:
+        parts = entry.path.parts
+        if entry.path.name == f"{assignment}.ipynb" and len(parts) <= 3:
+            candidates.append((len(parts) - 1, 0, PurePosixPath(*parts[:-1])))
+        for marker in (("ws", "src"), ("src",)):
+            for depth in range(min(3, len(parts) - len(marker))):
+                if parts[depth : depth + len(marker)] == marker:
+                    candidates.append((depth, len(marker), PurePosixPath(*parts[:depth])))
+    return min(candidates)[2] if candidates else PurePosixPath()
+
+
+def _below(entry: Entry, root: PurePosixPath) -> bool:
+    return entry.path.is_relative_to(root) and entry.path != root
+
+
+def _require_tree(entries: list[Entry]) -> None:
+    """Refuse what no file system holds: two files of one name, or a file that is a folder, too."""
+    files = {entry.path for entry in entries}
+    folders = {folder for path in files for folder in path.parents}
+    if len(files) < len(entries) or files & folders:
+        raise _unsafe("two things in it have the same name")
+
+
+class _Budget:
+    """Counts bytes before they are read, so that nothing larger than allowed is ever in memory."""
+
+    def __init__(self) -> None:
+        self._left = MAX_TOTAL
+
+    def read(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> Entry:
+        if len(path.parts) > MAX_DEPTH:
+            raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
+        if len(os.fsencode(path)) > MAX_NAME:
+            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} bytes")
+        if size > MAX_FILE:
+            raise _unsafe(f"{path} is larger than {MAX_FILE // 2**20} MiB")
+        self._left -= size
+        if self._left < 0:
+            raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB in all")
+        return Entry(path, read(), executable)
+
+
+def _from_folder(root: Path, budget: _Budget) -> list[Entry]:
+    return [
+        budget.read(
+            PurePosixPath(path.relative_to(root)), info.st_size, path.read_bytes, bool(info.st_mode & _EXECUTABLE)
+        )
+        for path, info in _walk(root)
+    ]
+
+
+def _walk(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
+    pending, count = [root], 0
+    while pending:
+        for path in sorted(pending.pop().iterdir()):
+            if path.name in IGNORED:
+                continue
+            info = path.lstat()
+            count += 1
+            if count > MAX_FILES:
+                raise _unsafe(f"it holds more than {MAX_FILES} files and folders")
+            if stat.S_ISDIR(info.st_mode):
+                if len(path.relative_to(root).parts) > MAX_DEPTH:
+                    raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
+                pending.append(path)
+            elif stat.S_ISREG(info.st_mode):
+                yield path, info
+            else:
+                what = "a symbolic link" if stat.S_ISLNK(info.st_mode) else "no ordinary file"
+                raise _unsafe(f"{path.relative_to(root)} is {what}")
+
+
+def _from_zip(path: Path, budget: _Budget) -> list[Entry]:
+    if path.stat().st_size > MAX_TOTAL:
+        raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            infos = archive.infolist()
+            if len(infos) > MAX_FILES:
+                raise _unsafe(f"it holds more than {MAX_FILES} files and folders")
+            return [entry for info in infos if (entry := _zip_entry(archive, info, budget)) is not None]
+    except _DAMAGED as error:
+        sentence = f"{path.name} is no folder, notebook or readable zip archive ({error}): hand in one of these."
+        raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
+
+
+def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget) -> Entry | None:
+    path = PurePosixPath(info.filename.replace("\\", "/"))
+    if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
+        raise _unsafe(f"{info.filename} points outside the archive")
+    if info.is_dir() or IGNORED.intersection(path.parts):
+        return None
+    mode = info.external_attr >> 16
+    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
+        raise _unsafe(f"{info.filename} is no ordinary file")
+    return budget.read(path, info.file_size, lambda: _inflate(archive, info), bool(mode & _EXECUTABLE))
+
+
+def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    # The directory's size is the sender's claim: read one byte more than it allows, and no further.
+    with archive.open(info) as stream:
+        data = stream.read(info.file_size + 1)
+    if len(data) != info.file_size:
+        raise zipfile.BadZipFile(f"{info.filename} is not as large as the archive says")
+    return data
+
+
+def _unsafe(why: str) -> StudentError:
+    return StudentError(
+        Diagnosis(
+            Kind.UNSAFE_ARCHIVE,
+            f"The submission was not opened: {why}. Hand in the notebook and ws/src, without links and without what "
+            "colcon builds.",
+        )
+    )

@@ -1,0 +1,66 @@
+"""The way from a notebook's kernel to a trusted worker and back: a job goes out as JSON, files come back."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from autograder.exceptions import GraderError, UsageError
+from autograder.sandbox import Limits, best_tier
+from autograder.sandbox.cell import run_in_cell
+from autograder.sandbox.limits import GIB, MIB
+
+ANSWER = "answer.json"
+RECORDING = "recording.npz"
+LIMITS = Limits(wall_seconds=300.0, memory=6 * GIB, threads=2048, output=4 * MIB)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a notebook asks a worker: to drive a robot, or to run visible checks, with a workspace's packages.
+
+    Attributes:
+        verb: `drive` or `check`.
+        source: the workspace's `src` folder.
+        out: where the answer goes.
+        arguments: what the verb needs.
+    """
+
+    verb: str
+    source: Path
+    out: Path
+    arguments: dict[str, Any]
+
+    def to_json(self, scratch: Path) -> str:
+        """Return the request as JSON, with the scratch folder that the worker may use."""
+        return json.dumps({**asdict(self), "scratch": scratch}, default=str)
+
+
+@contextmanager
+def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
+    """Run an request; yields the worker's answer and the folder with the files that it left.
+
+    Raises:
+        UsageError: there is no workspace at `workspace`.
+        GraderError: the worker failed.
+    """
+    source = workspace / "src"
+    if not source.is_dir():
+        raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
+    with tempfile.TemporaryDirectory(prefix="request-") as folder:
+        request = Request(verb, source.resolve(), Path(folder), arguments)
+        report = run_in_cell(
+            lambda scratch: [sys.executable, "-m", "autograder.notebook.check_worker", request.to_json(scratch)],
+            best_tier(),
+            LIMITS,
+        )
+        answer = Path(folder) / ANSWER
+        if report.returncode != 0 or not answer.is_file():
+            raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")
+        yield json.loads(answer.read_text()), Path(folder)

@@ -1,0 +1,64 @@
+"""`colcon test` on a student's package, in the sandbox: does it run the tests that are there?"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from autograder.building.colcon import HOST
+from autograder.probes import junit
+from autograder.probes.junit import Claims
+from autograder.probes.test_reports import Report
+from autograder.probes.test_runs import sandboxed
+from autograder.sandbox import Ending, Mount
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import BUILD
+from autograder.workspace import Workspace
+
+PRELOAD = Path(__file__).with_name("colcon_preload.py")
+
+
+def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
+    """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in the built workspace.
+
+    Args:
+        workspace: the student's; its build and test folders are written to.
+        package: the package.
+        arguments: more for the command line.
+
+    Returns:
+        What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
+        be stopped, that of a second time, as `testing.run` has it.
+    """
+    first = _colcon_test(workspace, package, arguments)
+    return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
+
+
+def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "test"]
+    command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
+    command += ["--packages-select", package, "--return-code-on-test-failure", *arguments]
+    plain = sandboxed(workspace, HOST, limits=BUILD)
+    environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
+    del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
+    mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)
+    spec = replace(
+        plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
+    )
+    report = workspace.root / "build" / package / "pytest.xml"
+    if _inside(report, workspace.root):
+        report.unlink(missing_ok=True)
+    with launch(command, spec, preload=PRELOAD) as process:
+        process.wait(BUILD.wall_seconds + 10)
+        ending, status, output = process.ending, process.returncode, process.output
+    claims = junit.read(report) if _inside(report, workspace.root) else None
+    return Report(ending, status, claims or Claims(), 0, output)
+
+
+def _inside(path: Path, root: Path) -> bool:
+    """Say whether a path that the build has made leads nowhere else."""
+    try:
+        return path.parent.resolve().is_relative_to(root.resolve())
+    except (OSError, RuntimeError):
+        return False

@@ -1,0 +1,274 @@
+"""Launch files as checks see them: which arguments they declare, what they start, and what went wrong."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import time
+from collections import Counter
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+from autograder.checks import CheckFailed, expect
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
+from autograder.workspace import Workspace
+
+START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
+QUIET_SECONDS = 1.5  # real time without a change, once each program that runs has its node
+STOP_SECONDS = 20.0  # real time for the end; nodes that end cleanly need 0.2
+SHOW_SECONDS = 30.0
+KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
+
+_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
+_DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
+_CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>\[.*\])")
+_QUOTED = re.compile(r"'([^']*)'")
+_CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
+_STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
+_ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
+_DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
+_RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Argument:
+    """A launch argument, as `ros2 launch -s` shows it.
+
+    Attributes:
+        name: its name.
+        description: what is said of it; empty if nothing is.
+        default: the text of its default, None if it has to be given or its default is worked out.
+        choices: the values that are allowed; empty if any is.
+    """
+
+    name: str
+    description: str
+    default: str | None
+    choices: tuple[str, ...]
+
+
+def parse_arguments(text: str) -> dict[str, Argument]:
+    """Read what `ros2 launch -s` prints; return arguments by name."""
+    found: dict[str, Argument] = {}
+    for line in text.splitlines():
+        if match := _NAME.match(line):
+            found[match["name"]] = Argument(match["name"], "", None, ())
+        elif found and line.startswith("        "):
+            last = list(found)[-1]
+            found[last] = _with_line(found[last], line)
+    return found
+
+
+def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
+    """Ask `ros2 launch -s` which arguments a launch file declares.
+
+    Raises:
+        CheckFailed: the file is not installed, or cannot be read.
+    """
+    with start(("launch", "--show-args", package, file), sandbox(workspace)) as process:
+        process.wait(SHOW_SECONDS)
+        output, status = process.output, process.returncode
+    require_written(output)
+    expect(status == 0, f"`ros2 launch -s {package} {file}` fails: {_last_line(output)}")
+    return parse_arguments(output)
+
+
+def expect_argument(arguments: Mapping[str, Argument], name: str, default: str) -> None:
+    """Fail the check unless an argument is declared with this default and any description.
+
+    Raises:
+        CheckFailed: it is not; the message names what is declared instead.
+    """
+    there = ", ".join(arguments) or "none"
+    expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
+    found = arguments[name]
+    shown = "no default" if found.default is None else f"the default {found.default!r}"
+    expect(found.default == default, f"The argument {name} has {shown}, instead of {default!r}.", fraction=0.5)
+    expect(
+        bool(found.description),
+        f"The argument {name} has no description: `ros2 launch -s` would not say what it is for.",
+        fraction=0.5,
+    )
+
+
+def settle(harness: LaunchHarness, wanted: Collection[str], seconds: float = START_SECONDS) -> list[str]:
+    """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
+
+    Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
+    a node, and either these are the wanted ones or nothing has changed for a while.
+    """
+    state: tuple[object, ...] = ()
+    since = time.monotonic()
+
+    def done() -> bool:
+        nonlocal state, since
+        nodes, running = harness.nodes(), len(harness.programs())
+        if nodes == sorted(wanted) and running == len(wanted):
+            return True
+        if (nodes, running) != state or len(nodes) < running or not running:
+            state, since = (nodes, running), time.monotonic()
+        return time.monotonic() - since > QUIET_SECONDS
+
+    harness.wait_for(done, seconds)
+    require_written(harness.output)
+    return harness.nodes()
+
+
+def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
+    """Fail the check unless exactly the wanted nodes run; waits for them.
+
+    Raises:
+        CheckFailed: others do, or some are missing; the message names near misses and what the launch said.
+    """
+    nodes = settle(harness, wanted)
+    if nodes == sorted(wanted):
+        return
+    seen = f"The graph holds {', '.join(nodes)}" if nodes else "No node is up"
+    missing = sorted((Counter(wanted) - Counter(nodes)).elements())
+    extra = sorted((Counter(nodes) - Counter(wanted)).elements())
+    what = [f"{', '.join(missing)} missing"] if missing else []
+    what += [f"{', '.join(extra)} not asked for"] if extra else []
+    near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
+    reason = trouble(harness.output)
+    parts = [f"{seen}: {'; '.join(near or what)}.", reason and f"What the launch said: {reason}"]
+    raise CheckFailed(" ".join(filter(None, parts)))
+
+
+def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, object]) -> None:
+    """Fail the check unless a node has these parameters; numbers are compared to nine digits, types exactly.
+
+    Raises:
+        CheckFailed: one differs, or the node does not answer.
+    """
+    found = harness.parameters(node, list(wanted))
+    if found is None:
+        raise CheckFailed(
+            f"{node} does not answer when it is asked for its parameters. {trouble(harness.output)}".strip()
+        )
+    for name, value in wanted.items():
+        given = found[name]
+        expect(_same(given, value), f"{node} has {name} = {given!r}, instead of {value!r}.")
+
+
+def expect_clean_stop(harness: LaunchHarness) -> None:
+    """Fail the check unless Ctrl-C ends the launch with exit status 0, every process cleanly, and leaves none.
+
+    Where a process had to be killed, a second launch decides. Once in some two thousand launches on a busy machine, a
+    right node ended neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does.
+
+    Raises:
+        CheckFailed: it does not.
+    """
+    nodes = harness.nodes()
+    died = _died_of_ctrl_c(harness)
+    if any(code == KILLED for _, code in died):
+        with harness.another() as second:
+            expect_nodes(second, nodes)
+            died = _died_of_ctrl_c(second)
+    said = ", ".join(f"{name} with {code}" for name, code in died)
+    expect(not died, f"After Ctrl-C, not every process ended cleanly: {said}.", fraction=0.5)
+
+
+def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
+    """Interrupt a launch, which has to end; return name and exit code of each process that did not end cleanly.
+
+    A node is seen before its constructor has ended, where Ctrl-C is beyond what its `main` catches. One that answers
+    is spinning; one that never answers is not waited for long.
+    """
+    for node in harness.nodes():
+        harness.parameters(node, ["use_sim_time"])
+    expect_stopped(harness.interrupt(STOP_SECONDS))
+    return [(match["name"], match["code"]) for match in _DIED.finditer(harness.output)]
+
+
+def expect_stopped(stop: Stop, status: int | None = 0) -> None:
+    """Fail the check unless the launch has ended, with this exit status (None: with any), and has left nothing.
+
+    Raises:
+        CheckFailed: it has not.
+    """
+    expect(stop.status is not None, f"After {STOP_SECONDS:.0f} s it still ran, and had to be killed.")
+    expect(not stop.left, f"It ended, but left a process running: {', '.join(stop.left)[:200]}.")
+    expect(status is None or stop.status == status, f"It ended with exit status {stop.status}, instead of {status}.")
+
+
+def started(output: str) -> list[str]:
+    """Return the programs that a launch says it has started, in order, without their numbers."""
+    return [match["name"] for match in _STARTED.finditer(output)]
+
+
+def ended(output: str) -> list[str]:
+    """Return the programs that a launch says have ended, in order, without their numbers."""
+    return [match["name"] for match in _ENDED.finditer(output)]
+
+
+def trouble(output: str) -> str:
+    """Return in a line what went wrong by the words of a launch; empty if it names nothing."""
+    if caught := _CAUGHT.search(output):
+        return " ".join(caught["what"].split())
+    died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]
+    raised = [match["what"].strip() for match in _RAISED.finditer(output)]
+    if not died:
+        # An argument that is refused, a package that is not there: `ros2 launch` says so last.
+        return _last_line(output) if "error" in _last_line(output).lower() else ""
+    return f"{', '.join(died)}{f' ({raised[-1]})' if raised else ''}"
+
+
+def require_written(output: str) -> None:
+    """See that a launch did not stumble over a part of the exercise that is still to be written.
+
+    Raises:
+        StudentError: it did.
+    """
+    lines = output.splitlines()
+    first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
+    if first is not None:
+        sentence = "A part of the launch file is still to be written: put your code in place of the raise."
+        raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, "\n".join(lines[max(first - 1, 0) : first + 2])))
+
+
+def with_files(workspace: Workspace, name: str, package: str, files: Mapping[str, str]) -> Workspace:
+    """Return a copy of a workspace's install space in which files of a package's share folder are replaced.
+
+    Args:
+        workspace: the built workspace; it is left as it is.
+        name: of the copy, one that no other copy has.
+        package: the package.
+        files: texts by path below `share/PACKAGE`.
+    """
+    root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
+    shutil.copytree(workspace.install, root / "install", symlinks=True)
+    for path, text in files.items():
+        target = root / "install" / package / "share" / package / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.unlink(missing_ok=True)
+        target.write_text(text)
+    return replace(workspace, root=root)
+
+
+def _with_line(argument: Argument, line: str) -> Argument:
+    if match := _DEFAULT.match(line):
+        quoted = _QUOTED.fullmatch(match["default"])
+        return replace(argument, default=quoted[1] if quoted else None)
+    words = line.strip()
+    if match := _CHOICES.search(words):
+        words = words.removesuffix(match[0]).strip()
+        argument = replace(argument, choices=tuple(_QUOTED.findall(match["choices"])))
+    said = "" if words == "no description given" else f"{argument.description} {words}".strip()
+    return replace(argument, description=said)
+
+
+def _same(given: object, wanted: object) -> bool:
+    if isinstance(given, float) and isinstance(wanted, float):
+        return abs(given - wanted) <= 1e-9
+    return type(given) is type(wanted) and given == wanted
+
+
+def _base(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
+def _last_line(output: str) -> str:
+    return next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "it says nothing")

@@ -1,0 +1,245 @@
+"""Runs a student's tests against versions of the package under test: what do they say of each?
+
+    source = take(workspace, "speed_guard")
+    reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
+
+Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
+"fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
+version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
+times and environment, and nothing that it can write to but a /tmp that dies with it. It sees its version and nothing of
+the others, the suites or earlier runs. See `versions` for how versions are kept alike. What remains is written there,
+too. Only a run that is overheard shares the grader's loopback, where nobody else is. It can tell itself from others by
+that, so what it is given has to be a right version.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import queue
+import selectors
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+import autograder.ros
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.harness.launch import PRELOAD as LAUNCH_PRELOAD
+from autograder.intake import take_source
+from autograder.probes import PRELOAD, junit
+from autograder.probes.junit import Claims
+from autograder.probes.memory import Memory
+from autograder.probes.rtps_sniffer import Ear
+from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.probes.versions import write_version
+from autograder.ros.domains import Domain
+from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, zygote
+from autograder.sandbox.launcher import current_tier, launch
+from autograder.sandbox.limits import MIB
+from autograder.workspace import Workspace
+
+HOST = Path(__file__).with_name("pytest_host.py")
+STANDINS = Path(autograder.ros.__file__).parent / "standins"
+# Five at a time have to fit into the limits of a cell.
+LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB)
+LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
+HOME = Path("/tmp")  # the sandbox's own
+HEADER = 32  # bytes of an answer's first line, at most
+
+
+def take(workspace: Workspace, package: str) -> Source:
+    """Read a package's source, which the student's code could write to while it was built: plain files only.
+
+    Raises:
+        StudentError: there is something else than plain files, or no folder of the package's name.
+    """
+    entries = take_source(workspace.root)
+    folder = next(
+        (e.path.parent for e in entries if e.path.name == "package.xml" and e.path.parent.name == package), None
+    )
+    if folder is None:
+        sentence = f"There is no folder src/{package} with a package.xml: a package's folder has its name."
+        raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
+    inside = [entry for entry in entries if entry.path.is_relative_to(folder)]
+    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
+
+
+def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], lanes: int = LANES) -> list[Report]:
+    """Run the tests, some runs at a time; return a report for each run, in the given order.
+
+    A run that has to be stopped, where no other of the same files has to, gets a second one, which decides: rclpy can
+    miss the end of an executor that spins in a thread (`Executor.shutdown` destroys what it has just woken it with).
+
+    Raises:
+        StudentError: there is no room left on the disk.
+        GraderError: there is no domain left to listen in.
+    """
+    memory = Memory(workspace.memory)
+    recalled = [memory.recall(source, wanted) for wanted in wanted_runs]
+    new_runs = [wanted for wanted, report in zip(wanted_runs, recalled, strict=True) if report is None]
+    made = _carry_out(workspace, source, new_runs, lanes)
+    for wanted, report in zip(new_runs, made, strict=True):
+        memory.keep(source, wanted, report)
+    new = iter(made)
+    return [report or next(new) for report in recalled]
+
+
+def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], lanes: int) -> list[Report]:
+    free: queue.SimpleQueue[int] = queue.SimpleQueue()
+    for lane in range(lanes):
+        free.put(lane)
+
+    def carry_out(wanted: TestRun) -> Report:
+        lane = free.get()
+        try:
+            return _run(places[lane], source, wanted, lane)
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+                raise
+            sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
+            raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
+        finally:
+            free.put(lane)
+
+    with ExitStack() as claims, ThreadPoolExecutor(lanes) as pool:
+        places = [workspace] * lanes
+        if current_tier() is not Tier.BUBBLEWRAP:  # its runs are in one network
+            domains = [claims.enter_context(Domain()) for _ in range(lanes)]
+            places = [replace(workspace, domain=domain.number) for domain in domains]
+        reports = list(pool.map(carry_out, wanted_runs))
+        stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]
+        files = Counter(wanted_runs[place].files for place in stopped)
+        again = [place for place in stopped if files[wanted_runs[place].files] == 1]
+        for place, report in zip(again, pool.map(carry_out, [wanted_runs[place] for place in again]), strict=True):
+            reports[place] = report
+        return reports
+
+
+def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, network: bool = False) -> Sandbox:
+    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
+    mounts = (*workspace.sandbox().mounts, Mount(STANDINS), Mount(zygote.HOST), *map(Mount, readable))
+    plain = workspace.sandbox(limits)
+    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    return replace(plain, mounts=mounts, environment=environment, network=network)
+
+
+def _run(workspace: Workspace, source: Source, wanted: TestRun, lane: int) -> Report:
+    place = workspace.root.with_name(f"{workspace.root.name}-tests") / f"lane{lane}"
+    shutil.rmtree(place, ignore_errors=True)
+    if wanted.version is not None:
+        there = replace(workspace, root=place / "ws")
+        folder = write_version(wanted.version, source.package, source.tests, there.root)
+    else:
+        there, folder = workspace, place / "ws" / "src" / source.package
+        for name, data in source.files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
+    launches = _launches(source, wanted)
+    arguments = _arguments(source, folder, wanted, launches)
+    if not wanted.overheard:
+        return _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
+    with Ear() as ear:
+        spec = _confined(replace(there, domain=ear.domain), folder, wanted, place / "home")
+        report = _host(spec, wanted, arguments, launches)
+        return replace(report, heard=ear.heard())
+
+
+def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
+    """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
+    if current_tier() is Tier.BUBBLEWRAP:
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=wanted.overheard)
+        return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
+    home.mkdir(parents=True)
+    return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
+
+
+def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) -> list[str]:
+    files = [str(folder / "test" / name) for name in wanted.files]
+    plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
+    plain += ["-p", "launch_pytest.plugin"] if launches else []
+    quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
+    asked = [*(["-x"] if wanted.first_failure else []), *([] if wanted.conftest else ["--noconftest"])]
+    return [*plain, *quiet, *asked, *files]
+
+
+def _launches(source: Source, wanted: TestRun) -> bool:
+    """Return whether tests may launch something, for which there is more to import."""
+    read = [*wanted.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
+    return any(b"launch" in source.tests.get(name, b"") for name in read)
+
+
+def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) -> Report:
+    answer_read, answer_write = os.pipe()
+    go_read, go_write = os.pipe()
+    report = Path(spec.environment["HOME"]) / "report.xml"
+    command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(wanted.backwards)), str(report)]
+    try:
+        process = launch(
+            [*command, *arguments],
+            spec,
+            pass_fds=(answer_write, go_read),
+            preload=LAUNCH_PRELOAD if launches else PRELOAD,
+        )
+    finally:
+        os.close(answer_write)
+        os.close(go_read)
+    with process:
+        status, text = _answer(answer_read, process)
+        left = open_sockets(process.innermost()) if status is not None else 0
+        os.close(go_write)
+        process.wait(spec.limits.wall_seconds)
+        ending = process.ending
+    claims = None if status is None else junit.parse(text)
+    if claims is None:
+        return Report(ending, None, Claims(), left, process.output)
+    return Report(ending, status, claims, left, process.output)
+
+
+def _answer(descriptor: int, process: Process) -> tuple[int | None, bytes]:
+    """Return pytest's exit status and its report, as the run says them; no status when it ends without a whole word."""
+    data = bytearray()
+    try:
+        with selectors.DefaultSelector() as selector:
+            selector.register(descriptor, selectors.EVENT_READ)
+            while len(data) <= HEADER + junit.MAX_BYTES:
+                if selector.select(0.1):
+                    chunk = os.read(descriptor, 65536)
+                    if not chunk:
+                        break
+                    data += chunk
+                elif process.ending is not None:
+                    break
+                if (whole := _whole(bytes(data))) is not None:
+                    return whole
+        return None, b""
+    finally:
+        os.close(descriptor)
+
+
+def _whole(data: bytes) -> tuple[int, bytes] | None:
+    """Return status and report once an answer is there as a whole; its first line says how long it is."""
+    header, newline, text = data.partition(b"\n")
+    words = header.split()
+    if not newline or len(words) != 2 or not all(word.isdigit() for word in words) or len(header) > HEADER:
+        return None
+    return (int(words[0]), text) if len(text) == int(words[1]) else None
+
+
+def open_sockets(pid: int) -> int:
+    """Count the UDP sockets that a process holds."""
+    inodes = set()
+    try:
+        for link in (Path("/proc") / str(pid) / "fd").iterdir():
+            target = str(link.readlink())
+            if target.startswith("socket:["):
+                inodes.add(target[len("socket:[") : -1])
+        rows = (Path("/proc") / str(pid) / "net" / "udp").read_text().splitlines()[1:]
+    except OSError:
+        return 0
+    return sum(row.split()[9] in inodes for row in rows)

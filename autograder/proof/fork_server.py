@@ -1,0 +1,96 @@
+"""A fork server: a worker that has imported everything once, and forks for each submission.
+
+    python -m autograder.proof.fork_server SCRATCH ORDERS_FD REPLIES_FD
+
+Starting a worker costs about a core-second, as much as many a submission's checks. The proof grades hundreds of
+submissions of its own, so it lets each lane's share one cell, one after another. Whoever grades students' submissions
+gives each a cell of its own (`pipeline.in_own_cell`); the sandboxes around students' code are the same in both.
+
+Orders are jobs, a line each. A reply is a line, too: the child's exit status and what it wrote.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import runpy
+import subprocess
+import sys
+import traceback
+from pathlib import Path
+from typing import TextIO
+
+from autograder import probes
+from autograder.building import colcon
+from autograder.checks import suites
+from autograder.checks.suites import Suite
+from autograder.grading import worker
+from autograder.grading.job import MEMORY, Job
+from autograder.harness import launch
+from autograder.lockstep import stepper
+from autograder.probes import colcon_test
+from autograder.sandbox.launcher import warm_up
+
+OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
+# All that a submission's programs are forked from: what a child warms up ends with it.
+PRELOADS = (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD, launch.PRELOAD, colcon_test.PRELOAD)
+
+
+def serve(scratch: Path, orders: TextIO, replies: TextIO) -> None:
+    """Carry orders out until there are no more, each in a child of its own that leaves no file but MEMORY's."""
+    for line in orders:
+        said, job = scratch / "said.log", Job.from_json(line)
+        suite = suites.hidden(job.assignment)
+        assert suite.version  # read once for all, too
+        child = os.fork()
+        if child == 0:
+            _work(job, suite, said)
+        _, status = os.waitpid(child, 0)
+        reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
+        for left in (left for left in scratch.iterdir() if left.name != MEMORY):
+            subprocess.run(["rm", "-rf", "--", left], check=True)
+        replies.write(json.dumps(reply) + "\n")
+        replies.flush()
+
+
+def _work(job: Job, suite: Suite, said: Path) -> None:
+    """Be the child: grade one submission, and end as a worker that was started for it alone does."""
+    status = 1
+    try:
+        log = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(log, 1)
+        os.dup2(log, 2)
+        worker.work(job, suite)
+        status = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def _end_of(log: Path) -> str:
+    if not log.is_file():
+        return ""
+    with log.open("rb") as stream:
+        stream.seek(max(0, log.stat().st_size - OUTPUT))
+        return stream.read().decode("utf-8", errors="replace")
+
+
+def main() -> None:
+    """Serve in the folder and on the descriptors that the command line names."""
+    scratch, orders, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    worker.prepare()
+    for preload in PRELOADS:
+        warm_up(preload)
+    runpy.run_path(str(probes.PRELOAD))  # a worker needs most of that, too
+    gc.collect()
+    gc.freeze()  # what the children share is not theirs to look through
+    with os.fdopen(orders) as lines, os.fdopen(replies, "w") as answers:
+        serve(scratch, lines, answers)
+
+
+if __name__ == "__main__":
+    main()

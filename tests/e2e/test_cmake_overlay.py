@@ -1,0 +1,136 @@
+"""Interface packages that are built with the overlay are what they are without it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.building.build import build
+from autograder.building.cmake_overlay import HOSTED, LEFT_OUT, write_overlay
+from autograder.harness import Workspace
+from autograder.interfaces.generate import Job, arguments
+from autograder.layout import SOLUTIONS
+from autograder.ros import activate
+
+PACKAGE, FILE = "std_srvs", "srv/SetBool"
+BELOW = ("builtin_interfaces", "service_msgs")
+FAST, INTROSPECTION = "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"
+OPTIONS = {
+    "rosidl_generator_c": [],
+    "rosidl_generator_py": ["--typesupport-impls", f"{FAST};{INTROSPECTION}"],
+    "rosidl_typesupport_c": ["--typesupports", FAST, INTROSPECTION],
+    FAST: [],
+    INTROSPECTION: [],
+}
+
+
+def prefix_of(package: str) -> Path:
+    return next(prefix for prefix in activate().prefixes if (prefix / "share" / package).is_dir())
+
+
+def generate(generator: str, program: Path, out: Path) -> dict[str, str]:
+    """Run a generator on one service; return what it wrote, by path."""
+    out.mkdir()
+    job = Job(PACKAGE, prefix_of(PACKAGE), out, (f"{FILE}.idl",), activate().prefixes, BELOW)
+    described = job.share(PACKAGE) / FILE
+    file = arguments(job, generator, type_description_tuples=[f"{FILE}.idl:{described}.json"])
+    command = [sys.executable, str(program), "--generator-arguments-file", file, *OPTIONS[generator]]
+    environment = {**os.environ, "PYTHONHASHSEED": "0"}  # the order of some includes is that of a set
+    done = subprocess.run(command, env=environment, text=True, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    written = job.out(generator)
+    return {str(path.relative_to(written)): path.read_text() for path in written.rglob("*") if path.is_file()}
+
+
+@pytest.fixture
+def overlay(tmp_path: Path) -> Path:
+    return write_overlay(activate().prefixes, tmp_path / "overlay")
+
+
+def test_what_one_generator_has_parsed_the_others_recall_and_all_write_what_they_always_do(
+    overlay: Path, tmp_path: Path
+) -> None:
+    kept: list[int] = []
+    for generator in OPTIONS:
+        ours = generate(generator, overlay / "lib" / generator, tmp_path / f"ours_{generator}")
+        real = prefix_of(generator) / "lib" / generator / generator
+        assert ours
+        assert ours == generate(generator, real, tmp_path / f"theirs_{generator}")
+        (parsed,) = (overlay / "parsed").iterdir()
+        kept.append(parsed.stat().st_ino)
+    assert len(set(kept)) == 1  # nobody has written it anew
+
+
+def test_every_generator_of_this_ros_has_its_config(overlay: Path) -> None:
+    there = {name for name in (*HOSTED, *LEFT_OUT) if any((p / "share" / name).is_dir() for p in activate().prefixes)}
+    assert there >= set(OPTIONS)
+    assert {path.name for path in (overlay / "share").iterdir()} == there
+    assert {path.name for path in (overlay / "lib").iterdir()} == there & set(HOSTED)
+
+
+def test_where_ros_lacks_a_generator_there_is_nothing_in_its_place(tmp_path: Path) -> None:
+    assert not list(write_overlay((tmp_path / "no_ros",), tmp_path / "overlay").glob("*/*"))
+
+
+# All kinds of fields, nested in each other: what is compiled together must not meet itself.
+FIELDS = ("bool", "byte", "char", "float32", "float64", "int8", "uint8", "int64", "uint64", "string", "wstring")
+DEFINITIONS = {
+    "msg/Basics.msg": "{} f{}",
+    "msg/Arrays.msg": "{}[3] f{}",
+    "msg/Sequences.msg": "{}[] f{}",
+    "msg/Bounded.msg": "{}[<=4] f{}",
+    "msg/Nested.msg": "Basics one\nBasics[] more\nArrays[2] two\nstring<=5 brief\nstd_msgs/Header header",
+    "msg/Nothing.msg": "",
+    "srv/Ask.srv": "Basics ask\n---\nNested answer",
+    "srv/Stop.srv": "---",
+    "action/Move.action": "Basics goal\n---\nNested result\n---\nBasics[] seen",
+    "action/Count.action": "int32 order\n---\nint32[] sequence\n---\nint32[] partial",
+}
+USE = """
+import inspect
+from my_robot_interfaces import action, msg, srv
+from rclpy.serialization import deserialize_message, serialize_message
+import rclpy
+from rclpy.action import ActionClient, ActionServer
+
+plain = [kind for _, kind in inspect.getmembers(msg, inspect.isclass)]
+parts = [part for kind in (srv.Ask, srv.Stop) for part in (kind.Request, kind.Response)]
+parts += [part for kind in (action.Move, action.Count) for part in (kind.Goal, kind.Result, kind.Feedback)]
+for kind in plain + parts:
+    assert deserialize_message(serialize_message(kind()), kind) == kind(), kind
+rclpy.init()
+node = rclpy.create_node("user")
+node.create_service(srv.Ask, "ask", lambda request, response: response)
+server, client = ActionServer(node, action.Move, "move", lambda goal: None), ActionClient(node, action.Count, "count")
+node.create_publisher(msg.Nested, "nested", 1).publish(msg.Nested())
+print(len(plain), len(parts))
+"""
+
+
+def test_a_package_of_all_kinds_of_fields_is_built_and_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    name = "my_robot_interfaces"
+    package = tmp_path / "ws" / "src" / name
+    (tmp_path / "ws" / "home").mkdir(parents=True)
+    package.mkdir(parents=True)
+    shutil.copy(SOLUTIONS / name / "package.xml", package)
+    for path, text in DEFINITIONS.items():
+        (package / path).parent.mkdir(exist_ok=True)
+        lines = [text.format(kind, kind) for kind in FIELDS] if "{}" in text else [text]
+        (package / path).write_text("\n".join(lines) + "\n")
+    files = "\n".join(f'"{path}"' for path in DEFINITIONS)
+    given = (SOLUTIONS / name / "CMakeLists.txt").read_text()
+    before, _, after = given.partition("rosidl_generate_interfaces(${PROJECT_NAME}")
+    assert after
+    asked = f"rosidl_generate_interfaces(${{PROJECT_NAME}}\n{files}\n"
+    (package / "CMakeLists.txt").write_text(before + asked + after[after.index("DEPENDENCIES") :])
+    workspace = Workspace(tmp_path / "ws", activate(), tmp_path / "ws" / "home")
+    assert build(workspace, (name,)).ok
+    done = subprocess.run([sys.executable, "-c", USE], env=workspace.environment(), text=True, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["6", "10"]

@@ -1,0 +1,63 @@
+"""A student's interface packages are built by colcon once, and serve every workspace that brings the same ones."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.building.build import build
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.layout import SOLUTIONS
+from autograder.ros import activate
+
+INTERFACES, NODES = "my_robot_interfaces", "my_robot_package"
+USE = """
+import rclpy
+from my_robot_interfaces.msg import RobotStatus
+rclpy.init()
+node = rclpy.create_node("user")
+node.create_publisher(RobotStatus, "status", 1).publish(RobotStatus(robot_name="Wall-hugger"))
+rclpy.shutdown()
+"""
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "autograder" / "bundles"
+
+
+def workspace(root: Path) -> Workspace:
+    for name in (INTERFACES, NODES):
+        shutil.copytree(SOLUTIONS / name, root / "src" / name)
+    (root / "home").mkdir()
+    return Workspace(root, activate(), root / "home")
+
+
+def test_a_bundle_is_built_once_and_works_wherever_it_is_brought(tmp_path: Path, own_cache: Path) -> None:
+    first, second = workspace(tmp_path / "first"), workspace(tmp_path / "second")
+    assert build(first, (NODES,)).ok
+    assert len(list((first.scratch / "cmake-overlay" / "parsed").iterdir())) == 3  # .idl files, for all generators
+    (kept,) = own_cache.glob("*/install")
+    shutil.rmtree(first.root)  # whatever still named the first place would fail now
+    assert build(second, (NODES,)).ok
+    assert [path for path in own_cache.glob("*/install")] == [kept]
+    used = subprocess.run([sys.executable, "-c", USE], env=second.environment(), text=True, capture_output=True)
+    assert used.returncode == 0, used.stderr
+
+
+def test_a_bundle_that_does_not_build_is_the_students_error_and_is_not_kept(tmp_path: Path, own_cache: Path) -> None:
+    broken = workspace(tmp_path / "broken")
+    cmake = broken.root / "src" / INTERFACES / "CMakeLists.txt"
+    cmake.write_text(cmake.read_text().replace("find_package(rosidl_default_generators", "find_package(no_such_thing"))
+    with pytest.raises(StudentError) as caught:
+        build(broken, (NODES,))
+    assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
+    assert "no_such_thing" in caught.value.diagnosis.detail
+    assert list(own_cache.glob("*/install")) == []

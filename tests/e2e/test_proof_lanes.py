@@ -1,0 +1,98 @@
+"""Many submissions in one cell, one after another: each has the result that a cell of its own gives it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from autograder.diagnosis import Kind
+from autograder.grading import grade_submission
+from autograder.grading.job import ALL, Scope
+from autograder.grading.pipeline import LOG, RunJob, in_own_cell
+from autograder.proof.lanes import Lanes
+from autograder.proof.mutants import write_reference
+from autograder.result import Result, Status
+from autograder.sandbox import Tier
+
+ASSIGNMENT = "02_nodes"
+PACKAGE = "my_robot_package"
+SOME = Scope(only=("starts", "node_name", "publishes_cmd_vel", "threshold"))
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reference") / "tree"
+    write_reference((PACKAGE,), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A submission that is graded in no time: a package without setup.py."""
+    folder = tmp_path_factory.mktemp("half") / "tree"
+    shutil.copytree(reference, folder)
+    (folder / "src" / PACKAGE / "setup.py").unlink()
+    return folder
+
+
+def _grade(path: Path, out: Path, lanes: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
+    return grade_submission(
+        path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=lanes
+    ).result
+
+
+def _verdicts(result: Result) -> list[tuple[object, ...]]:
+    return [(check.id, check.outcome, check.message, check.points) for check in result.checks]
+
+
+def _servers() -> list[int]:
+    """Return the fork servers that run directly below this process."""
+    found = []
+    for task in Path("/proc/self/task").iterdir():
+        for child in (task / "children").read_text().split():
+            if "autograder.proof.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
+                found.append(int(child))
+    return found
+
+
+def test_one_cell_for_many_gives_the_results_of_a_cell_each(reference: Path, half: Path, tmp_path: Path) -> None:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
+        shared = [_grade(path, tmp_path / "shared", lanes, SOME) for path in (reference, half, reference)]
+        assert len(_servers()) == 1
+    assert _servers() == []
+    alone = [_grade(path, tmp_path / "alone", in_own_cell, SOME) for path in (reference, half)]
+    assert [_verdicts(result) for result in shared] == [_verdicts(alone[number]) for number in (0, 1, 0)]
+    assert [result.suite_version for result in shared[:2]] == [result.suite_version for result in alone]
+    assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+
+
+def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
+    reference: Path, half: Path, tmp_path: Path
+) -> None:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
+        failed = _grade(reference, tmp_path / "failed", lanes, Scope(only=("no_such_check",)))
+        graded = _grade(half, tmp_path / "graded", lanes)
+        assert len(_servers()) == 1
+    assert failed.status is Status.NOT_GRADED
+    assert "no record of no_such_check" in (tmp_path / "failed" / LOG).read_text()
+    assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+
+
+def test_a_server_that_dies_is_replaced_and_nothing_of_it_stays(
+    half: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with Lanes(Tier.PROCESS, 1) as lanes:
+        assert _grade(half, tmp_path / "one", lanes, tier=Tier.PROCESS).status is Status.GRADED
+        (cell,) = tmp_path.glob("cell-*")
+        assert list(cell.iterdir()) == []
+        (server,) = _servers()
+        os.kill(server, signal.SIGKILL)
+        assert _grade(half, tmp_path / "two", lanes, tier=Tier.PROCESS).status is Status.GRADED
+        assert _servers() not in ([], [server])
+    assert list(tmp_path.glob("cell-*")) == []

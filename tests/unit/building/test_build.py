@@ -1,0 +1,131 @@
+"""What a package must have before colcon is tried, and what a build may leave."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from autograder import packages
+from autograder.building import build, colcon
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+
+NAME = "my_robot_package"
+FILES = {
+    "package.xml": f"<package><name>{NAME}</name></package>",
+    "setup.py": "",
+    "setup.cfg": "",
+    f"resource/{NAME}": "",
+    f"{NAME}/__init__.py": "",
+}
+
+
+def _package(source: Path, *, without: str = "", **files: str) -> Path:
+    for name, text in {**FILES, **files}.items():
+        if name != without:
+            (source / NAME / name).parent.mkdir(parents=True, exist_ok=True)
+            (source / NAME / name).write_text(text)
+    return source
+
+
+def _fault(source: Path) -> tuple[Kind, str]:
+    with pytest.raises(StudentError) as caught:
+        build.require_packages(source, (NAME,))
+    return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
+
+
+def test_a_whole_package_is_found_by_the_name_in_its_manifest(tmp_path: Path) -> None:
+    build.require_packages(_package(tmp_path), (NAME,))
+    assert build.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})
+
+
+def test_a_missing_package_is_named_with_what_is_there(tmp_path: Path) -> None:
+    _package(tmp_path, **{"package.xml": "<package><name>my_robot</name></package>"})
+    (tmp_path / NAME).rename(tmp_path / "other")
+    kind, sentence = _fault(tmp_path)
+    assert kind is Kind.MISSING_PACKAGE
+    assert sentence == "The package my_robot_package is missing: src holds my_robot."
+
+
+def test_a_folder_without_a_manifest_is_no_package(tmp_path: Path) -> None:
+    kind, sentence = _fault(_package(tmp_path, without="package.xml"))
+    assert kind is Kind.MISSING_PACKAGE
+    assert "src/my_robot_package has no package.xml with <name>my_robot_package</name>" in sentence
+
+
+def test_no_src_at_all_and_an_empty_one_are_told_apart(tmp_path: Path) -> None:
+    assert "There is no ws/src folder" in _fault(tmp_path / "src")[1]
+    assert "src holds no package at all" in _fault(tmp_path)[1]
+
+
+@pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
+def test_a_half_written_package_is_told_what_it_lacks(tmp_path: Path, part: str) -> None:
+    kind, sentence = _fault(_package(tmp_path, without=part))
+    assert kind is Kind.HALF_WRITTEN_PACKAGE
+    assert f"src/my_robot_package has no {part}: the package is only half written" in sentence
+
+
+@pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
+def test_where_colcon_judges_a_package_may_lack_any_file_but_its_manifest(tmp_path: Path, part: str) -> None:
+    build.require_packages(_package(tmp_path, without=part), (NAME,), whole=False)
+
+
+def test_a_malformed_manifest_of_another_package_is_not_this_ones_fault(tmp_path: Path) -> None:
+    _package(tmp_path)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "package.xml").write_text("<package><name>")
+    build.require_packages(tmp_path, (NAME,))
+    with pytest.raises(StudentError, match=r"src/other/package\.xml is no well-formed XML"):
+        build.require_packages(tmp_path, ("other",))
+
+
+def test_a_cmake_package_needs_none_of_pythons_files(tmp_path: Path) -> None:
+    _package(tmp_path, without="setup.py", **{"CMakeLists.txt": ""})
+    build.require_packages(tmp_path, (NAME,))
+    assert build.find_packages(tmp_path)[0]
+
+
+@pytest.mark.parametrize(
+    "text", ["<package><name>", "", "not xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><package>&x;</package>"]
+)
+def test_a_malformed_manifest_is_named_with_its_line(tmp_path: Path, text: str) -> None:
+    kind, sentence = _fault(_package(tmp_path, **{"package.xml": text}))
+    assert kind is Kind.HALF_WRITTEN_PACKAGE
+    assert "src/my_robot_package/package.xml is no well-formed XML" in sentence
+    assert "line" in sentence
+
+
+def test_a_huge_manifest_is_not_read(tmp_path: Path) -> None:
+    kind, sentence = _fault(_package(tmp_path, **{"package.xml": " " * (packages.MAX_MANIFEST + 1)}))
+    assert kind is Kind.HALF_WRITTEN_PACKAGE
+    assert "far larger than a manifest" in sentence
+
+
+def test_links_inside_the_install_space_are_fine(tmp_path: Path) -> None:
+    install = tmp_path / "install"
+    (install / "pkg" / "lib").mkdir(parents=True)
+    (install / "pkg/lib/libx.so.1").write_text("")
+    (install / "pkg/lib/libx.so").symlink_to("libx.so.1")
+    colcon.require_contained(install)
+    assert (install / "pkg/lib/libx.so").exists()
+
+
+@pytest.mark.parametrize("link", ["install", "install/pkg", "install/pkg/lib/pkg"])
+@pytest.mark.parametrize("target", ["/", "../../../..", "loop"])
+def test_links_out_of_the_install_space_are_refused(tmp_path: Path, link: str, target: str) -> None:
+    (tmp_path / link).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / link).symlink_to((tmp_path / link).name if target == "loop" else target)
+    with pytest.raises(StudentError, match="which leads out of the install space") as caught:
+        colcon.require_contained(tmp_path / "install")
+    assert caught.value.diagnosis.kind is Kind.BUILD_FAILED
+
+
+def test_a_pipe_or_a_link_is_no_manifest(tmp_path: Path) -> None:
+    _package(tmp_path)
+    for name in ("pipe", "link"):
+        (tmp_path / name).mkdir()
+    os.mkfifo(tmp_path / "pipe" / "package.xml")
+    (tmp_path / "link" / "package.xml").symlink_to(tmp_path / NAME / "package.xml")
+    assert packages.find_packages(tmp_path) == ({NAME: tmp_path / NAME}, {})

@@ -1,0 +1,74 @@
+"""Which packages make the bundle, what it is kept under, and how its scripts find their new place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.building.interface_bundle import _key, _relocate, interface_bundle
+from autograder.harness import Workspace
+from autograder.packages import find_packages
+from autograder.ros import activate
+
+GROUP = "<member_of_group>rosidl_interface_packages</member_of_group>"
+
+
+def package(source: Path, name: str, *depends: str, interface: bool = False) -> None:
+    folder = source / name
+    folder.mkdir(parents=True)
+    needs = "".join(f"<depend>{other}</depend>" for other in depends)
+    (folder / "package.xml").write_text(f"<package><name>{name}</name>{needs}{GROUP if interface else ''}</package>")
+    if interface:
+        (folder / "CMakeLists.txt").write_text("project(x)\n")
+
+
+def bundled(source: Path, *wanted: str) -> set[str]:
+    return set(interface_bundle(find_packages(source)[0], wanted))
+
+
+def test_the_bundle_is_what_the_wanted_packages_need_of_interfaces(tmp_path: Path) -> None:
+    package(tmp_path, "robot", "robot_msgs", "rclpy")
+    package(tmp_path, "robot_msgs", "base_msgs", interface=True)
+    package(tmp_path, "base_msgs", interface=True)
+    package(tmp_path, "other_msgs", interface=True)
+    assert bundled(tmp_path, "robot") == {"robot_msgs", "base_msgs"}
+    assert bundled(tmp_path, "base_msgs") == {"base_msgs"}
+    assert bundled(tmp_path, "missing") == set()
+
+
+def test_interfaces_that_need_another_package_of_the_submission_are_no_bundle(tmp_path: Path) -> None:
+    package(tmp_path, "robot_msgs", "tool", interface=True)
+    package(tmp_path, "tool")
+    assert bundled(tmp_path, "robot_msgs") == set()
+
+
+def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
+    package(tmp_path, "one_msgs", "two_msgs", interface=True)
+    package(tmp_path, "two_msgs", "one_msgs", interface=True)
+    assert bundled(tmp_path, "one_msgs") == {"one_msgs", "two_msgs"}
+
+
+@pytest.mark.parametrize("name", ["CMakeLists.txt", "package.xml", "extra.txt"])
+def test_any_change_of_content_is_another_key(tmp_path: Path, name: str) -> None:
+    package(tmp_path / "src", "robot_msgs", interface=True)
+    workspace = Workspace(tmp_path, activate(), tmp_path / "home")
+    folders = {"robot_msgs": tmp_path / "src" / "robot_msgs"}
+    before = _key(folders, workspace)
+    assert _key(folders, workspace) == before
+    path = folders["robot_msgs"] / name
+    path.write_text((path.read_text() if path.exists() else "") + " ")
+    assert _key(folders, workspace) != before
+    assert _key(folders, replace(workspace, underlays=(tmp_path,))) != _key(folders, workspace)
+
+
+def test_scripts_name_the_new_place_and_nothing_else_is_touched(tmp_path: Path) -> None:
+    share = tmp_path / "install" / "robot_msgs" / "share" / "robot_msgs"
+    share.mkdir(parents=True)
+    (share / "package.sh").write_text("COLCON=/old/install/robot_msgs\n")
+    (share / "notes.txt").write_text("/old/install\n")
+    (share / "link.sh").symlink_to("notes.txt")
+    _relocate(tmp_path / "install" / "robot_msgs", "/old/install", str(tmp_path / "install"))
+    assert (share / "package.sh").read_text() == f"COLCON={tmp_path}/install/robot_msgs\n"
+    assert (share / "notes.txt").read_text() == "/old/install\n"

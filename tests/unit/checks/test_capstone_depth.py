@@ -1,0 +1,17 @@
+"""How deep the capstone's checks are proved."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.checks import Check, suites
+from autograder.proof.mutants import mutants
+
+CAPSTONE = "08_capstone"
+CHECKS = suites.hidden(CAPSTONE).checks
+
+
+@pytest.mark.parametrize("check", CHECKS, ids=[check.id for check in CHECKS])
+def test_each_check_fails_by_itself_in_three_flawed_versions(check: Check) -> None:
+    alone = [m.id for m in mutants(CAPSTONE) if check.id in m.loses and not m.loses & set(check.depends)]
+    assert len(alone) >= 3

@@ -1,0 +1,118 @@
+"""What runs of a student's tests mean, in sentences: for a right version, a hard one, and faulty ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, SECOND, Examination
+from autograder.checks.ch06_testing.hidden.faults import faults
+from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
+from autograder.checks.ch06_testing.support.verdicts import expect_awake, expect_passed, fit, trouble
+from autograder.harness import Workspace
+from autograder.probes.junit import Claims, Verdict
+from autograder.probes.test_reports import Report, Source
+from autograder.ros import environment
+from autograder.sandbox import Ending
+
+GOOD, BAD = Verdict.PASSED, Verdict.FAILED
+
+
+def report(*verdicts: Verdict, status: int | None = None, ending: Ending | None = None, message: str = "") -> Report:
+    names = [f"test_limits::test_{number}" for number in range(len(verdicts))]
+    said = {name: message if verdict is BAD else "" for name, verdict in zip(names, verdicts, strict=True)}
+    implied = int(BAD in verdicts) if status is None else status
+    return Report(ending, implied, Claims(dict(zip(names, verdicts, strict=True)), said), 0, "")
+
+
+ENOUGH = report(*[GOOD] * LEAST[LIMITS])
+
+
+@pytest.mark.parametrize(
+    ("run", "sentence"),
+    [
+        (None, "There is no test/test_limits.py in the package speed_guard."),
+        (report(ending=Ending.WALL_TIME), "The tests in test_limits.py do not end on the package as it is."),
+        (
+            report(GOOD, BAD, message="assert 1 == 2"),
+            "1 of 2 tests in test_limits.py fail on the package as it is: test_1: assert 1 == 2",
+        ),
+        (
+            report(BAD, message="NotImplementedError: this part of the exercise is still to be written"),
+            "test_limits.py is still to be written: test_0 raises NotImplementedError.",
+        ),
+        (report(status=5), "No test in test_limits.py ran on the package as it is."),
+        (report(status=2), "pytest cannot run test_limits.py on the package as it is; it ended with exit status 2."),
+        (report(GOOD), "Only 1 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one."),
+    ],
+    ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "few"],
+)
+def test_what_does_not_pass_on_the_package_as_it_is_is_named(run: Report | None, sentence: str) -> None:
+    assert not fit(LIMITS, run)
+    with pytest.raises(CheckFailed) as failed:
+        expect_passed(LIMITS, run)
+    assert failed.value.message == sentence
+
+
+def test_enough_tests_that_pass_are_fit() -> None:
+    expect_passed(LIMITS, ENOUGH)
+    assert fit(LIMITS, ENOUGH)
+
+
+def test_what_a_test_says_of_a_version_that_is_not_public_is_kept() -> None:
+    assert "secret" not in trouble(LIMITS, report(BAD, message="secret"), "here")
+
+
+def test_a_sleep_is_named_by_file_and_line() -> None:
+    with pytest.raises(CheckFailed, match=r"There is a sleep in test_a\.py, line 3\."):
+        expect_awake(Source("p", {"test/test_a.py": b"import time\n\ntime.sleep(1)\n", "p/a.py": b"sleep(1)"}))
+    expect_awake(Source("p", {"p/a.py": b"sleep(1)", "test/notes.txt": b"sleep(1)"}))
+
+
+@pytest.fixture
+def examination(tmp_path: Path) -> Examination:
+    """An examination whose runs are given."""
+    made = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
+    made.__dict__["trial"] = {LIMITS: ENOUGH}
+    made.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
+        (LIMITS, what): ENOUGH for what in (SECOND, BACKWARDS)
+    }
+    return made
+
+
+def test_objecting_to_all_faults_of_a_line_earns_it(examination: Examination) -> None:
+    examination.expect_objection("unknown", "the promise.")
+    examination.expect_right(LIMITS, SECOND)
+    assert examination.endless() == []
+
+
+def test_objecting_to_some_faults_earns_a_part_and_names_the_line(examination: Examination) -> None:
+    examination.__dict__["runs"][LIMITS, "nan_is_clear"] = ENOUGH
+    with pytest.raises(CheckFailed) as failed:
+        examination.expect_objection("unknown", "the promise.")
+    assert failed.value.fraction == 0.5
+    assert failed.value.message == (
+        "1 of 2 faulty versions that break this line of the contract pass all tests in test_limits.py: the promise."
+    )
+
+
+def test_a_test_that_fails_on_right_versions_too_objects_to_nothing(examination: Examination) -> None:
+    examination.__dict__["trial"] = {LIMITS: report(BAD)}
+    with pytest.raises(CheckFailed):
+        examination.expect_objection("unknown", "the promise.")
+
+
+def test_a_run_that_has_to_be_stopped_objects_and_is_endless(examination: Examination) -> None:
+    examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(ending=Ending.WALL_TIME)
+    examination.expect_objection("unknown", "the promise.")
+    assert examination.endless() == [LIMITS]
+
+
+def test_a_difficulty_that_a_file_does_not_bear_is_named(examination: Examination) -> None:
+    examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret")
+    examination.expect_right(LIMITS, SECOND)
+    with pytest.raises(CheckFailed, match=r"test_limits\.py fail when they run in the opposite") as failed:
+        examination.expect_right(LIMITS, SECOND, BACKWARDS)
+    assert "secret" not in failed.value.message

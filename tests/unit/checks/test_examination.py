@@ -1,0 +1,74 @@
+"""Which runs of a student's tests are made for which checks."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.checks.ch06_testing.hidden.examination import FILES, Examination
+from autograder.checks.ch06_testing.hidden.faults import faults
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
+from autograder.harness import Workspace
+from autograder.probes import test_runs
+from autograder.probes.junit import Claims, Verdict
+from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.ros import environment
+
+ALL_PASS = Report(None, 0, Claims({f"test::{number}": Verdict.PASSED for number in range(8)}), 0, "")
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    shutil.copytree(layout.SOLUTIONS / "speed_guard", tmp_path / "ws/src/speed_guard")
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+@pytest.fixture
+def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
+    """What was ordered; every run is said to pass."""
+    wanted: list[TestRun] = []
+
+    def note(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        wanted.extend(more)
+        return [ALL_PASS] * len(more)
+
+    monkeypatch.setattr(test_runs, "run", note)
+    return wanted
+
+
+def test_one_check_is_worth_the_runs_that_it_and_its_dependencies_ask_for(
+    workspace: Workspace, ordered: list[TestRun]
+) -> None:
+    examination = Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow")))
+    assert set(examination.runs) == {(LIMITS, what) for what in ("second", "backwards", "step", "smooth")}
+    assert {order.files for order in ordered} == {(LIMITS,)}
+    assert len(ordered) == 5
+
+
+def test_all_checks_of_runs_meet_every_fault(workspace: Workspace, ordered: list[TestRun]) -> None:
+    examination = Examination(workspace, 1, frozenset(FILES))
+    assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {"second", "backwards"}
+    assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
+    assert [order.files[0] for order in ordered if order.overheard] == [GUARD]
+
+
+def test_a_run_is_the_same_whatever_else_is_run(workspace: Workspace, ordered: list[TestRun]) -> None:
+    def versions(*checks: str) -> list[TestRun]:
+        ordered.clear()
+        assert Examination(workspace, 1, frozenset(checks)).runs
+        return list(ordered)
+
+    few = versions("limits_pass", "limits_right", "stop")
+    many = versions("limits_pass", "limits_right", "stop", "slow", "refused")
+    assert all(order in many for order in few)
+
+
+def test_right_and_faulty_versions_are_mixed_anew_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
+    mixed = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
+    assert len(mixed) == 5
+    assert len(ordered) > 5 * len(faults())

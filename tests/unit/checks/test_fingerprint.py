@@ -1,0 +1,113 @@
+"""The version of a suite: it changes with every file that a grading reads, and with no other."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.checks import suites
+from autograder.fingerprint import digest, files
+
+CHAPTER = "02_nodes"
+READ = {
+    "autograder/workspace.py": "",
+    "autograder/harness/grader_node.py": "",
+    "autograder/checks/suites.py": "",
+    "autograder/checks/ch02_nodes/conftest.py": "",
+    "autograder/checks/ch02_nodes/hidden/__init__.py": "",
+    "autograder/checks/ch02_nodes/hidden/graph.py": "from autograder.checks.ch03_interfaces.support import reading\n",
+    "autograder/checks/ch02_nodes/hidden/inputs.yaml": "",
+    "autograder/checks/ch02_nodes/hidden/versions/second/guard.py": "",
+    "autograder/checks/ch02_nodes/support/robot.py": "from autograder.checks import ch01_package_structure\n",
+    "autograder/checks/ch03_interfaces/support/reading.py": "",
+    "autograder/checks/ch01_package_structure/hidden/growth.py": "",
+    "sim/world.py": "",
+    "assets/worlds/lab.yaml": "",
+    "chapters/02_nodes/02_nodes.ipynb": "{}",
+    "chapters/02_nodes/ws/src/chapter_robot/setup.py": "",
+    "solutions/speed_guard/setup.py": "",
+}
+NOT_READ = (
+    "autograder/cli/grade.py",
+    "autograder/__pycache__/checks.pyc",
+    "autograder/checks/ch02_nodes/mutants.yaml",
+    "autograder/checks/ch02_nodes/survivors.yaml",
+    "autograder/checks/ch02_nodes/variants/other/node.py",
+    "autograder/checks/ch02_nodes/.cache/x",
+    "autograder/checks/ch05_parameters/hidden/files.py",
+    "autograder/checks/ch05_parameters/support/robot.py",
+    "chapters/03_interfaces/03_interfaces.ipynb",
+    "chapters/02_nodes/figures/sector.svg",
+    "docs/checks.md",
+    "solutions/my_robot_package/setup.py",
+)
+READS = ("solutions/speed_guard",)
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Path:
+    """A course with few files."""
+    for name, text in READ.items():
+        _write(tmp_path / name, text)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_file_that_a_grading_reads_changes_the_version(name: str, course: Path) -> None:
+    before = digest(CHAPTER, READS, course)
+    with (course / name).open("a") as stream:
+        stream.write("# more\n")
+    assert digest(CHAPTER, READS, course) != before
+
+
+def test_a_new_file_of_the_suite_changes_the_version(course: Path) -> None:
+    before = digest(CHAPTER, READS, course)
+    _write(course / "autograder/checks/ch02_nodes/hidden/more.json", "")
+    assert digest(CHAPTER, READS, course) != before
+
+
+@pytest.mark.parametrize("name", NOT_READ)
+def test_a_file_that_no_grading_reads_does_not(name: str, course: Path) -> None:
+    before = digest(CHAPTER, READS, course)
+    _write(course / name, "x")
+    assert digest(CHAPTER, READS, course) == before
+
+
+def test_a_suites_version_is_the_digest_of_all_that_it_reads() -> None:
+    suite = suites.hidden("06_testing")
+    assert suite.version == digest("06_testing", ["solutions/speed_guard"]) != digest("06_testing")
+    assert len(suite.version) == 12
+
+
+def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
+    code = (
+        "import json, sys\n"
+        "import autograder.grading.worker, autograder.grading.extract, autograder.building.interface_bundle\n"
+        "from autograder.checks import suites\n"
+        "[suites.hidden(name) for name in suites.graded()]\n"
+        "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
+        "print(json.dumps([place for place in places if place]))\n"
+    )
+    printed = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=layout.ROOT)
+    homes = (layout.ROOT / "autograder", layout.ROOT / "sim")
+    modules = {Path(place) for place in json.loads(printed.stdout)}
+    imported = {module for module in modules if any(home in module.parents for home in homes)}
+    known = {path for name in suites.graded() for path in files(name, suites.hidden(name).reads)}
+    assert len(imported) > 100
+    assert imported - known == set()
+
+
+def test_what_a_suite_reads_besides_is_there() -> None:
+    reads = [layout.ROOT / path for name in suites.graded() for path in suites.hidden(name).reads]
+    assert layout.SOLUTIONS / "speed_guard" in reads
+    assert all(path.exists() for path in reads)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)

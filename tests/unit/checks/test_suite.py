@@ -1,0 +1,88 @@
+"""Suites are read whole, in order, or refused by name."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import suites
+from autograder.exceptions import GraderError, UsageError
+
+HEAD = "from autograder.checks import check\n"
+KIND = suites.HIDDEN
+_NUMBERS = itertools.count()
+Home = Callable[..., str]
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Home:
+    """Write a package of checks with one hidden suite, of 01_tiny, from modules given as text; return its name."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def write(modules: str = '("first", "second")', **texts: str) -> str:
+        name = f"suites_{next(_NUMBERS)}"
+        folder = tmp_path / name / "ch01_tiny" / KIND
+        folder.mkdir(parents=True)
+        for package in (folder.parent, folder.parent.parent):
+            (package / "__init__.py").write_text("")
+        (folder / "__init__.py").write_text(f'PACKAGES = ("tiny",)\nMODULES = {modules}\n')
+        for module, text in texts.items():
+            (folder / f"{module}.py").write_text(HEAD + textwrap.dedent(text))
+        return name
+
+    return write
+
+
+def _check(name: str, depends: str = "()", points: float = 1, group: str = "g") -> str:
+    return f"""
+@check(points={points}, group="{group}", depends={depends})
+def test_{name}():
+    '''It is {name}.'''
+"""
+
+
+def test_checks_stand_in_the_order_of_modules_and_of_lines(home: Home) -> None:
+    name = home(first=_check("b", points=2) + _check("a", group="h"), second=_check("c", '("b",)', 0.5))
+    read = suites.read(name, "01_tiny", KIND)
+    assert [check.id for check in read.checks] == ["b", "a", "c"]
+    assert [path.name for path in read.files] == ["first.py", "second.py"]
+    assert (read.packages, read.max_score, read.groups) == (("tiny",), 3.5, {"g": 2.5, "h": 1.0})
+    assert suites.names(name, KIND) == ["01_tiny"]
+
+
+def test_an_unknown_assignment_is_a_wrong_call_that_names_the_known_ones(home: Home) -> None:
+    with pytest.raises(UsageError, match="no hidden checks for '09_none'; there are for: 01_tiny"):
+        suites.read(home(modules="()"), "09_none", KIND)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "reason"),
+    [
+        (_check("a"), _check("a"), "two checks are called 'a'"),
+        (_check("a", '("b",)'), _check("b"), r"'a' depends on \['b'\], which must stand before it"),
+        (_check("a", '("a",)'), _check("b"), r"'a' depends on \['a'\]"),
+        (_check("a"), _check("b", '("none",)'), r"depends on \['none'\]"),
+        (_check("a", points=0), _check("b"), "points must be above 0"),
+    ],
+)
+def test_a_suite_that_breaks_the_contract_is_refused(home: Home, first: str, second: str, reason: str) -> None:
+    with pytest.raises(GraderError, match=reason):
+        suites.read(home(first=first, second=second), "01_tiny", KIND)
+
+
+def test_an_import_that_fails_inside_a_suite_is_not_taken_for_a_missing_suite(home: Home) -> None:
+    with pytest.raises(ModuleNotFoundError, match="no_such_module"):
+        suites.read(home(first="import no_such_module", second=""), "01_tiny", KIND)
+
+
+def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
+    assert "02_nodes" in suites.graded()
+    for name in suites.graded():
+        loaded = suites.hidden(name)
+        assert len(loaded.checks) >= 15
+        assert all(check.hints for check in loaded.checks)
+        assert suites.visible(name).packages == loaded.packages

@@ -1,0 +1,153 @@
+"""A committed notebook has no outputs, is valid for nbgrader, and can be read by everyone."""
+
+from __future__ import annotations
+
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_output
+
+from autograder.course.notebook_rules import broken_rules, images_without_alt
+
+from .notebooks import code, grade, manual, notebook, prose, solution
+
+
+def messages(made: NotebookNode) -> str:
+    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", made))
+
+
+def test_a_clean_notebook_has_no_findings() -> None:
+    made = notebook(
+        prose("# Title\n\n## Part\n\n### Step\n\n![a robot](robot.png)\n\n```\n# no heading\n```", "title"),
+        prose("## Next\n\n<img src='x.svg' alt='a wall'>", "next"),
+        code("# BEGIN SOLUTION\n# END SOLUTION", "s", nbgrader=solution("s")),
+        code("grade()", "g", nbgrader=grade("g", 1), course={"group": "graph"}),
+    )
+    assert messages(made) == ""
+
+
+ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
+SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
+
+
+def test_marks_for_a_person_are_no_headings_and_need_no_group() -> None:
+    made = notebook(
+        prose("# Title", "title"),
+        prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
+        prose(ANSWER, "so", nbgrader=manual("so", 2)),
+    )
+    assert messages(made) == ""
+
+
+def executed() -> NotebookNode:
+    cell = code("1", "run")
+    cell.execution_count = 1
+    cell.outputs = [new_output("execute_result", {"text/plain": "1"}, execution_count=1)]
+    return notebook(prose("# T", "t"), cell)
+
+
+def old_schema() -> NotebookNode:
+    return notebook(prose("# T", "t"), code("", "g", nbgrader={**grade("g", 1), "schema_version": 2}))
+
+
+def twice_the_id() -> NotebookNode:
+    made = notebook(prose("# T", "same"), prose("text", "other"))
+    made.cells[1].id = "same"
+    return made
+
+
+def half_a_cell() -> NotebookNode:
+    made = notebook(code("", "half"))
+    del made.cells[0]["source"]
+    return made
+
+
+def other_kernel() -> NotebookNode:
+    made = notebook(prose("# T", "t"))
+    made.metadata.kernelspec.name = "ros"
+    return made
+
+
+def old_format() -> NotebookNode:
+    made = notebook(prose("# T", "t"))
+    made.nbformat_minor = 4
+    del made.cells[0]["id"]
+    return made
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (executed(), "cell 'run': has outputs"),
+        (executed(), "cell 'run': has an execution count"),
+        (old_schema(), "cell 'g': its nbgrader metadata must say schema_version 3"),
+        (twice_the_id(), "cell 'same': more than one cell has this id"),
+        (other_kernel(), "kernelspec must be python3"),
+        (old_format(), "is nbformat 4.4; the course uses 4.5"),
+        (notebook(prose("text", "t")), "has no title"),
+        (notebook(prose("## Part", "p")), "cell 'p': the first heading of a notebook is its title"),
+        (notebook(prose("# T", "t"), prose("# U", "u")), "cell 'u': a notebook has one title"),
+        (notebook(prose("# T\n### U", "t")), "a heading of level 3 follows one of level 1"),
+        (notebook(prose("# T\n![](robot.png)", "t")), "the image robot.png has no alternative text"),
+        (
+            notebook(prose("# T\n<img src='x.svg' alt=''>", "t")),
+            "the image <img src='x.svg' alt=''> has no alternative",
+        ),
+        (
+            notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1))),
+            "cell 'g': a grade cell is locked and names its group",
+        ),
+        (
+            notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1), course={"group": 3})),
+            '"group" must name a group of checks, not be 3',
+        ),
+        (
+            notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),
+            "cell 's': holds a solution but is not marked",
+        ),
+        (
+            notebook(*(code("", i, nbgrader=grade("same", 1)) for i in "ab")),
+            "its nbgrader metadata is not valid: Duplicate grade id: same",
+        ),
+        (half_a_cell(), "is not valid nbformat"),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader={**manual("m", 1), "locked": True})),
+            "cell 'm': students answer in this cell: it must not be locked",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 0))),
+            "cell 'm': a manually graded cell needs points above 0",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 1), course={"group": "graph"})),
+            "a person gives its points: it cannot stand for the group 'graph' of checks, too",
+        ),
+        (
+            notebook(prose("# T", "t"), prose("So.", "m", nbgrader=manual("m", 1))),
+            "cell 'm': a manually graded cell holds a model answer, between the solution marks",
+        ),
+        (
+            notebook(prose("# T", "t"), prose(SCHEME, "s")),
+            "cell 's': holds a mark scheme but is not locked",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named(made: NotebookNode, message: str) -> None:
+    assert message in messages(made)
+
+
+@pytest.mark.parametrize(
+    ("data", "metadata", "mute"),
+    [
+        ({"text/plain": "1"}, {}, False),
+        ({"image/png": "..."}, {}, True),
+        ({"image/png": "..."}, {"image/png": {"alt": "a track"}}, False),
+        ({"text/html": "<img src='x'>"}, {}, True),
+        ({"text/html": "<img alt='a track' src='x'>", "image/png": "..."}, {}, False),
+    ],
+)
+def test_a_figure_without_alternative_text_is_found(
+    data: dict[str, str], metadata: dict[str, object], mute: bool
+) -> None:
+    cell = code("show()", "figure")
+    cell.outputs = [new_output("display_data", data, metadata=metadata)]
+    assert images_without_alt(notebook(cell)) == (["figure"] if mute else [])

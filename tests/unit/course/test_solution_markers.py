@@ -1,0 +1,100 @@
+"""A release keeps the contracts and loses the answers."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from autograder.course import CODE_STUB, CourseError, with_holes, without_licence
+from autograder.course.solution_markers import without_marks
+
+MODULE = '''"""A module."""
+
+import math
+
+
+def half(x: float) -> float:
+    """Return half of x."""
+    # The answer.
+    return x / 2
+
+
+class Robot:
+    """A robot."""
+
+    def __init__(
+        self,
+    ):
+        """Start."""
+        self.x = math.inf
+
+    def move(self):
+        """
+        Move.
+
+        Twice.
+        """
+        for _ in range(2):
+            self.x = half(
+                self.x
+            )
+
+    def look(self):
+        """Look."""
+        return self.x
+'''
+
+
+def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
+    marked = with_holes(MODULE, ["half", "Robot.move"])
+    assert '    """Return half of x."""\n    # BEGIN SOLUTION\n    # The answer.\n    return x / 2\n    #' in marked
+    assert (
+        '        """\n        # BEGIN SOLUTION\n        for _ in range(2):\n            self.x = half(\n'
+        "                self.x\n            )\n        # END SOLUTION\n\n    def look" in marked
+    )
+    assert marked.count("# BEGIN SOLUTION") == marked.count("# END SOLUTION") == 2
+
+
+def test_taking_the_marks_away_gives_the_source_back() -> None:
+    assert without_marks(with_holes(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
+
+
+def test_the_marked_source_means_the_same() -> None:
+    assert ast.dump(ast.parse(with_holes(MODULE, ["half", "Robot.look"]))) == ast.dump(ast.parse(MODULE))
+
+
+def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
+    with pytest.raises(NotImplementedError, match="still to be written"):
+        exec(CODE_STUB)
+
+
+@pytest.mark.parametrize(
+    ("text", "hide", "message"),
+    [
+        (MODULE, ["Robot.mvoe"], r"function 'Robot.mvoe' occurs 0 times in the source; its functions: Robot.__init__"),
+        ("def f():\n    '''F.'''\n    return 1\n" * 2, ["f"], "occurs 2 times"),
+        ("def f():\n    return 1\n", ["f"], "has no docstring"),
+        ("def f():\n    '''F.'''\n", ["f"], "nothing to hide"),
+        ("def f(): '''F.'''; return 1\n", ["f"], "nothing to hide"),
+        ("def f(:\n", ["f"], "does not parse"),
+        ("# BEGIN SOLUTION\n", [], "already holds solution marks"),
+        (
+            "def f():\n    '''F.'''\n    def g():\n        '''G.'''\n        return 1\n    return g\n",
+            ["f", "f.g"],
+            "inside each other",
+        ),
+    ],
+)
+def test_what_cannot_be_hidden_is_named(text: str, hide: list[str], message: str) -> None:
+    with pytest.raises(CourseError, match=message):
+        with_holes(text, hide)
+
+
+def test_the_licence_stays_in_the_repository() -> None:
+    licence = "# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
+    assert without_licence(licence + MODULE) == MODULE
+
+
+def test_a_comment_that_is_no_licence_stays() -> None:
+    assert without_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"

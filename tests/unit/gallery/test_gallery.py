@@ -1,0 +1,25 @@
+"""What checks show is kept with its fingerprint, or not at all where nobody will look."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autograder.gallery import Gallery
+from sim import Command, Simulation, World, box, run
+
+RECORDING = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)
+
+
+def test_a_picture_is_saved_under_the_check_with_the_fingerprint_of_the_run(tmp_path: Path) -> None:
+    gallery = Gallery(tmp_path / "out")
+    gallery.of("touches_nothing").track("track", RECORDING, "The robot drives on.")
+    (artifact,) = gallery.artifacts
+    assert (artifact.check, artifact.sha256) == ("touches_nothing", RECORDING.sha256())
+    assert (tmp_path / "out" / artifact.name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_closed_gallery_leaves_nothing(tmp_path: Path) -> None:
+    gallery = Gallery(tmp_path / "out", closed=True)
+    gallery.of("touches_nothing").track("track", RECORDING, "The robot drives on.")
+    assert gallery.artifacts == []
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,88 @@
+"""What a busy machine does to programs is seen, and what it did not do is not."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+from types import SimpleNamespace
+
+import pytest
+
+from autograder.harness import cpu_starvation
+
+SECONDS = 60.0  # for what must happen
+
+
+@pytest.fixture(autouse=True)
+def forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Begin with nothing held up."""
+    monkeypatch.setattr(cpu_starvation, "_longest", 0.0)
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """A clock that shows what it is told, one value after the other."""
+    instants: list[float] = []
+    monkeypatch.setattr(cpu_starvation, "time", SimpleNamespace(monotonic=lambda: instants.pop(0)))
+    return instants
+
+
+@pytest.mark.parametrize(
+    ("took", "seconds", "late"),
+    [(0.1, 0.1, 0.0), (0.05, 0.1, 0.0), (0.7, 0.1, 0.6), (0.3, -0.5, 0.3)],
+    ids=["in time", "early", "late", "nothing to wait for"],
+)
+def test_who_comes_back_late_was_held_up(clock: list[float], took: float, seconds: float, late: float) -> None:
+    clock += [5.0, 5.0 + took]
+    with cpu_starvation.watch([], seconds):
+        pass
+    assert cpu_starvation.longest() == pytest.approx(late)
+
+
+def test_the_longest_is_kept(clock: list[float]) -> None:
+    for late in (0.2, 0.5, 0.3):
+        clock += [0.0, late]
+        with cpu_starvation.watch([], 0.0):
+            pass
+    assert cpu_starvation.longest() == 0.5
+
+
+def test_a_process_that_has_ended_was_not_held_up(clock: list[float]) -> None:
+    with subprocess.Popen([sys.executable, "-c", ""]) as ended:
+        pass
+    clock += [0.0, 0.0]
+    with cpu_starvation.watch([ended.pid], 0.0):
+        pass
+    assert cpu_starvation.longest() == 0.0
+
+
+def spinning(nice: int, cpu: int) -> subprocess.Popen[bytes]:
+    """Start a process that keeps one processor busy."""
+    code = f"import os; os.sched_setaffinity(0, [{cpu}]); os.nice({nice}); print(flush=True)\nwhile True: pass"
+    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+
+
+@pytest.fixture
+def crowded() -> Iterator[subprocess.Popen[bytes]]:
+    """A process that shares a processor with another, which goes first."""
+    cpu = min(os.sched_getaffinity(0))
+    with ExitStack() as stack:
+        processes = [stack.enter_context(spinning(nice, cpu)) for nice in (19, 0)]
+        for process in processes:
+            stack.callback(process.kill)
+        for process in processes:
+            assert process.stdout is not None
+            process.stdout.readline()
+        yield processes[0]
+
+
+def test_a_process_that_another_keeps_from_its_processor_is_held_up(crowded: subprocess.Popen[bytes]) -> None:
+    deadline = time.monotonic() + SECONDS
+    while cpu_starvation.longest() < 0.2:
+        assert time.monotonic() < deadline
+        with cpu_starvation.watch([crowded.pid], SECONDS), suppress(subprocess.TimeoutExpired):
+            crowded.wait(0.5)  # less than what is watched for: this is not late itself

@@ -1,0 +1,50 @@
+"""When everyone in a harness has met everyone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from autograder.harness.grader_node import GraderNode
+from autograder.harness.matching import connected
+from autograder.lockstep.protocol import Description
+
+SCAN, ASK = "/scan T reliable volatile", "/ask T request"
+
+
+@pytest.fixture
+def grader_node(ros_domain: int) -> Iterator[GraderNode]:
+    made = GraderNode(ros_domain)
+    yield made
+    made.close()
+
+
+def _program(writers: int | None = None, readers: int | None = None, ready: bool | None = None, serves: bool = False):  # type: ignore[no-untyped-def]
+    return Description(
+        writers=() if writers is None else ((SCAN, writers),),
+        readers=() if readers is None else (((SCAN,), readers),),
+        clients=() if ready is None else ((ASK, ready),),
+        servers=(ASK,) if serves else (),
+    )
+
+
+@pytest.mark.parametrize(
+    ("programs", "met"),
+    [
+        ([], True),
+        ([_program(writers=0)], True),
+        ([_program(writers=0), _program(readers=1)], False),
+        ([_program(writers=1), _program(readers=0)], False),
+        ([_program(writers=1), _program(readers=1)], True),
+        ([_program(writers=1), _program(readers=1), _program(readers=1)], False),
+        ([_program(writers=1), _program(writers=1), _program(readers=2)], True),
+        ([_program(ready=False)], True),
+        ([_program(ready=False), _program(serves=True)], False),
+        ([_program(ready=True), _program(serves=True)], True),
+    ],
+)
+def test_programs_have_met_when_each_sees_all_that_it_is_joined_to(
+    programs: list[Description], met: bool, grader_node: GraderNode
+) -> None:
+    assert connected(programs, grader_node) is met

@@ -1,0 +1,317 @@
+"""What may be handed in, and what is refused with a sentence."""
+
+from __future__ import annotations
+
+import os
+import stat
+import struct
+import zipfile
+from collections.abc import Callable
+from pathlib import Path, PurePosixPath
+
+import pytest
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
+
+from autograder import intake
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError, UsageError
+from autograder.intake import Entry, arrange, take, take_source, write_tree
+
+CHAPTER = "02_nodes"
+TREE = {
+    f"{CHAPTER}.ipynb": b"{}",
+    "notes.txt": b"mine",
+    "ws/src/my_robot_package/package.xml": b"<package/>",
+    "ws/src/my_robot_package/setup.py": b"setup()\r\n",
+}
+SOURCE = {"my_robot_package/package.xml", "my_robot_package/setup.py"}
+
+
+def _write(root: Path, files: dict[str, bytes]) -> Path:
+    for name, data in files.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_bytes(data)
+    return root
+
+
+def _zip(path: Path, files: dict[str, bytes], prefix: str = "") -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(prefix + name, data)
+    return path
+
+
+def _names(entries: tuple[Entry, ...]) -> set[str]:
+    return {str(entry.path) for entry in entries}
+
+
+def _refused(path: Path) -> tuple[Kind, str]:
+    with pytest.raises(StudentError) as caught:
+        take(path, CHAPTER)
+    return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
+
+
+# Every layout.
+
+
+@pytest.mark.parametrize("layout", ["folder", "folder in a folder", "zip", "zip with a top folder", "zip by two"])
+def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layout: str) -> None:
+    if layout.startswith("folder"):
+        root = tmp_path / "alice"
+        _write(root / CHAPTER if "in a" in layout else root, TREE)
+        taken = take(root, CHAPTER)
+    else:
+        prefix = {"zip": "", "zip with a top folder": f"{CHAPTER}/", "zip by two": f"alice/{CHAPTER}/"}[layout]
+        taken = take(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
+    assert taken.notebook == b"{}"
+    assert _names(taken.source) == SOURCE
+    assert _names(taken.extra) == {"notes.txt"}
+
+
+def test_a_lone_notebook_may_have_any_name(tmp_path: Path) -> None:
+    (tmp_path / "my answer.ipynb").write_bytes(b"{}")
+    taken = take(tmp_path / "my answer.ipynb", CHAPTER)
+    assert (taken.notebook, taken.source, taken.extra) == (b"{}", (), ())
+
+
+def test_a_bare_source_tree_has_no_notebook(tmp_path: Path) -> None:
+    taken = take(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
+    assert taken.notebook is None
+    assert _names(taken.source) == {"pkg/package.xml"}
+
+
+def test_ws_src_is_preferred_to_a_folder_called_src_beside_it(tmp_path: Path) -> None:
+    taken = take(_write(tmp_path / "bob", {"ws/src/pkg/a": b"1", "src/pkg/a": b"2"}), CHAPTER)
+    assert [(str(entry.path), entry.data) for entry in taken.source] == [("pkg/a", b"1")]
+
+
+def test_what_colcon_and_python_leave_is_never_looked_at(tmp_path: Path) -> None:
+    left = ["ws/build/x", "ws/install/lib/x", "ws/log/x", "ws/src/my_robot_package/__pycache__/x.pyc", ".git/config"]
+    plain, full = _write(tmp_path / "plain", TREE), _write(tmp_path / "full", {**TREE, **dict.fromkeys(left, b"x")})
+    (full / "ws" / "install" / "link").symlink_to("/etc/passwd")
+    assert take(full, CHAPTER) == take(plain, CHAPTER)
+    assert take(_zip(tmp_path / "f.zip", {**TREE, **dict.fromkeys(left, b"x")}), CHAPTER) == take(plain, CHAPTER)
+
+
+def test_what_macos_puts_into_archives_is_ignored(tmp_path: Path) -> None:
+    files = {**TREE, "__MACOSX/ws/src/my_robot_package/._setup.py": b"\0\0"}
+    assert _names(take(_zip(tmp_path / "a.zip", files), CHAPTER).extra) == {"notes.txt"}
+
+
+def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    for folder in (tmp_path / "empty", _write(tmp_path / "essay", {"essay.pdf": b"%PDF"})):
+        kind, sentence = _refused(folder)
+        assert kind is Kind.NOTHING_SUBMITTED
+        assert "neither 02_nodes.ipynb nor a ws/src folder" in sentence
+
+
+def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="nobody: there is no such file or folder"):
+        take(tmp_path / "nobody", CHAPTER)
+
+
+def test_executable_files_stay_executable(tmp_path: Path) -> None:
+    root = _write(tmp_path / "bob", {"src/pkg/run": b"#!/bin/sh", "src/pkg/data": b""})
+    (root / "src/pkg/run").chmod(0o755)
+    write_tree(take(root, CHAPTER).source, tmp_path / "out")
+    assert [os.access(tmp_path / "out/pkg" / name, os.X_OK) for name in ("run", "data")] == [True, False]
+
+
+def test_the_digest_is_of_paths_and_contents_whatever_the_packing(tmp_path: Path) -> None:
+    folder = take(_write(tmp_path / "a", TREE), CHAPTER).sha256
+    assert take(_zip(tmp_path / "a.zip", TREE), CHAPTER).sha256 == folder
+    assert take(_write(tmp_path / "b", {**TREE, "notes.txt": b"yours"}), CHAPTER).sha256 != folder
+
+
+def test_windows_line_ends_spaces_and_unicode_are_kept_as_they_are(tmp_path: Path) -> None:
+    files = {"src/mein Paket/größe 漢字.py": b"a = 1\r\n"}
+    taken = take(_zip(tmp_path / "a.zip", files), CHAPTER)
+    write_tree(taken.source, tmp_path / "out")
+    assert (tmp_path / "out/mein Paket/größe 漢字.py").read_bytes() == b"a = 1\r\n"
+
+
+def test_a_name_that_is_no_utf_8_is_kept(tmp_path: Path) -> None:
+    name = os.fsdecode(b"caf\xe9.txt")
+    root = _write(tmp_path / "bob", {f"src/pkg/{name}": b"x"})
+    write_tree(take(root, CHAPTER).source, tmp_path / "out")
+    assert (tmp_path / "out/pkg" / name).read_bytes() == b"x"
+
+
+# What is refused.
+
+
+@pytest.mark.parametrize(
+    "name", ["../evil", "ws/../../evil", "/etc/cron.d/evil", "..\\evil", "C:\\evil", "\\\\host\\evil"]
+)
+def test_an_archive_that_points_outside_is_not_opened(tmp_path: Path, name: str) -> None:
+    kind, sentence = _refused(_zip(tmp_path / "a.zip", {**TREE, name: b"x"}))
+    assert kind is Kind.UNSAFE_ARCHIVE
+    assert "points outside the archive" in sentence
+
+
+def _special(path: Path, mode: int) -> Path:
+    info = zipfile.ZipInfo("ws/src/pkg/odd")
+    info.external_attr = mode << 16
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(info, "/etc/passwd")
+    return path
+
+
+@pytest.mark.parametrize("kind", [stat.S_IFLNK, stat.S_IFIFO, stat.S_IFCHR, stat.S_IFBLK, stat.S_IFSOCK])
+def test_links_pipes_and_devices_in_an_archive_are_refused(tmp_path: Path, kind: int) -> None:
+    found, sentence = _refused(_special(tmp_path / "a.zip", kind | 0o777))
+    assert found is Kind.UNSAFE_ARCHIVE
+    assert "ws/src/pkg/odd is no ordinary file" in sentence
+
+
+@pytest.mark.parametrize(
+    ("make", "what"),
+    [
+        (lambda path: path.symlink_to("/etc/passwd"), "a symbolic link"),
+        (lambda path: path.symlink_to("/", target_is_directory=True), "a symbolic link"),
+        (lambda path: path.symlink_to(path), "a symbolic link"),
+        (os.mkfifo, "no ordinary file"),
+    ],
+)
+def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[[Path], None], what: str) -> None:
+    make(_write(tmp_path / "bob", TREE) / "ws/src/odd")
+    kind, sentence = _refused(tmp_path / "bob")
+    assert kind is Kind.UNSAFE_ARCHIVE
+    assert f"ws/src/odd is {what}" in sentence
+    assert "without links" in sentence
+
+
+def test_too_many_too_deep_and_too_long_are_refused(tmp_path: Path) -> None:
+    many = {f"src/pkg/{n}": b"" for n in range(intake.MAX_FILES + 1)}
+    deep = {"src/" + "d/" * intake.MAX_DEPTH + "x": b""}
+    long = {"src/" + "漢" * (intake.MAX_NAME // 3): b""}  # 3 bytes each
+    for files, why in ((many, "more than 2000 files"), (deep, "nested more than 16 deep"), (long, "longer than 200")):
+        kind, sentence = _refused(_zip(tmp_path / "a.zip", files))
+        assert kind is Kind.UNSAFE_ARCHIVE
+        assert why in sentence
+    assert "more than 2000 files" in _refused(_write(tmp_path / "many", many))[1]
+    assert "nested more than 16 deep" in _refused(_write(tmp_path / "deep", deep))[1]
+
+
+def test_folders_nested_without_a_file_are_refused_too(tmp_path: Path) -> None:
+    (tmp_path / "bob" / Path(*["d"] * 40)).mkdir(parents=True)
+    assert "nested more than 16 deep" in _refused(tmp_path / "bob")[1]
+
+
+def test_a_file_that_is_too_large_is_never_read(tmp_path: Path) -> None:
+    root = _write(tmp_path / "bob", TREE)
+    with (root / "ws/src/huge").open("wb") as stream:
+        stream.truncate(intake.MAX_FILE + 1)  # sparse: no byte of it is on the disk
+    assert "ws/src/huge is larger than 16 MiB" in _refused(root)[1]
+
+
+def test_files_that_are_too_large_together_are_refused(tmp_path: Path) -> None:
+    root = _write(tmp_path / "bob", TREE)
+    for number in range(5):
+        with (root / f"ws/src/{number}").open("wb") as stream:
+            stream.truncate(intake.MAX_FILE)
+    assert "larger than 64 MiB in all" in _refused(root)[1]
+
+
+def test_a_zip_bomb_is_refused_by_the_size_that_it_states(tmp_path: Path) -> None:
+    bomb = _zip(tmp_path / "a.zip", {"ws/src/bomb": b"\0" * (intake.MAX_FILE + 1)})
+    assert bomb.stat().st_size < 100_000
+    assert "ws/src/bomb is larger than 16 MiB" in _refused(bomb)[1]
+
+
+def test_a_zip_that_lies_about_a_size_is_unreadable(tmp_path: Path) -> None:
+    data = bytearray(_zip(tmp_path / "a.zip", {"src/x": b"\0" * 100_000}).read_bytes())
+    at = data.rindex(b"PK\x01\x02") + 24
+    assert struct.unpack("<I", data[at : at + 4]) == (100_000,)
+    data[at : at + 4] = struct.pack("<I", 10)
+    (tmp_path / "lie.zip").write_bytes(data)
+    kind, sentence = _refused(tmp_path / "lie.zip")
+    assert kind is Kind.UNREADABLE
+    assert "hand in one of these" in sentence
+
+
+def test_damaged_bytes_are_unreadable_and_named(tmp_path: Path) -> None:
+    whole = bytearray(_zip(tmp_path / "a.zip", {"src/x": os.urandom(500) + b"text " * 900}).read_bytes())
+    flipped, cut = bytearray(whole), whole[:200]
+    flipped[60:90] = bytes(byte ^ 0xFF for byte in flipped[60:90])
+    for name, data in {"flipped.zip": flipped, "cut.zip": cut, "essay.pdf": b"%PDF-1.7", "empty.zip": b""}.items():
+        (tmp_path / name).write_bytes(data)
+        kind, sentence = _refused(tmp_path / name)
+        assert kind is Kind.UNREADABLE
+        assert f"{name} is no folder, notebook or readable zip archive" in sentence
+
+
+def test_an_encrypted_archive_is_unreadable(tmp_path: Path) -> None:
+    data = bytearray(_zip(tmp_path / "a.zip", {"src/x": b"secret"}).read_bytes())
+    for header, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        data[data.index(header) + flags] |= 1
+    (tmp_path / "locked.zip").write_bytes(data)
+    kind, sentence = _refused(tmp_path / "locked.zip")
+    assert kind is Kind.UNREADABLE
+    assert "password" in sentence
+
+
+def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: Path) -> None:
+    twice = tmp_path / "twice.zip"
+    twice.write_bytes(_zip(tmp_path / "a.zip", {"src/x": b"1", "src/y": b"2"}).read_bytes().replace(b"src/y", b"src/x"))
+    for path in (twice, _zip(tmp_path / "both.zip", {"src/x": b"", "src/x/y": b""})):
+        kind, sentence = _refused(path)
+        assert kind is Kind.UNSAFE_ARCHIVE
+        assert "two things in it have the same name" in sentence
+
+
+@settings(deadline=None)
+@given(st.binary(max_size=400))
+def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, noise: bytes) -> None:
+    path = tmp_path_factory.getbasetemp() / "noise.zip"
+    path.write_bytes(noise)
+    assert _refused(path)[0] in (Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
+
+
+@settings(deadline=None)
+@given(st.lists(st.tuples(st.text("abws/rc.", min_size=1, max_size=12), st.binary(max_size=3)), max_size=6))
+def test_whatever_the_names_files_land_below_the_folder_or_nothing_is_opened(
+    tmp_path_factory: pytest.TempPathFactory, files: list[tuple[str, bytes]]
+) -> None:
+    root = tmp_path_factory.mktemp("names")
+    try:
+        taken = take(_zip(root / "a.zip", dict(files)), CHAPTER)
+    except StudentError as error:
+        event(error.diagnosis.kind.value)
+        return
+    write_tree(taken.source, root / "out" / "source")
+    assert {path.name for path in root.iterdir()} <= {"a.zip", "out"}
+    assert {path.name for path in (root / "out").iterdir()} == {"source"}
+
+
+def test_the_shallowest_notebook_is_the_submission() -> None:
+    entries = [
+        Entry(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), b"old"),
+        Entry(PurePosixPath(f"a/{CHAPTER}.ipynb"), b"new"),
+    ]
+    assert arrange(entries, CHAPTER).notebook == b"new"
+
+
+# What a notebook leaves behind.
+
+
+def test_the_packages_that_a_notebook_wrote_are_taken_as_plain_files(tmp_path: Path) -> None:
+    assert _names(take_source(_write(tmp_path, TREE) / "ws")) == SOURCE
+
+
+@pytest.mark.parametrize("link", ["ws", "ws/src", "ws/src/pkg", "ws/src/my_robot_package/passwd"])
+def test_a_link_that_a_notebook_left_is_never_followed(tmp_path: Path, link: str) -> None:
+    root = _write(tmp_path / "run", TREE)
+    if (root / link).exists():
+        (root / link).rename(root / "moved")
+    (root / link).symlink_to("/etc")
+    with pytest.raises(StudentError) as caught:
+        take_source(root / "ws")
+    assert caught.value.diagnosis.kind in (Kind.UNSAFE_ARCHIVE, Kind.NOTHING_SUBMITTED)
+
+
+def test_a_notebook_that_leaves_no_workspace_is_told_so(tmp_path: Path) -> None:
+    with pytest.raises(StudentError, match="After the notebook has run there is no folder ws/src"):
+        take_source(tmp_path / "ws")

@@ -1,0 +1,95 @@
+"""Callbacks that wait for each other work in turns, in the same order every time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from autograder.lockstep.lockstep_host.callback_threads import CallbackThreads, Worker
+
+
+class Task:
+    """A callback as rclpy's task holds it: called once, then done, with what it raised."""
+
+    def __init__(self, callback: Any) -> None:
+        self._callback, self._over, self._error = callback, False, None
+
+    def __call__(self) -> None:
+        try:
+            self._callback()
+        except ValueError as error:
+            self._error = error
+        self._over = True
+
+    def done(self) -> bool:
+        return self._over
+
+    def result(self) -> None:
+        if self._error is not None:
+            raise self._error
+
+
+def wait(ready: Any) -> None:
+    """Wait in the present worker."""
+    import threading
+
+    worker = threading.current_thread()
+    assert isinstance(worker, Worker)
+    worker.wait(ready)
+
+
+def test_a_callback_that_does_not_wait_is_done_at_once() -> None:
+    threads, done = CallbackThreads(None), []
+    threads.start(Task(lambda: done.append(1)))
+    assert done == [1]
+    assert not threads.waiting
+    assert not threads.resume()
+
+
+def test_who_waits_goes_on_when_it_is_ready_in_the_order_of_coming() -> None:
+    threads, log, gates = CallbackThreads(None), [], {"a": False, "b": False}
+
+    def work(name: str) -> None:
+        log.append(f"{name} begins")
+        wait(lambda: gates[name])
+        log.append(f"{name} ends")
+
+    for name in gates:
+        threads.start(Task(lambda name=name: work(name)))
+    assert log == ["a begins", "b begins"]
+    assert not threads.resume()
+    gates["b"] = True
+    assert threads.resume()
+    gates["a"] = True
+    assert threads.resume()
+    assert log == ["a begins", "b begins", "b ends", "a ends"]
+    assert not threads.waiting
+
+
+def test_no_more_callbacks_wait_than_there_are_threads() -> None:
+    threads, gate = CallbackThreads(2), []
+    for _ in range(2):
+        assert not threads.full
+        threads.start(Task(lambda: wait(lambda: bool(gate))))
+    assert threads.full
+    gate.append(1)
+    while threads.resume():
+        pass
+    assert not threads.full
+
+
+def test_what_a_callback_raises_comes_out_even_after_it_has_waited() -> None:
+    def fail() -> None:
+        raise ValueError("no lidar")
+
+    def wait_and_fail() -> None:
+        wait(lambda: True)
+        fail()
+
+    threads = CallbackThreads(None)
+    with pytest.raises(ValueError, match="no lidar"):
+        threads.start(Task(fail))
+    threads.start(Task(wait_and_fail))
+    with pytest.raises(ValueError, match="no lidar"):
+        threads.resume()

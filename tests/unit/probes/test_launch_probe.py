@@ -1,0 +1,130 @@
+"""What checks make of the words of `ros2 launch`, without running it."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.exceptions import StudentError
+from autograder.harness.launch import Stop
+from autograder.probes import launch_probe
+from autograder.probes.launch_probe import Argument
+
+SHOWN = """Arguments (pass arguments as '<name>:=<value>'):
+
+    'robot_name':
+        who reports
+        (default: 'robot1')
+
+    'mode':
+        What to do. Valid choices are: ['drive', 'park']
+        (default: 'drive')
+
+    'rest':
+        no description given
+
+    'topic':
+        One of: ['a']
+        (default: '/' + LaunchConfig('robot') + '/scan')
+"""
+STARTED = """[INFO] [launch]: All log files can be found below /tmp/log
+[INFO] [self_test-1]: process started with pid [8]
+[INFO] [reporter-2]: process started with pid [9]
+[INFO] [self_test-1]: process has finished cleanly [pid 8]
+[INFO] [driver-3]: process started with pid [12]
+[driver-3] Traceback (most recent call last):
+[driver-3]   File "driver.py", line 7, in main
+[driver-3] rclpy.exceptions.InvalidParameterTypeException: Trying to set parameter 'speed' to '1' of type 'INTEGER'
+[ERROR] [driver-3]: process has died [pid 12, exit code 1, cmd '/w/lib/p/driver --ros-args'].
+"""
+CAUGHT = "[ERROR] [launch]: Caught exception in launch (see debug for traceback): "
+
+
+def test_shown_arguments_are_read_with_description_default_and_choices() -> None:
+    assert launch_probe.parse_arguments(SHOWN) == {
+        "robot_name": Argument("robot_name", "who reports", "robot1", ()),
+        "mode": Argument("mode", "What to do.", "drive", ("drive", "park")),
+        "rest": Argument("rest", "", None, ()),
+        "topic": Argument("topic", "", None, ("a",)),
+    }
+
+
+def test_a_launch_file_without_arguments_shows_none() -> None:
+    assert launch_probe.parse_arguments("Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n") == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "default", "sentence"),
+    [
+        ("speed", "0.2", "The launch file declares no argument speed; it declares: robot_name, mode, rest, topic."),
+        ("robot_name", "bob", "The argument robot_name has the default 'robot1', instead of 'bob'."),
+        ("rest", "x", "The argument rest has no default, instead of 'x'."),
+    ],
+)
+def test_a_wrong_argument_is_named(name: str, default: str, sentence: str) -> None:
+    with pytest.raises(CheckFailed) as caught:
+        launch_probe.expect_argument(launch_probe.parse_arguments(SHOWN), name, default)
+    assert caught.value.message == sentence
+
+
+def test_an_argument_without_a_description_keeps_half() -> None:
+    with pytest.raises(CheckFailed, match="has no description") as caught:
+        launch_probe.expect_argument({"speed": Argument("speed", "", "0.2", ())}, "speed", "0.2")
+    assert caught.value.fraction == 0.5
+
+
+def test_started_and_ended_programs_are_listed_in_order() -> None:
+    assert launch_probe.started(STARTED) == ["self_test", "reporter", "driver"]
+    assert launch_probe.ended(STARTED) == ["self_test", "driver"]
+
+
+def test_trouble_names_who_died_and_of_what() -> None:
+    assert launch_probe.trouble(STARTED) == (
+        "driver died with exit code 1 (rclpy.exceptions.InvalidParameterTypeException: "
+        "Trying to set parameter 'speed' to '1' of type 'INTEGER')"
+    )
+
+
+@pytest.mark.parametrize(
+    ("output", "what"),
+    [
+        (CAUGHT + "executable 'a' not found on the libexec directory '/w' \n", "executable 'a' not found on the"),
+        (
+            CAUGHT + "Caught exception when trying to load file of format [py]:\n - NameError: x\n",
+            "[py]: - NameError: x",
+        ),
+        ("file 'x.launch.py' was not found, error\n", "file 'x.launch.py' was not found, error"),
+        ("[INFO] [launch]: Default logging verbosity is set to INFO\n", ""),
+        ("", ""),
+    ],
+)
+def test_trouble_is_the_error_that_ended_the_launch(output: str, what: str) -> None:
+    found = launch_probe.trouble(output)
+    assert what in found
+    assert bool(found) is bool(what)
+
+
+def test_an_unwritten_part_is_told_as_such() -> None:
+    with pytest.raises(StudentError) as caught:
+        launch_probe.require_written(f"{CAUGHT}\n - NotImplementedError: still to be written\n")
+    assert caught.value.diagnosis.kind.value == "unfinished"
+    assert "still to be written" in caught.value.diagnosis.sentence
+
+
+@pytest.mark.parametrize(
+    ("stop", "sentence"),
+    [
+        (Stop(None, ()), "After 20 s it still ran, and had to be killed."),
+        (Stop(0, ("sleep 600",)), "It ended, but left a process running: sleep 600."),
+        (Stop(1, ()), "It ended with exit status 1, instead of 0."),
+    ],
+)
+def test_a_stop_that_is_not_clean_is_described(stop: Stop, sentence: str) -> None:
+    with pytest.raises(CheckFailed) as caught:
+        launch_probe.expect_stopped(stop)
+    assert caught.value.message == sentence
+
+
+def test_a_clean_stop_passes() -> None:
+    assert launch_probe.expect_stopped(Stop(0, ())) is None
+    assert launch_probe.expect_stopped(Stop(1, ()), status=None) is None

@@ -1,0 +1,325 @@
+"""Runs of a student's tests: what they claim of a version, and what they cannot do to the run."""
+
+from __future__ import annotations
+
+import errno
+import itertools
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.exceptions import StudentError
+from autograder.harness import Workspace
+from autograder.probes import test_runs
+from autograder.probes.test_reports import Report, TestRun
+from autograder.probes.test_runs import run, take
+from autograder.probes.versions import Version
+from autograder.ros import environment
+from autograder.sandbox import Ending
+
+RIGHT = Version({"package.xml": "<package/>", "half/__init__.py": "def half(x):\n    return x / 2\n"}, {})
+WRONG = Version({**RIGHT.files, "half/__init__.py": "def half(x):\n    return x // 2\n"}, {})
+GOOD = """from half import half
+
+def test_odd():
+    assert half(3) == 1.5
+
+def test_even():
+    assert half(4) == 2
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    """A workspace in which a package `half` was built."""
+    (tmp_path / "ws/src/half/test").mkdir(parents=True)
+    (tmp_path / "ws/src/half/package.xml").write_text("<package/>")
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
+    (workspace.root / "src/half/test" / name).write_text(text)
+
+
+def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
+    return run(workspace, take(workspace, "half"), orders, lanes=2)
+
+
+def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    right, wrong = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
+    assert right.passed
+    assert right.executed == ("test_half::test_odd", "test_half::test_even")
+    assert wrong.failed == ("test_half::test_odd",)
+    assert wrong.claims.messages["test_half::test_odd"].startswith("assert 1 == 1.5")
+    assert wrong.objects(right)
+    assert not right.objects(right)
+
+
+def test_a_run_can_end_with_the_first_failure_and_go_backwards(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    first, backwards = runs(
+        workspace,
+        TestRun(("test_half.py",), WRONG, first_failure=True),
+        TestRun(("test_half.py",), RIGHT, backwards=True),
+    )
+    assert first.executed == ("test_half::test_odd",)
+    assert backwards.executed == ("test_half::test_even", "test_half::test_odd")
+
+
+def test_tests_that_cannot_be_read_object_to_nothing(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    (right,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, "import no_such_module\n" + GOOD)
+    (unread,) = runs(workspace, TestRun(("test_half.py",), WRONG))
+    assert unread.status == 2
+    assert not unread.objects(right)
+
+
+def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
+    write(workspace, "import pytest\n\n\n@pytest.mark.skip(reason='later')\ndef test_it():\n    assert False\n")
+    (skipped,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, "X = 1\n")
+    (empty,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert skipped.status == 0
+    assert not skipped.passed
+    assert empty.status == 5
+    assert not empty.passed
+
+
+@pytest.mark.parametrize(
+    "trick",
+    [
+        "import os\nos._exit(0)",
+        "import sys\nprint('2 passed', '<testsuite tests=\"2\"/>')\nsys.exit(0)",
+        "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
+    ],
+    ids=["_exit", "exit", "kill"],
+)
+def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str) -> None:
+    write(workspace, trick + "\n" + GOOD)
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert not report.passed
+    assert "test_half::test_odd" not in report.executed
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["0 99999999\\n<testsuite/>", "0 -1\\n", "all passed\\n", "0 12\\nno xml at all", "9" * 100],
+    ids=["long", "negative", "words", "no XML", "endless"],
+)
+def test_an_answer_that_is_none_claims_nothing(workspace: Workspace, said: str) -> None:
+    # The answer's descriptor is the first of the two that the host is given.
+    trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{said}')\n"
+    trick += "    except OSError:\n        pass\nos._exit(0)\n"
+    write(workspace, trick + GOOD)
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert not report.passed
+    assert report.executed == ()
+
+
+def test_a_report_that_is_no_file_claims_nothing(workspace: Workspace) -> None:
+    trick = """
+import pytest
+
+@pytest.fixture(autouse=True)
+def folder(request):
+    yield
+    path = request.config.option.xmlpath
+    import os
+    os.makedirs(path, exist_ok=True)
+
+"""
+    write(workspace, trick + GOOD)
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert not report.passed
+    assert report.executed == ()
+
+
+def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(test_runs, "LIMITS", replace(test_runs.LIMITS, wall_seconds=4.0))
+    monkeypatch.setattr(test_runs.sandboxed, "__kwdefaults__", {"limits": test_runs.LIMITS, "network": False})
+    write(workspace, GOOD + "\n\ndef test_for_ever():\n    while True:\n        pass\n")
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert report.ending is Ending.WALL_TIME
+    assert not report.passed
+
+
+@pytest.mark.parametrize(
+    ("hangs", "ends"),
+    [
+        pytest.param(1, (Ending.EXITED, Ending.EXITED), id="once, where rclpy missed the end of an executor"),
+        pytest.param(2, (Ending.WALL_TIME, Ending.WALL_TIME), id="on every version, as tests that never end"),
+    ],
+)
+def test_a_run_that_alone_had_to_be_stopped_gets_a_second_one(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[Ending, ...]
+) -> None:
+    write(workspace, GOOD)
+    really, stopped = test_runs._run, itertools.count()
+
+    def sometimes(*run: Any) -> Report:
+        report = really(*run)
+        return report if next(stopped) >= hangs else replace(report, ending=Ending.WALL_TIME)
+
+    monkeypatch.setattr(test_runs, "_run", sometimes)
+    reports = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
+    assert tuple(report.ending for report in reports) == ends
+
+
+def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        test_runs.sandboxed, "__kwdefaults__", {"limits": replace(test_runs.LIMITS, wall_seconds=4.0), "network": False}
+    )
+    text = (
+        "import threading\n\n\ndef test_it():\n    threading.Thread(target=threading.Event().wait, daemon={}).start()\n"
+    )
+    write(workspace, text.format(True))
+    (short,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, text.format(False))
+    (endless,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert short.ending is Ending.EXITED
+    assert endless.ending is Ending.WALL_TIME
+    assert short.passed
+    assert endless.passed
+
+
+def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
+    write(
+        workspace,
+        "import os\nfrom pathlib import Path\n\n\ndef test_first():\n    mark = Path(os.environ['HOME'], 'mark')\n"
+        "    assert not mark.exists()\n    mark.touch()\n",
+    )
+    assert all(
+        report.passed
+        for report in run(workspace, take(workspace, "half"), [TestRun(("test_half.py",), RIGHT)] * 3, lanes=1)
+    )
+
+
+def test_two_versions_are_seen_at_one_place(workspace: Workspace) -> None:
+    place = "half.__file__, os.getcwd(), sys.path, sorted(os.environ.items())"
+    write(
+        workspace, f"import os\nimport sys\n\nimport half\n\n\ndef test_place():\n    assert not hash(str(({place})))\n"
+    )
+    reports = run(
+        workspace,
+        take(workspace, "half"),
+        [TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG)],
+        lanes=1,
+    )
+    messages = {report.claims.messages["test_half::test_place"] for report in reports}
+    assert len(messages) == 1
+    assert messages.pop().startswith("assert not ")
+
+
+def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
+    made = "import rclpy\nfrom rclpy.context import Context\n\nKEPT = []\n\n\ndef test_it():\n    context = Context()\n"
+    made += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
+    write(workspace, made + "    KEPT.append(node)\n")
+    (left,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, made + "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n")
+    (clean,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert left.passed
+    assert left.left > 0
+    assert clean.passed
+    assert clean.left == 0
+
+
+@pytest.mark.parametrize(
+    ("init", "more", "heard"),
+    [
+        ("", "", True),
+        ("domain_id=int(os.environ['ROS_DOMAIN_ID'])", "LOCALHOST", True),
+        ("domain_id=7", "", False),
+        ("", "OFF", False),
+    ],
+    ids=["default", "on this machine", "own domain", "hidden"],
+)
+def test_who_joins_the_default_domain_is_overheard(workspace: Workspace, init: str, more: str, heard: bool) -> None:
+    text = "import os\nimport rclpy\nfrom rclpy.context import Context\n\n\ndef test_it():\n    context = Context()\n"
+    text += f"    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = '{more}'\n" if more else ""
+    text += f"    rclpy.init(context=context, {init})\n    node = rclpy.create_node('n', context=context)\n"
+    text += "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n"
+    write(workspace, text)
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, overheard=True))
+    assert report.passed, report.output
+    assert report.heard is heard
+
+
+def test_where_nobody_joins_nobody_is_heard(workspace: Workspace) -> None:
+    write(workspace, GOOD)
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, overheard=True))
+    assert report.passed
+    assert not report.heard
+
+
+def test_tests_that_speak_of_launching_get_its_plugin_and_others_do_not(workspace: Workspace) -> None:
+    ask = "def test_it(pytestconfig):\n    assert {}pytestconfig.pluginmanager.has_plugin('lau' 'nch_pytest.plugin')\n"
+    write(workspace, ask.format("not "))
+    (plain,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, "# launch\n" + ask.format(""))
+    (speaking,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    write(workspace, ask.format(""))
+    write(workspace, "# launch\n", "conftest.py")
+    (shared,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert [plain.passed, speaking.passed, shared.passed] == [True, True, True]
+
+
+def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:
+    with pytest.raises(StudentError, match=r"There is no folder src/other with a package\.xml"):
+        take(workspace, "other")
+
+
+def test_a_link_that_the_build_left_among_the_tests_is_refused(workspace: Workspace) -> None:
+    (workspace.root / "src/half/test/secrets").symlink_to("/etc")
+    with pytest.raises(StudentError):
+        take(workspace, "half")
+
+
+def test_the_students_own_package_is_tested_as_it_was_built(workspace: Workspace) -> None:
+    site = workspace.install / f"half/lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages/half"
+    site.mkdir(parents=True)
+    (site / "__init__.py").write_text("def half(x):\n    return x / 2\n")
+    write(workspace, GOOD)
+    (report,) = runs(workspace, TestRun(("test_half.py",)))
+    assert report.passed
+
+
+def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> Path:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    write(workspace, GOOD)
+    monkeypatch.setattr(test_runs, "write_version", full)
+    with pytest.raises(StudentError, match="no room left on the disk"):
+        runs(workspace, TestRun(("test_half.py",), RIGHT))
+
+
+def test_what_is_remembered_is_not_run_again_and_all_else_is(
+    workspace: Workspace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    remembering = replace(workspace, memory=tmp_path / "memory")
+    write(workspace, GOOD)
+    first = runs(remembering, TestRun(("test_half.py",), WRONG), TestRun(("test_half.py",), RIGHT))
+    ran: list[TestRun] = []
+    really = test_runs._run
+
+    def watched(place: Workspace, source: Any, order: TestRun, lane: int) -> Report:
+        ran.append(order)
+        return really(place, source, order, lane)
+
+    monkeypatch.setattr(test_runs, "_run", watched)
+    backwards = TestRun(("test_half.py",), RIGHT, backwards=True)
+    again = runs(remembering, TestRun(("test_half.py",), RIGHT), backwards, TestRun(("test_half.py",), WRONG))
+    assert ran == [backwards]
+    assert [again[2], again[0]] == first
+    assert again[1].executed == ("test_half::test_even", "test_half::test_odd")
+    runs(workspace, TestRun(("test_half.py",), RIGHT))
+    assert len(ran) == 2
