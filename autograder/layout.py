@@ -34,6 +34,19 @@ def chapter(assignment: str) -> Path:
     return folder
 
 
+def world(name: str) -> Path:
+    """Return the path of a world of the course.
+
+    Raises:
+        UsageError: there is none of that name; says which there are.
+    """
+    path = WORLDS / f"{name}.yaml"
+    if not path.is_file():
+        there = ", ".join(sorted(file.stem for file in WORLDS.glob("*.yaml")))
+        raise UsageError(f"there is no world {name!r}; there are: {there}")
+    return path
+
+
 def assignments() -> list[str]:
     """Return the names of the course's assignments, in order."""
     return sorted(path.parent.name for path in CHAPTERS.glob("*/*.ipynb") if path.stem == path.parent.name)

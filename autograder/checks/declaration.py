@@ -42,6 +42,11 @@ class Outcome(str, Enum):
     FAILED = "failed"
     NOT_CHECKED = "not_checked"
 
+    @property
+    def words(self) -> str:
+        """The outcome as people read it, in feedback and in notebooks."""
+        return self.value.replace("_", " ")
+
 
 @dataclass(frozen=True)
 class Check:

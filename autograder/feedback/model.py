@@ -11,8 +11,6 @@ from autograder.diagnosis import Kind
 from autograder.feedback.text import clean
 from autograder.result import Artifact, CheckResult, Result, Status
 
-WORDS = {Outcome.PASSED: "passed", Outcome.FAILED: "failed", Outcome.NOT_CHECKED: "not checked"}
-
 
 @dataclass(frozen=True)
 class Picture:
@@ -98,7 +96,7 @@ def view(result: Result, picture: Callable[[Artifact], Picture | None], *, after
         graded=result.status is Status.GRADED,
         good=result.diagnosis.kind is Kind.OK,
         groups=groups,
-        first=next((check for check in checks if check.outcome == WORDS[Outcome.FAILED]), None),
+        first=next((check for check in checks if check.outcome == Outcome.FAILED.words), None),
         pictures=tuple(pictures.get("", ())),
     )
 
@@ -121,7 +119,7 @@ def _group(name: str, checks: Iterable[CheckResult], shown: set[str], pictures: 
 
 def _repeats(before: CheckView | None, after: CheckView) -> bool:
     """Return whether a check was left out for the reason that stands just above it."""
-    idle = after.outcome == WORDS[Outcome.NOT_CHECKED]
+    idle = after.outcome == Outcome.NOT_CHECKED.words
     return before is not None and idle and (before.outcome, before.message) == (after.outcome, after.message)
 
 
@@ -129,7 +127,7 @@ def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:
     return CheckView(
         id=check.id,
         title=check.title,
-        outcome=WORDS[check.outcome],
+        outcome=check.outcome.words,
         points=check.points,
         max_points=check.max_points,
         message=clean(check.message).strip(),

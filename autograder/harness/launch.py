@@ -30,14 +30,14 @@ from autograder.harness.base import DEPTH, NAME
 from autograder.lockstep.failures import diagnose_ending
 from autograder.ros.discovery import announcing_often
 from autograder.ros.domains import Domain
-from autograder.sandbox import Limits, Mount, Process, Sandbox
+from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import LAUNCH
 from autograder.sandbox.procfs import measure
 from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("launch_host")
 PRELOAD = HOST / "preload.py"
-LIMITS = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * 1024**3, threads=1024)
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _STEP = 0.05  # s between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
@@ -81,7 +81,7 @@ def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Pro
 def sandbox(workspace: Workspace) -> Sandbox:
     """Describe the sandbox of a `ros2` command: that of a node, which also sees the command."""
     package = Path(autograder.__file__).parent
-    plain = workspace.sandbox(LIMITS)
+    plain = workspace.sandbox(LAUNCH)
     path = os.pathsep.join(part for part in (plain.environment.get("PYTHONPATH", ""), str(package.parent)) if part)
     return replace(plain, mounts=(*plain.mounts, Mount(package)), environment={**plain.environment, "PYTHONPATH": path})
 

@@ -14,7 +14,6 @@ from autograder.notebook.worker_client import send
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
-WORDS = {Outcome.PASSED: "passed", Outcome.FAILED: "failed", Outcome.NOT_CHECKED: "not checked"}
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
 
 
@@ -57,7 +56,7 @@ class CheckReport:
     def __repr__(self) -> str:
         parts = [] if self.trouble is None else [repr(self.trouble), ""]
         for line in self.lines:
-            parts.append(f"{SYMBOLS[line.outcome]} {WORDS[line.outcome]:<11} {line.title}")
+            parts.append(f"{SYMBOLS[line.outcome]} {line.outcome.words:<11} {line.title}")
             parts += [f"    {line.message}"] if line.message else []
             parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
             parts += [f"    read: {line.doc}"] if line.doc and line.outcome is Outcome.FAILED else []
@@ -103,7 +102,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
 
 
 def _row(line: Line) -> str:
-    mark = f'<span style="color:{COLOURS[line.outcome]}">{SYMBOLS[line.outcome]} {WORDS[line.outcome]}</span>'
+    mark = f'<span style="color:{COLOURS[line.outcome]}">{SYMBOLS[line.outcome]} {line.outcome.words}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
     if line.message:
         row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'

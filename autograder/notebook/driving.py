@@ -123,7 +123,8 @@ def drive(
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
     robot = RobotSpec(radius=RADIUS, faults=_faults(faults), start=start)
-    simulation = Simulation(_world(world), (robot,), seed=seed)
+    world = world if isinstance(world, World) else load_world(layout.world(world))
+    simulation = Simulation(world, (robot,), seed=seed)
     with send(
         "drive",
         Path(workspace),
@@ -139,16 +140,6 @@ def drive(
             return Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
         commands = tuple((float(t), float(v), float(w)) for t, v, w in answer["commands"])
         return DriveReport(load_recording(folder / RECORDING), answer["output"], commands)
-
-
-def _world(world: str | World) -> World:
-    if isinstance(world, World):
-        return world
-    path = layout.WORLDS / f"{world}.yaml"
-    if not path.is_file():
-        there = ", ".join(sorted(file.stem for file in layout.WORLDS.glob("*.yaml")))
-        raise UsageError(f"there is no world {world!r}; there are: {there}")
-    return load_world(path)
 
 
 def _faults(faults: str | Faults | None) -> Faults:

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from autograder import layout
-from autograder.exceptions import UsageError
 from autograder.notebook.exceptions import Notice
 from sim.grading import grading
 
@@ -47,10 +46,7 @@ def simulator(world: str = "empty_room", speed: float = 1.0) -> Iterator[Simulat
     Raises:
         UsageError: there is no such world.
     """
-    path = layout.WORLDS / f"{world}.yaml"
-    if not path.is_file():
-        there = ", ".join(sorted(file.stem for file in layout.WORLDS.glob("*.yaml")))
-        raise UsageError(f"there is no world {world!r}; there are: {there}")
+    path = layout.world(world)
     session = SimulatorSession()
     if grading():
         yield session

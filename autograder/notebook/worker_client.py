@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from autograder.exceptions import GraderError, UsageError
-from autograder.sandbox import Limits, best_tier
+from autograder.sandbox import best_tier
 from autograder.sandbox.cell import run_in_cell
-from autograder.sandbox.limits import GIB, MIB
+from autograder.sandbox.limits import NOTEBOOK_CELL
 
 ANSWER = "answer.json"
 RECORDING = "recording.npz"
-LIMITS = Limits(wall_seconds=300.0, memory=6 * GIB, threads=2048, output=4 * MIB)
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[st
         report = run_in_cell(
             lambda scratch: [sys.executable, "-m", "autograder.notebook.check_worker", request.to_json(scratch)],
             best_tier(),
-            LIMITS,
+            NOTEBOOK_CELL,
         )
         answer = Path(folder) / ANSWER
         if report.returncode != 0 or not answer.is_file():

@@ -26,13 +26,13 @@ from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
 from autograder.probes import PRELOAD
-from autograder.sandbox import Limits, Mount
+from autograder.sandbox import Mount
 from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import CALLS
 from autograder.workspace import Workspace
 
 REFERENCE = "$made"  # as in caller.py, which runs alone in the sandbox
 CALLER = Path(__file__).with_name("caller.py")
-LIMITS = Limits(wall_seconds=30.0, cpu_seconds=30)
 MAX_ANSWER = 1024 * 1024
 
 
@@ -106,7 +106,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     Raises:
         StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
     """
-    spec = workspace.sandbox(LIMITS)
+    spec = workspace.sandbox(CALLS)
     spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(CALLER)))
     order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
     read_fd, write_fd = os.pipe()
@@ -119,8 +119,8 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
         os.close(order_read)
     with process:
         _write(order_write, order)
-        text = _read(read_fd, time.monotonic() + LIMITS.wall_seconds)
-        process.wait(LIMITS.wall_seconds)
+        text = _read(read_fd, time.monotonic() + CALLS.wall_seconds)
+        process.wait(CALLS.wall_seconds)
         answer = _parse(text)
         if answer is None:
             raise StudentError(diagnose_ending(process))

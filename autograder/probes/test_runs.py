@@ -41,13 +41,11 @@ from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, zygote
 from autograder.sandbox.launcher import current_tier, launch
-from autograder.sandbox.limits import MIB
+from autograder.sandbox.limits import TEST_RUN
 from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("pytest_host.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
-# Five at a time have to fit into the limits of a cell.
-LIMITS = Limits(wall_seconds=60.0, cpu_seconds=40, threads=256, memory=768 * MIB)
 LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
 HEADER = 32  # bytes of an answer's first line, at most
@@ -121,7 +119,7 @@ def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestR
         return reports
 
 
-def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = LIMITS, network: bool = False) -> Sandbox:
+def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
     """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), Mount(zygote.HOST), *map(Mount, readable))
     plain = workspace.sandbox(limits)

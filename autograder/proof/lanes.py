@@ -14,11 +14,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.grading.job import MEMORY, Job
-from autograder.sandbox.cell import WORKER, CellReport, in_cell
+from autograder.sandbox.cell import CellReport, in_cell
+from autograder.sandbox.limits import GRADING_CELL, PROOF_CELL
 from autograder.sandbox.process import Ending
 from autograder.sandbox.tiers import Tier, require
 
-_LIVES = replace(WORKER, wall_seconds=24 * 3600.0)  # a lane, while there is work; each of its jobs has WORKER's time
 _TICK = 0.25  # s between two looks at whether a silent server still lives
 
 
@@ -79,7 +79,7 @@ class _Lane:
             return [*server, *map(str, theirs)]
 
         try:
-            cell = in_cell(command, tier, _LIVES, pass_fds=theirs)
+            cell = in_cell(command, tier, PROOF_CELL, pass_fds=theirs)
             self._process, self.scratch = self._stack.enter_context(cell)
         except BaseException:
             self._stack.close()
@@ -92,7 +92,7 @@ class _Lane:
         """Order one job and wait for its end; any ending but `exited` is the server's, which is of no more use."""
         with suppress(BrokenPipeError):  # of a server that is no more; its end is seen below
             os.write(self._orders, job.to_json().encode() + b"\n")
-        reply, deadline = b"", time.monotonic() + WORKER.wall_seconds
+        reply, deadline = b"", time.monotonic() + GRADING_CELL.wall_seconds
         with selectors.DefaultSelector() as selector:
             selector.register(self._replies, selectors.EVENT_READ)
             while not reply.endswith(b"\n"):
@@ -100,7 +100,7 @@ class _Lane:
                     chunk = os.read(self._replies, 65536)
                     reply += chunk
                     if not chunk:
-                        self._process.wait(WORKER.wall_seconds)
+                        self._process.wait(GRADING_CELL.wall_seconds)
                 if self._process.ending is not None or time.monotonic() > deadline:
                     self._process.kill()
                     ending = self._process.ending or Ending.WALL_TIME

@@ -13,12 +13,9 @@ from pathlib import Path
 from autograder.ros.environment import without_wheel_bootstrap
 from autograder.sandbox import bubblewrap
 from autograder.sandbox.launcher import TIER_VARIABLE
-from autograder.sandbox.limits import GIB, MIB, Limits
+from autograder.sandbox.limits import CELL_SCRATCH, GRADING_CELL, Limits
 from autograder.sandbox.process import Ending, Process
 from autograder.sandbox.tiers import Tier, require
-
-SCRATCH = 512 * MIB
-WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=2048, output=4 * MIB)
 
 
 @dataclass(frozen=True)
@@ -30,7 +27,7 @@ class CellReport:
     output: str
 
 
-def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = WORKER) -> CellReport:
+def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = GRADING_CELL) -> CellReport:
     """Run a trusted command in a new cell and wait for its end.
 
     Args:
@@ -51,7 +48,7 @@ def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: L
 def in_cell(
     make_command: Callable[[Path], list[str]],
     tier: Tier,
-    limits: Limits = WORKER,
+    limits: Limits = GRADING_CELL,
     *,
     pass_fds: tuple[int, ...] = (),
 ) -> Iterator[tuple[Process, Path]]:
@@ -71,7 +68,7 @@ def in_cell(
     try:
         command = make_command(scratch)
         if tier is Tier.BUBBLEWRAP:
-            command = bubblewrap.cell(command, scratch=scratch, size=SCRATCH)
+            command = bubblewrap.cell(command, scratch=scratch, size=CELL_SCRATCH)
         environment = {**without_wheel_bootstrap(os.environ), TIER_VARIABLE: tier.value}
         with Process(command, limits, environment=environment, pass_fds=pass_fds) as process:
             yield process, scratch

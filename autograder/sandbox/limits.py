@@ -1,8 +1,8 @@
-"""What one sandboxed process tree may use."""
+"""What each kind of program may use. Every limit of time, memory and size on a process tree stands here."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 MIB = 1024 * 1024
 GIB = 1024 * MIB
@@ -36,12 +36,25 @@ class Limits:
 
     @property
     def tasks(self) -> int:
-        """Where the kernel refuses one more: well above `threads`, so that going over those is seen and said."""
+        """Task limit of the kernel, well above `threads`: going over `threads` is seen and named first."""
         return self.threads * 4
 
 
-# Whoever meets a node bounds each wait for it; the wall's time is for one that all have forgotten.
+# The harness bounds each wait for a node; the wall time is for a node that nothing waits for.
 NODE = Limits(wall_seconds=600.0)
-# The processor's time is what bounds a build; the wall's is for one that waits, and not for a machine that is busy.
+# Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
+# The submitted notebook's kernel.
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
+# A `ros2` command, such as `ros2 launch` with all that it starts.
+LAUNCH = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * GIB, threads=1024)
+# One pytest run of a student's tests. Five at a time have to fit into a cell.
+TEST_RUN = Limits(wall_seconds=60.0, cpu_seconds=40, memory=768 * MIB)
+# Calls of a student's functions.
+CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
+# A whole cell: a trusted worker and all that it starts, for a grading or for a notebook's request.
+GRADING_CELL = Limits(wall_seconds=900.0, memory=6 * GIB, threads=2048, output=4 * MIB)
+NOTEBOOK_CELL = replace(GRADING_CELL, wall_seconds=300.0)
+# A cell of the proof, which lives while there is work; each of its jobs has the wall time of GRADING_CELL.
+PROOF_CELL = replace(GRADING_CELL, wall_seconds=24 * 3600.0)
+CELL_SCRATCH = 512 * MIB  # bytes of a cell's file system

@@ -20,6 +20,7 @@ from autograder.probes.test_runs import run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
 from autograder.sandbox import Ending
+from autograder.sandbox.limits import TEST_RUN
 
 RIGHT = Version({"package.xml": "<package/>", "half/__init__.py": "def half(x):\n    return x / 2\n"}, {})
 WRONG = Version({**RIGHT.files, "half/__init__.py": "def half(x):\n    return x // 2\n"}, {})
@@ -142,8 +143,8 @@ def folder(request):
 
 
 def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(test_runs, "LIMITS", replace(test_runs.LIMITS, wall_seconds=4.0))
-    monkeypatch.setattr(test_runs.sandboxed, "__kwdefaults__", {"limits": test_runs.LIMITS, "network": False})
+    limits = replace(TEST_RUN, wall_seconds=4.0)
+    monkeypatch.setattr(test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
     write(workspace, GOOD + "\n\ndef test_for_ever():\n    while True:\n        pass\n")
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     assert report.ending is Ending.WALL_TIME
@@ -176,7 +177,7 @@ def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        test_runs.sandboxed, "__kwdefaults__", {"limits": replace(test_runs.LIMITS, wall_seconds=4.0), "network": False}
+        test_runs.sandboxed, "__kwdefaults__", {"limits": replace(TEST_RUN, wall_seconds=4.0), "network": False}
     )
     text = (
         "import threading\n\n\ndef test_it():\n    threading.Thread(target=threading.Event().wait, daemon={}).start()\n"
