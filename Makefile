@@ -48,6 +48,7 @@ lint:
 	$(BIN)/ruff format --check $(LINTED)
 	$(BIN)/mypy
 	$(BIN)/mypy --config-file autograder/ros/standins/mypy.ini $(addprefix -p ,$(STANDINS))
+	$(BIN)/lint-imports --no-cache --no-logo
 
 lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_ARGS=)
 	@$(BOOTSTRAP)

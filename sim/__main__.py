@@ -71,9 +71,6 @@ def run(
 
     What follows is handed to ROS: `python -m sim lab.yaml --ros-args -p lidar_noise:=0.01 -r scan:=lidar/scan`.
     """
-    from sim.bridge import activate
-
-    activate()
     from sim.bridge.node import main as run_node
 
     names = ", ".join(repr(robot) for robot in robots) or "''"

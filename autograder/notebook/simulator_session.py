@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder import layout
 from autograder.notebook.exceptions import Notice
+from autograder.ros import activate
 from sim.grading import grading
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def simulator(world: str = "empty_room", speed: float = 1.0) -> Iterator[Simulat
     if grading():
         yield session
         return
+    activate()
     from sim.bridge import Bridge
 
     with Bridge(path, speed=speed) as bridge:

@@ -1,7 +1,7 @@
 """The simulator as a ROS 2 robot: `/scan`, `/odom` and `/clock` out, `/cmd_vel` in.
 
 `sim.bridge.messages` holds the pure conversions, `sim.bridge.node` the node, `Bridge` runs it beside a notebook's own
-nodes. `import sim.bridge` alone imports no ROS; `Bridge` switches ROS on first, where `autograder` is there to do it.
+nodes. `import sim.bridge` alone imports no ROS; `Bridge` does. ROS is switched on by the caller, before that.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -9,16 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim.bridge.background import Bridge
 
-__all__ = ["Bridge", "activate"]
-
-
-def activate() -> None:
-    """Make rclpy importable in this process; a machine with a sourced ROS needs nothing."""
-    try:
-        from autograder.ros import activate as switch_on
-    except ModuleNotFoundError:  # the simulator alone: the shell has sourced ROS, or rclpy says what is missing
-        return
-    switch_on()
+__all__ = ["Bridge"]
 
 
 def __getattr__(name: str) -> Any:
@@ -26,6 +17,5 @@ def __getattr__(name: str) -> Any:
     if name == "Bridge":
         from importlib import import_module
 
-        activate()
         return import_module("sim.bridge.background").Bridge
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
