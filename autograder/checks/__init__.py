@@ -8,9 +8,34 @@
         mutants.yaml   flawed versions of the reference, with the checks that each loses
         variants/      right answers in another style
 
-Visible checks and support import nothing hidden. The release and the sandbox hold no `hidden` folder.
+Visible checks and support import nothing hidden, and no conftest imports another. The release and the sandbox hold no
+`hidden` folder. The fixtures that every chapter has are those of `autograder.grading.plugin`.
 """
 
-from autograder.checks.declaration import Check, CheckFailed, Outcome, Visibility, check, declared, expect
+from autograder.checks.declaration import (
+    Check,
+    CheckFailed,
+    Outcome,
+    Row,
+    Visibility,
+    check,
+    declared,
+    each,
+    expect,
+    group,
+    hint,
+)
 
-__all__ = ["Check", "CheckFailed", "Outcome", "Visibility", "check", "declared", "expect"]
+__all__ = [
+    "Check",
+    "CheckFailed",
+    "Outcome",
+    "Row",
+    "Visibility",
+    "check",
+    "declared",
+    "each",
+    "expect",
+    "group",
+    "hint",
+]

@@ -1,12 +1,19 @@
 """What a check is: one function, one behaviour, and the sentence that the student reads.
 
-A suite is a pytest module. Each of its tests is a check:
+A suite is a pytest module. Each of its tests is a check, in the group of checks that the module names:
 
-    @check(points=2, group="reaction", depends=("starts",), hints=("Where is 0 rad in a scan?", "..."))
+    check = group("reaction")
+
+    @check(points=2, depends=("starts",), doc=contract.LASER_SCAN)
+    @hint("Where is 0 rad in a scan?")
+    @hint("Compare the smallest forward range with 1.0.")
     def test_turns_when_blocked(robot: Robot) -> None:
         \"\"\"The robot turns when something stands within 1 m in front of it.\"\"\"
         ...
         expect(turned, "it kept driving straight at a wall 0.6 m ahead")
+
+`check` itself takes the group as an argument, for a module whose checks belong to several. `each` declares a check for
+every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
 A check passes, fails (with the fraction of its points that was reached) or is not checked because a check that it
 depends on did not pass. Any other exception is the grader's own failure, never the student's zero.
@@ -14,12 +21,14 @@ depends on did not pass. Any other exception is the grader's own failure, never 
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
 
 from autograder.exceptions import GraderError
 
@@ -83,16 +92,32 @@ class CheckFailed(Exception):
         self.fraction = fraction
 
 
-def check(
-    *,
-    points: float,
-    group: str,
-    hints: tuple[str, ...] = (),
-    doc: str | None = None,
-    depends: tuple[str, ...] = (),
-    visibility: Visibility = Visibility.HIDDEN,
-) -> Callable[[F], F]:
-    """Declare a pytest function a check.
+class Declare(Protocol):
+    """Declares a function a check of one group; see `check`."""
+
+    def __call__(self, *, points: float, depends: tuple[str, ...] = ..., doc: str | None = ...) -> Callable[[F], F]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A row of a table of checks that share a body; a table's own class adds what the body needs.
+
+    Attributes:
+        id: the check's, as in `Check`; so are the others.
+    """
+
+    id: str
+    title: str
+    points: float
+    hints: tuple[str, ...]
+    doc: str
+
+
+R = TypeVar("R", bound=Row)
+
+
+def check(*, points: float, group: str, depends: tuple[str, ...] = (), doc: str | None = None) -> Callable[[F], F]:
+    """Declare a pytest function a check; what the arguments are, `Check` says.
 
     Raises:
         GraderError: the function's name, docstring or points break the contract of a check.
@@ -107,11 +132,61 @@ def check(
             raise GraderError(f"check {name!r}: it needs a docstring, the sentence that the student reads")
         if not (math.isfinite(points) and points > 0):
             raise GraderError(f"check {name!r}: points must be above 0, not {points!r}")
+        visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
+        visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
+        hints = getattr(function, "__hints__", ())
         declared = Check(name.removeprefix(PREFIX), title, float(points), group, visibility, hints, doc, depends)
         function.__check__ = declared  # type: ignore[attr-defined]
         return function
 
     return declare
+
+
+def group(name: str, *, depends: tuple[str, ...] = (), doc: str | None = None) -> Declare:
+    """Return `check` for one group, with what its checks depend on and their page unless a check says otherwise."""
+    default_depends, default_doc = depends, doc
+
+    def check_of_group(
+        *, points: float, depends: tuple[str, ...] = default_depends, doc: str | None = default_doc
+    ) -> Callable[[F], F]:
+        return check(points=points, group=name, depends=depends, doc=doc)
+
+    return check_of_group
+
+
+def hint(*texts: str) -> Callable[[F], F]:
+    """Add hints to the function of a check, before those of the `hint` below it. It stands below `check`.
+
+    Raises:
+        GraderError: it stands above `check`, which would not see it.
+    """
+
+    def add(function: F) -> F:
+        if declared(function):
+            raise GraderError(f"check {function.__name__!r}: its hints must stand below `check`, not above")
+        function.__hints__ = (*texts, *getattr(function, "__hints__", ()))  # type: ignore[attr-defined]
+        return function
+
+    return add
+
+
+def each(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
+    """Declare a check for each row of a table, as a function `test_ID` of the module in which the body stands.
+
+    The body takes a row, and then fixtures.
+
+    Args:
+        check: declares each check, with the row's points and page.
+        rows: the table.
+    """
+
+    def declare_each(body: F) -> F:
+        for row in rows:
+            declare = check(points=row.points, doc=row.doc)
+            body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))
+        return body
+
+    return declare_each
 
 
 def expect(condition: bool, message: str, *, fraction: float = 0.0) -> None:
@@ -128,3 +203,17 @@ def declared(function: object) -> Check | None:
     """Return the check that a function declares, or None."""
     found = getattr(function, "__check__", None)
     return found if isinstance(found, Check) else None
+
+
+def _with_row(body: Callable[..., None], row: Row) -> Callable[..., None]:
+    """Return a test that calls a body with a row, and asks pytest for the body's fixtures."""
+
+    @functools.wraps(body)
+    def test(**fixtures: Any) -> None:
+        body(row, **fixtures)
+
+    _, *fixtures = inspect.signature(body).parameters.values()
+    test.__name__ = PREFIX + row.id
+    test.__doc__ = row.title
+    test.__signature__ = inspect.Signature(fixtures)  # type: ignore[attr-defined]
+    return test

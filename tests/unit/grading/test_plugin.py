@@ -19,7 +19,7 @@ from autograder.workspace import Workspace
 
 HEAD = """
 import pytest
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, check, expect, hint
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 """
@@ -79,7 +79,8 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
         def test_right():
             '''It is right.'''
 
-        @check(points=4, group="g", hints=("a hint",))
+        @check(points=4, group="g")
+        @hint("a hint")
         def test_half():
             '''It is half right.'''
             expect(False, "only half", fraction=0.5)

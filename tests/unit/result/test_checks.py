@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import inspect
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
 import pytest
 
-from autograder.checks import CheckFailed, Visibility, check, declared, expect
+from autograder.checks import CheckFailed, Row, Visibility, check, declared, each, expect, group, hint
 from autograder.exceptions import GraderError
 
 
 def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
-    @check(points=2, group="reaction", hints=("one", "two"), doc="https://docs.ros.org", depends=("starts",))
+    @check(points=2, group="reaction", doc="https://docs.ros.org", depends=("starts",))
+    @hint("one")
+    @hint("two")
     def test_turns() -> None:
         """The robot turns when
         it must.
@@ -26,6 +33,76 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
 
 def test_a_function_that_declares_nothing_is_no_check() -> None:
     assert declared(lambda: None) is None
+
+
+def test_the_checks_of_a_group_have_its_page_and_what_it_depends_on_unless_they_say_otherwise() -> None:
+    check = group("reaction", doc="https://docs.ros.org", depends=("starts",))
+
+    @check(points=1)
+    def test_turns() -> None:
+        """The robot turns."""
+
+    @check(points=1, doc=None, depends=())
+    def test_stops() -> None:
+        """The robot stops."""
+
+    turns, stops = declared(test_turns), declared(test_stops)
+    assert turns is not None
+    assert stops is not None
+    assert (turns.group, turns.doc, turns.depends) == ("reaction", "https://docs.ros.org", ("starts",))
+    assert (stops.group, stops.doc, stops.depends) == ("reaction", None, ())
+
+
+def test_hints_above_the_declaration_are_an_error() -> None:
+    with pytest.raises(GraderError, match="'test_turns': its hints must stand below `check`"):
+
+        @hint("never seen")
+        @check(points=1, group="g")
+        def test_turns() -> None:
+            """The robot turns."""
+
+
+@pytest.mark.parametrize(("folder", "seen"), [("visible", Visibility.VISIBLE), ("hidden", Visibility.HIDDEN)])
+def test_the_folder_says_who_sees_a_check_also_one_of_a_table(tmp_path: Path, folder: str, seen: Visibility) -> None:
+    module = ModuleType("a_suite")
+    text = """
+from autograder.checks import Row, check, each, group
+
+@check(points=1, group="g")
+def test_one():
+    'One.'
+
+@each(group("h"), [Row(id="two", title="Two.", points=2, hints=("how",), doc="d")])
+def body(row, robot):
+    pass
+"""
+    exec(compile(text, tmp_path / folder / "a_suite.py", "exec"), vars(module))
+    one, two = declared(module.test_one), declared(module.test_two)
+    assert one is not None
+    assert two is not None
+    assert (one.visibility, two.visibility) == (seen, seen)
+    assert (two.id, two.title, two.points, two.group, two.hints, two.doc) == ("two", "Two.", 2.0, "h", ("how",), "d")
+
+
+def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_fixtures() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Distance(Row):
+        metres: float
+
+    rows = [
+        Distance(id=name, title=name, points=1, hints=(), doc="d", metres=len(name)) for name in ("near", "farther")
+    ]
+    seen = []
+
+    @each(group("g"), rows)
+    def measures(row: Distance, robot: str) -> None:
+        seen.append((row.id, row.metres, robot))
+
+    made = [globals().pop(f"test_{row.id}") for row in rows]
+    assert [list(inspect.signature(function).parameters) for function in made] == [["robot"], ["robot"]]
+    for function in made:
+        function(robot="r2")
+    assert seen == [("near", 4, "r2"), ("farther", 7, "r2")]
 
 
 def test_a_check_must_be_a_pytest_function() -> None:

@@ -6,11 +6,11 @@ import math
 
 from geometry_msgs.msg import Twist
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import expect, group, hint
 from autograder.harness import SteppedHarness, Workspace
 from autograder.probes.calls import call, calls, value
 
-GROUP = "square"
+check = group("square")
 MODULE = "first_robot.square"
 SIDE, TURN = 4.0, 2.0  # s
 SPEED, RATE = 0.3, math.radians(90.0) / TURN
@@ -18,52 +18,32 @@ TOLERANCE = 0.01
 DOC = "https://docs.python.org/3/library/stdtypes.html#numeric-types-int-float-complex"
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=Visibility.VISIBLE,
-    hints=("Return two numbers: return SPEED, 0.0", "The first SIDE_SECONDS of a round are a side."),
-)
+@check(points=1)
+@hint("Return two numbers: return SPEED, 0.0", "The first SIDE_SECONDS of a round are a side.")
 def test_side(workspace: Workspace) -> None:
     """At the start of a round the robot drives straight on at 0.3 m/s."""
     _expect(workspace, 0.0, SPEED, 0.0)
     _expect(workspace, SIDE - 0.1, SPEED, 0.0)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=Visibility.VISIBLE,
-    depends=("side",),
-    hints=("After SIDE_SECONDS it turns: return 0.0, TURN_RATE", "A positive rate turns to the left."),
-)
+@check(points=1, depends=("side",))
+@hint("After SIDE_SECONDS it turns: return 0.0, TURN_RATE", "A positive rate turns to the left.")
 def test_corner(workspace: Workspace) -> None:
     """After 4 s it turns left on the spot, 90 degrees in 2 s."""
     _expect(workspace, SIDE, 0.0, RATE)
     _expect(workspace, SIDE + TURN - 0.1, 0.0, RATE)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=Visibility.VISIBLE,
-    depends=("corner",),
-    hints=("seconds % (SIDE_SECONDS + TURN_SECONDS) is how far the present round is.", "7.5 % 6.0 is 1.5."),
-    doc=DOC,
-)
+@check(points=1, depends=("corner",), doc=DOC)
+@hint("seconds % (SIDE_SECONDS + TURN_SECONDS) is how far the present round is.", "7.5 % 6.0 is 1.5.")
 def test_goes_on(workspace: Workspace) -> None:
     """After 6 s the next side begins, and so on for ever."""
     _expect(workspace, 7.0 * (SIDE + TURN) + 1.0, SPEED, 0.0)
     _expect(workspace, 7.0 * (SIDE + TURN) + SIDE + 1.0, 0.0, RATE)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=Visibility.VISIBLE,
-    depends=("goes_on",),
-    hints=("The node calls command_at; leave the class as it is.", "Save the file by running its cell."),
-)
+@check(points=1, depends=("goes_on",))
+@hint("The node calls command_at; leave the class as it is.", "Save the file by running its cell.")
 def test_robot(workspace: Workspace) -> None:
     """The robot itself does so, ten commands a second."""
     with SteppedHarness(workspace, "first_robot", "square", listens={"/cmd_vel": Twist}) as harness:

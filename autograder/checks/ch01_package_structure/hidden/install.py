@@ -5,40 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.growth import Grown
 from autograder.checks.ch01_package_structure.support import contract, judge
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import INDEX, Installed
 
-GROUP = "install"
+check = group("install")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "Run colcon build in ws and read the first line that says error.",
-        "A syntax error in setup.py, a file that data_files names and that is not there: colcon quotes Python.",
-    ),
-    doc=contract.COLCON,
-)
+@check(points=2, doc=contract.COLCON)
+@hint("Run colcon build in ws and read the first line that says error.")
+@hint("A syntax error in setup.py, a file that data_files names and that is not there: colcon quotes Python.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds square_dance."""
     judge.expect_built(builds, contract.DANCE)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds", "manifest"),
-    hints=(
-        "ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.",
-        "data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].",
-    ),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
+@hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
+@hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
 def test_marker(dance: Installed) -> None:
     """setup.py installs the marker by which ROS finds the package, and package.xml."""
     expect(
@@ -54,100 +41,55 @@ def test_marker(dance: Installed) -> None:
     )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("builds",),
-    hints=(
-        "console_scripts in setup.py says which programs there are, setup.cfg says where they go.",
-        "dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].",
-    ),
-    doc=contract.DEVELOP,
-)
+@check(points=2, depends=("builds",), doc=contract.DEVELOP)
+@hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
+@hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
 def test_executable(dance: Installed) -> None:
     """The program dancer lies where `ros2 run` looks for it."""
     judge.expect_executable(dance, contract.DANCER)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("builds",),
-    hints=(
-        "packages=[package_name] means one folder, not those in it.",
-        "find_packages takes a folder for a package when there is an __init__.py in it.",
-    ),
-    doc=contract.SUBPACKAGES,
-)
+@check(points=2, depends=("builds",), doc=contract.SUBPACKAGES)
+@hint("packages=[package_name] means one folder, not those in it.")
+@hint("find_packages takes a folder for a package when there is an __init__.py in it.")
 def test_subpackages(workspace: Workspace, dance: Installed) -> None:
     """All of its modules are installed, those in nodes and utils, too."""
     judge.expect_modules(dance, judge.folder(workspace, contract.DANCE))
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds",),
-    hints=("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files."),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
 def test_launch_file(workspace: Workspace, dance: Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
     judge.expect_shared(dance, judge.folder(workspace, contract.DANCE), contract.DANCE_LAUNCH)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds",),
-    hints=("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files."),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
 def test_config(workspace: Workspace, dance: Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
     judge.expect_shared(dance, judge.folder(workspace, contract.DANCE), contract.DANCE_CONFIG)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds", "manifest"),
-    hints=(
-        "package.xml and setup.py each say the version, the licence and the maintainer.",
-        "license='Apache-2.0' in setup.py is the licence in the form of package.xml.",
-    ),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
+@hint("package.xml and setup.py each say the version, the licence and the maintainer.")
+@hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
 def test_same_facts(workspace: Workspace, dance: Installed) -> None:
     """setup.py names the version, the licence and the maintainer that package.xml names."""
     judge.expect_same_facts(dance, judge.expect_manifest(workspace, contract.DANCE))
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds",),
-    hints=(
-        "colcon test runs pytest only for a package that says that it uses it.",
-        "extras_require={'test': ['pytest']}; setuptools no longer knows tests_require.",
-    ),
-    doc=contract.COLCON,
-)
+@check(points=1, depends=("builds",), doc=contract.COLCON)
+@hint("colcon test runs pytest only for a package that says that it uses it.")
+@hint("extras_require={'test': ['pytest']}; setuptools no longer knows tests_require.")
 def test_names_pytest(dance: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
     judge.expect_pytest(dance)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("subpackages", "launch_file", "config"),
-    hints=(
-        "A list of names written by hand is wrong on the day when somebody adds a file.",
-        "find_packages(...) and glob(...) look at what is there when the package is built.",
-    ),
-    doc=contract.SUBPACKAGES,
-)
+@check(points=2, depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
+@hint("A list of names written by hand is wrong on the day when somebody adds a file.")
+@hint("find_packages(...) and glob(...) look at what is there when the package is built.")
 def test_grows(grown: Grown) -> None:
     """A new subpackage, launch file and configuration are installed without a change of setup.py."""
     installed = grown.installed
@@ -156,16 +98,8 @@ def test_grows(grown: Grown) -> None:
     expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 3)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds",),
-    hints=(
-        "find_packages() takes test/ for a package of yours when there is an __init__.py in it.",
-        "exclude=['test']",
-    ),
-    doc=contract.SUBPACKAGES,
-)
+@check(points=1, depends=("builds",), doc=contract.SUBPACKAGES)
+@hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 def test_tests_stay(grown: Grown) -> None:
     """Its tests are not installed as a module called test, also with an __init__.py beside them."""
     strays = sorted(name for name in grown.installed.modules if name.split(".")[0] == "test")

@@ -2,60 +2,45 @@
 
 from __future__ import annotations
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, judge
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.manifest import PLACEHOLDER
 
-GROUP = "manifest"
+check = group("manifest")
 DECLARE = (
     "All that a file imports, Python's own modules apart, comes from a package; name each in package.xml.",
     "rosdep reads package.xml alone: what is only in setup.py is never installed on another robot.",
 )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "Compare it with what ros2 pkg create wrote: which tag is missing, or stands twice?",
-        '<export><build_type>ament_python</build_type></export>, inside <package format="3">.',
-    ),
-    doc=contract.REP_149,
-)
+@check(points=2, doc=contract.REP_149)
+@hint("Compare it with what ros2 pkg create wrote: which tag is missing, or stands twice?")
+@hint('<export><build_type>ament_python</build_type></export>, inside <package format="3">.')
 def test_manifest(workspace: Workspace) -> None:
     """ROS takes square_dance/package.xml for that of a Python package, in format 3."""
     judge.expect_manifest(workspace, contract.DANCE)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("manifest",),
-    hints=("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>"),
-    doc=contract.REP_149,
-)
+@check(points=1, depends=("manifest",), doc=contract.REP_149)
+@hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     licences = judge.expect_manifest(workspace, contract.DANCE).licences
     expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("manifest",),
-    hints=("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for."),
-    doc=contract.CREATE,
-)
+@check(points=1, depends=("manifest",), doc=contract.CREATE)
+@hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
     said = judge.expect_manifest(workspace, contract.DANCE).description
     expect(len(said.split()) >= 3 and PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
-@check(points=2, group=GROUP, depends=("manifest",), hints=DECLARE, doc=contract.ROSDEP)
+@check(points=2, depends=("manifest",), doc=contract.ROSDEP)
+@hint(*DECLARE)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
     manifest = judge.expect_manifest(workspace, contract.DANCE)
@@ -63,7 +48,8 @@ def test_run_dependencies(workspace: Workspace) -> None:
     judge.expect_declared(needed, manifest.needs("exec"))
 
 
-@check(points=1, group=GROUP, depends=("manifest",), hints=DECLARE, doc=contract.ROSDEP)
+@check(points=1, depends=("manifest",), doc=contract.ROSDEP)
+@hint(*DECLARE)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
     manifest = judge.expect_manifest(workspace, contract.DANCE)
@@ -71,7 +57,8 @@ def test_launch_dependencies(workspace: Workspace) -> None:
     judge.expect_declared(needed, manifest.needs("exec"))
 
 
-@check(points=1, group=GROUP, depends=("manifest",), hints=DECLARE, doc=contract.ROSDEP)
+@check(points=1, depends=("manifest",), doc=contract.ROSDEP)
+@hint(*DECLARE)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""
     manifest = judge.expect_manifest(workspace, contract.DANCE)

@@ -5,82 +5,51 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, judge, robots
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.installed import Installed
 
-GROUP = "repair"
+check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "Run colcon build --paths src/wall_alarm in ws and read the first line that says error.",
-        "The marker is an empty file: resource/wall_alarm.",
-    ),
-    doc=contract.COLCON,
-)
+@check(points=2, doc=contract.COLCON)
+@hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
+@hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds wall_alarm."""
     judge.expect_built(builds, contract.WATCH)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("alarm_builds",),
-    hints=(
-        "No executable found: look for the program in install/wall_alarm, and see where it is.",
-        "setup.cfg: install_scripts=$base/lib/wall_alarm under [install].",
-    ),
-    doc=contract.DEVELOP,
-)
+@check(points=2, depends=("alarm_builds",), doc=contract.DEVELOP)
+@hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
+@hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
 def test_alarm_executable(watch: Installed) -> None:
     """The program alarm lies where `ros2 run` looks for it."""
     judge.expect_executable(watch, contract.ALARM)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("alarm_builds",),
-    hints=(
-        "ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?",
-        "packages=find_packages(exclude=['test']) in setup.py.",
-    ),
-    doc=contract.SUBPACKAGES,
-)
+@check(points=2, depends=("alarm_builds",), doc=contract.SUBPACKAGES)
+@hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
+@hint("packages=find_packages(exclude=['test']) in setup.py.")
 def test_alarm_subpackages(workspace: Workspace, watch: Installed) -> None:
     """All of its modules are installed."""
     judge.expect_modules(watch, judge.folder(workspace, contract.WATCH))
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("alarm_builds",),
-    hints=("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml."),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("alarm_builds",), doc=contract.DEVELOP)
+@hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
 def test_alarm_config(workspace: Workspace, watch: Installed) -> None:
     """Its configuration is installed."""
     judge.expect_shared(watch, judge.folder(workspace, contract.WATCH), contract.ALARM_CONFIG)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.",
-        "The launch file imports three packages; each is an <exec_depend>.",
-    ),
-    doc=contract.ROSDEP,
-)
+@check(points=2, doc=contract.ROSDEP)
+@hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
+@hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml declares what its modules and its launch file import."""
     manifest = judge.expect_manifest(workspace, contract.WATCH)
@@ -88,13 +57,8 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     judge.expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("alarm_builds",),
-    hints=("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py."),
-    doc=contract.REP_149,
-)
+@check(points=1, depends=("alarm_builds",), doc=contract.REP_149)
+@hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
 def test_alarm_licence(workspace: Workspace, watch: Installed) -> None:
     """Both files name the licence Apache-2.0."""
     licences = judge.expect_manifest(workspace, contract.WATCH).licences
@@ -106,31 +70,17 @@ def test_alarm_licence(workspace: Workspace, watch: Installed) -> None:
     )
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("alarm_builds",),
-    hints=(
-        "colcon build warns: Unknown distribution option.",
-        "extras_require={'test': ['pytest']} instead of tests_require=['pytest'].",
-    ),
-    doc=contract.COLCON,
-)
+@check(points=1, depends=("alarm_builds",), doc=contract.COLCON)
+@hint("colcon build warns: Unknown distribution option.")
+@hint("extras_require={'test': ['pytest']} instead of tests_require=['pytest'].")
 def test_alarm_names_pytest(watch: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
     judge.expect_pytest(watch)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("alarm_executable", "alarm_subpackages"),
-    hints=(
-        "ros2 run wall_alarm alarm in a new shell, after source install/setup.bash: what does it print?",
-        "The node was right from the start: take it as it was given.",
-    ),
-    doc=contract.CREATE,
-)
+@check(points=2, depends=("alarm_executable", "alarm_subpackages"), doc=contract.CREATE)
+@hint("ros2 run wall_alarm alarm in a new shell, after source install/setup.bash: what does it print?")
+@hint("The node was right from the start: take it as it was given.")
 def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
     """Its alarm goes off for a thing that is near, and not for one that is far."""
     with robots.alarm(workspace) as harness:
@@ -138,13 +88,8 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
         robots.expect_alarm(harness, round(draw.uniform(1.0, 8.0), 2), False)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("alarm_sounds", "alarm_config"),
-    hints=("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres."),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
+@hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
 def test_alarm_configured(workspace: Workspace, watch: Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""
     path = watch.prefix / "share" / watch.package / contract.ALARM_CONFIG

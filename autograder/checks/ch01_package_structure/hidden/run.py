@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.harness import SteppedHarness, Workspace
 from autograder.probes.installed import Installed
 
-GROUP = "run"
+check = group("run")
 HINTS = (
     "ros2 run square_dance dancer in a new shell, after source install/setup.bash: what does it print?",
     "An entry point reads name = package.folder.module:function.",
@@ -37,26 +37,23 @@ def running(workspace: Workspace, seed: int) -> Iterator[Dance]:
         yield Dance(harness, side)
 
 
-@check(points=2, group=GROUP, depends=("executable", "subpackages"), hints=HINTS, doc=contract.CREATE)
+@check(points=2, depends=("executable", "subpackages"), doc=contract.CREATE)
+@hint(*HINTS)
 def test_starts(running: Dance) -> None:
     """`ros2 run square_dance dancer` starts a node called dancer."""
     names = running.harness.nodes()
     expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
 
 
-@check(points=1, group=GROUP, depends=("starts",), hints=HINTS, doc=contract.CREATE)
+@check(points=1, depends=("starts",), doc=contract.CREATE)
+@hint(*HINTS)
 def test_dances(running: Dance) -> None:
     """It drives along a side of the square, and then turns to the left."""
     robots.expect_dance(running.harness, running.side)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("starts", "config"),
-    hints=("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side."),
-    doc=contract.DEVELOP,
-)
+@check(points=1, depends=("starts", "config"), doc=contract.DEVELOP)
+@hint("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side.")
 def test_configured(workspace: Workspace, dance: Installed) -> None:
     """With the installed configuration it dances a square of the size that is written there."""
     path = dance.prefix / "share" / dance.package / contract.DANCE_CONFIG

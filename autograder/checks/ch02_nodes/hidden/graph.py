@@ -2,81 +2,57 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, unheard
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_ending
 
-GROUP = "graph"
+check = group("graph")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=(
-        "Run the cell that builds the workspace and read its last lines.",
-        "setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.",
-    ),
-    doc=contract.NODES,
-)
+@check(points=1, doc=contract.NODES)
+@hint("Run the cell that builds the workspace and read its last lines.")
+@hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
     """The executable robot_controller starts and its node spins."""
     if robot.process.ending is not None:
         raise StudentError(diagnose_ending(robot.process))
 
 
-@check(points=1, group=GROUP, depends=("starts",), hints=("The name is the argument of super().__init__.",))
+@check(points=1, depends=("starts",))
+@hint("The name is the argument of super().__init__.")
 def test_node_name(robot: Robot) -> None:
     """The node is called robot_controller."""
     names = robot.nodes()
     expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("starts",),
-    hints=("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.",),
-)
+@check(points=2, depends=("starts",))
+@hint("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.")
 def test_subscribes_scan(robot: Robot) -> None:
     """It subscribes to scan as sensor_msgs/msg/LaserScan."""
     _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("subscribes_scan",),
-    hints=(
-        "A lidar publishes best-effort; a reliable subscription never matches it.",
-        "Give create_subscription qos_profile_sensor_data instead of 10.",
-    ),
-    doc=contract.QOS,
-)
+@check(points=2, depends=("subscribes_scan",), doc=contract.QOS)
+@hint("A lidar publishes best-effort; a reliable subscription never matches it.")
+@hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
     """Its scan subscription matches a lidar that publishes best-effort."""
     reason = unheard(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("starts",),
-    hints=("create_publisher(Twist, 'cmd_vel', 10) in __init__.",),
-)
+@check(points=1, depends=("starts",))
+@hint("create_publisher(Twist, 'cmd_vel', 10) in __init__.")
 def test_publishes_cmd_vel(robot: Robot) -> None:
     """It publishes cmd_vel as geometry_msgs/msg/Twist."""
     _expect_endpoint(robot, "publisher", "/cmd_vel", "geometry_msgs/msg/Twist")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("starts",),
-    hints=("create_subscription(String, 'status', self.status_callback, 10) in __init__.",),
-)
+@check(points=1, depends=("starts",))
+@hint("create_subscription(String, 'status', self.status_callback, 10) in __init__.")
 def test_subscribes_status(robot: Robot) -> None:
     """It subscribes to status as std_msgs/msg/String."""
     _expect_endpoint(robot, "subscription", "/status", "std_msgs/msg/String")

@@ -6,12 +6,12 @@ import signal
 
 from geometry_msgs.msg import Twist
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.harness import RealTimeHarness, Workspace
 from autograder.lockstep.failures import tail
 
-GROUP = "lifecycle"
+check = group("lifecycle")
 START_SECONDS = 30.0  # of real time
 COMPUTING = 10.0  # s of processor time; a node that is to publish needs one of them
 QUIET = 0.05  # s after a command: half a period later, a node at 10 Hz waits for work, as it does most of the time
@@ -23,13 +23,15 @@ HINTS = (
 )
 
 
-@check(points=2, group=GROUP, depends=("publishes_cmd_vel",), hints=HINTS)
+@check(points=2, depends=("publishes_cmd_vel",))
+@hint(*HINTS)
 def test_sigint(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, on Ctrl-C (SIGINT)."""
     _expect_clean_end(workspace, signal.SIGINT)
 
 
-@check(points=2, group=GROUP, depends=("publishes_cmd_vel",), hints=HINTS)
+@check(points=2, depends=("publishes_cmd_vel",))
+@hint(*HINTS)
 def test_sigterm(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, when a launch system stops it (SIGTERM)."""
     _expect_clean_end(workspace, signal.SIGTERM)

@@ -5,22 +5,17 @@ from __future__ import annotations
 import math
 import random
 
-from autograder.checks import check
+from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
 
-GROUP = "readings"
+check = group("readings")
 REACTS = ("forward_when_clear", "turns_when_blocked")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=REACTS,
-    hints=("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum: math.isnan."),
-    doc=contract.REP_117,
-)
+@check(points=2, depends=REACTS, doc=contract.REP_117)
+@hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum: math.isnan.")
 def test_nan(robot: Robot, draw: random.Random) -> None:
     """A nan among the readings hides no obstacle and is none itself."""
     near, bearing = draw.uniform(0.4, 0.8), draw.uniform(-25.0, 20.0)
@@ -33,35 +28,24 @@ def test_nan(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(hole)), "With nothing ahead and a few nan beams")
 
 
-@check(points=1, group=GROUP, depends=REACTS, hints=("+inf says: nothing within range_max.",), doc=contract.REP_117)
+@check(points=1, depends=REACTS, doc=contract.REP_117)
+@hint("+inf says: nothing within range_max.")
 def test_plus_inf(robot: Robot) -> None:
     """+inf means that nothing is there, and the way is clear."""
     expect_forward(robot.see(scan(fill=math.inf)), "With +inf from every beam")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=REACTS,
-    hints=("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers."),
-    doc=contract.REP_117,
-)
+@check(points=2, depends=REACTS, doc=contract.REP_117)
+@hint("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers.")
 def test_minus_inf(robot: Robot, draw: random.Random) -> None:
     """-inf means that something is too near to measure, and the way is blocked."""
     bearing = draw.uniform(-20.0, 15.0)
     expect_turn(robot.see(scan(Part(bearing, bearing + 5.0, -math.inf))), f"With -inf at {bearing:.0f}°")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=REACTS,
-    hints=(
-        "Many lidars send 0.0 where they measured nothing.",
-        "A finite reading counts only from range_min to range_max of the message.",
-    ),
-    doc=contract.LASER_SCAN,
-)
+@check(points=2, depends=REACTS, doc=contract.LASER_SCAN)
+@hint("Many lidars send 0.0 where they measured nothing.")
+@hint("A finite reading counts only from range_min to range_max of the message.")
 def test_phantoms(robot: Robot, draw: random.Random) -> None:
     """Finite readings below range_min or above range_max are phantoms."""
     bearing, tiny = draw.uniform(-20.0, 15.0), draw.uniform(0.01, 0.1)
@@ -74,12 +58,8 @@ def test_phantoms(robot: Robot, draw: random.Random) -> None:
     )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=REACTS,
-    hints=(contract.RULE_STOP, 'What does your minimum give when no reading is left? It must not mean "clear".'),
-)
+@check(points=2, depends=REACTS)
+@hint(contract.RULE_STOP, 'What does your minimum give when no reading is left? It must not mean "clear".')
 def test_blind(robot: Robot) -> None:
     """It stands still when no beam in front has a usable reading."""
     expect_stop(robot.see(scan(fill=math.nan)), "With nan from every beam")

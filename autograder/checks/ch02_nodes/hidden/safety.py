@@ -4,38 +4,26 @@ from __future__ import annotations
 
 import random
 
-from autograder.checks import check
+from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop
 from autograder.checks.ch02_nodes.support.scans import scan
 
-GROUP = "safety"
+check = group("safety")
 MARGIN = 0.15  # s beyond the time-out that a timer at 10 Hz may need
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("publishes_cmd_vel",),
-    hints=(
-        "obstacle_detected = False at the start means: drive before anything was seen.",
-        "Start with last_scan = None, and let None mean stop.",
-    ),
-)
+@check(points=2, depends=("publishes_cmd_vel",))
+@hint("obstacle_detected = False at the start means: drive before anything was seen.")
+@hint("Start with last_scan = None, and let None mean stop.")
 def test_stops_before_first_scan(fresh_robot: Robot) -> None:
     """It stands still, and says so on cmd_vel, until the first scan has come."""
     expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("forward_when_clear",),
-    hints=(
-        "Remember when the last scan came, by self.get_clock().now().",
-        "In control_loop, compare now with that time: older than 0.5 s means stop.",
-    ),
-)
+@check(points=3, depends=("forward_when_clear",))
+@hint("Remember when the last scan came, by self.get_clock().now().")
+@hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
 def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
     """It stands still when the newest scan is older than 0.5 s: the lidar has died."""
     distance = draw.uniform(1.5, 3.0)
@@ -46,12 +34,8 @@ def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
     expect_stop(late, f"More than {contract.STALE_AFTER} s after the last scan")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("stops_when_stale",),
-    hints=("Keep looking at the age of the newest scan; a stop is no state to be stuck in.",),
-)
+@check(points=1, depends=("stops_when_stale",))
+@hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
 def test_recovers(robot: Robot, draw: random.Random) -> None:
     """It drives again when scans come again."""
     distance = draw.uniform(1.5, 3.0)

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.robot import Robot
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
-GROUP = "timing"
+check = group("timing")
 SECONDS = 20.0
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("publishes_cmd_vel",),
-    hints=(
-        "create_timer(0.1, self.control_loop) calls control_loop ten times a second.",
-        "Publish in the timer's callback and nowhere else, once each time.",
-    ),
-)
+@check(points=2, depends=("publishes_cmd_vel",))
+@hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
+@hint("Publish in the timer's callback and nowhere else, once each time.")
 def test_ten_hertz(robot: Robot) -> None:
     """It publishes ten commands a second, with scans and without."""
     for situation in ("with scans", "without scans"):
@@ -31,15 +25,9 @@ def test_ten_hertz(robot: Robot) -> None:
         expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second {situation}, instead of 10.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("subscribes_scan",),
-    hints=(
-        "A warning at every scan is 10 lines a second, and nobody reads them.",
-        "self.get_logger().warning(..., throttle_duration_sec=1.0)",
-    ),
-)
+@check(points=2, depends=("subscribes_scan",))
+@hint("A warning at every scan is 10 lines a second, and nobody reads them.")
+@hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
     """It logs at most about one line a second while it is blocked."""
     before = len(robot.output.splitlines())

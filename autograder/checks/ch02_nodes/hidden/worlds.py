@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 
-from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch02_nodes.hidden import terrain
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.gallery import Gallery
@@ -14,7 +14,7 @@ from autograder.harness.drive import LISTENS, OFFERS
 from sim import Recording, RobotSpec, Simulation, World, clearance
 from sim.rows import row_at, state_at
 
-GROUP = "worlds"
+check = group("worlds")
 SECONDS = 60.0
 RADIUS = 0.18  # m
 LEAST_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
@@ -26,19 +26,22 @@ HINTS = (
 )
 
 
-@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+@check(points=3, depends=DRIVES)
+@hint(*HINTS)
 def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
     _expect_safe_drive(workspace, terrain.furnished_room(draw), draw, gallery)
 
 
-@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+@check(points=3, depends=DRIVES)
+@hint(*HINTS)
 def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
     _expect_safe_drive(workspace, terrain.hall_of_pillars(draw), draw, gallery)
 
 
-@check(points=3, group=GROUP, depends=DRIVES, hints=HINTS)
+@check(points=3, depends=DRIVES)
+@hint(*HINTS)
 def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""
     _expect_safe_drive(workspace, terrain.bent_corridor(draw), draw, gallery)

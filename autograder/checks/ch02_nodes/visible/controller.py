@@ -4,42 +4,26 @@ from __future__ import annotations
 
 import math
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn, unheard
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
-GROUP = "controller"
-SEEN = Visibility.VISIBLE
+check = group("controller")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    hints=(
-        "The sentence above names the error, the lines below it say where.",
-        "It needs the whole file: forward_clearance, the class and main.",
-    ),
-    doc=contract.NODES,
-)
+@check(points=1, doc=contract.NODES)
+@hint("The sentence above names the error, the lines below it say where.")
+@hint("It needs the whole file: forward_clearance, the class and main.")
 def test_starts(robot: Robot) -> None:
     """The package builds and its node robot_controller spins."""
     names = robot.nodes()
     expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("starts",),
-    hints=(
-        "The three calls stand in __init__: create_publisher once, create_subscription twice.",
-        "'cmd_vel' is published as Twist; 'scan' comes as LaserScan and 'status' as String.",
-    ),
-    doc=contract.NODES,
-)
+@check(points=1, depends=("starts",), doc=contract.NODES)
+@hint("The three calls stand in __init__: create_publisher once, create_subscription twice.")
+@hint("'cmd_vel' is published as Twist; 'scan' comes as LaserScan and 'status' as String.")
 def test_topics(robot: Robot) -> None:
     """It subscribes to scan and status and publishes cmd_vel."""
     missing = [topic for topic in ("/scan", "/status") if not robot.takes(topic)]
@@ -47,49 +31,31 @@ def test_topics(robot: Robot) -> None:
     expect(not missing, f"Nothing of the right type is on {', '.join(missing)}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("topics",),
-    hints=(
-        "A lidar publishes best-effort; a reliable subscription never matches it.",
-        "Give create_subscription qos_profile_sensor_data instead of 10.",
-    ),
-    doc=contract.QOS,
-)
+@check(points=1, depends=("topics",), doc=contract.QOS)
+@hint("A lidar publishes best-effort; a reliable subscription never matches it.")
+@hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_qos(robot: Robot) -> None:
     """A best-effort lidar reaches its scan subscription."""
     reason = unheard(robot)
     expect(not reason, f"It would get no scan: {reason}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("topics",),
-    hints=(contract.RULE_STOP, "Start with last_scan = None, and let None mean stop."),
-)
+@check(points=1, depends=("topics",))
+@hint(contract.RULE_STOP, "Start with last_scan = None, and let None mean stop.")
 def test_waits(fresh_robot: Robot) -> None:
     """It stands still until the first scan has come."""
     expect_stop(fresh_robot.left_alone(1.0), "Before the first scan")
 
 
-@check(points=1, group=GROUP, visibility=SEEN, depends=("topics",), hints=(contract.RULE_FORWARD,))
+@check(points=1, depends=("topics",))
+@hint(contract.RULE_FORWARD)
 def test_drives(robot: Robot) -> None:
     """It drives straight on while the way is clear."""
     expect_forward(robot.see(scan(fill=2.0)), "With 2 m of free space all around")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("topics",),
-    hints=(contract.RULE_TURN, "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]."),
-    doc=contract.LASER_SCAN,
-)
+@check(points=1, depends=("topics",), doc=contract.LASER_SCAN)
+@hint(contract.RULE_TURN, "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_turns(robot: Robot) -> None:
     """It turns left when a wall is 0.6 m ahead, and only when it is ahead."""
     expect_turn(robot.see(scan(Part(-10.0, 10.0, 0.6))), "With a wall 0.6 m ahead")
@@ -97,30 +63,17 @@ def test_turns(robot: Robot) -> None:
     expect_forward(robot.see(scan(Part(150.0, 180.0, 0.6))), "With a wall 0.6 m behind")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("drives", "turns"),
-    hints=("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum."),
-    doc=contract.REP_117,
-)
+@check(points=1, depends=("drives", "turns"), doc=contract.REP_117)
+@hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum.")
 def test_nan(robot: Robot) -> None:
     """A nan among the readings hides no wall."""
     wall = scan(Part(-10.0, 10.0, 0.6), Part(0.0, 0.0, math.nan))
     expect_turn(robot.see(wall), "With a wall 0.6 m ahead and one beam nan")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("drives",),
-    hints=(
-        "Remember when the last scan came, by self.get_clock().now().",
-        "In control_loop, compare now with that time: older than 0.5 s means stop.",
-    ),
-)
+@check(points=1, depends=("drives",))
+@hint("Remember when the last scan came, by self.get_clock().now().")
+@hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
 def test_dead_lidar(robot: Robot) -> None:
     """It stands still one second after the last scan."""
     robot.see(scan(fill=2.0))
@@ -129,13 +82,8 @@ def test_dead_lidar(robot: Robot) -> None:
     expect_stop(robot.messages("/cmd_vel", since=began + 1.0), "A second after the last scan")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("topics",),
-    hints=("create_timer(0.1, self.control_loop) calls control_loop ten times a second.",),
-)
+@check(points=1, depends=("topics",))
+@hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 def test_rate(robot: Robot) -> None:
     """It publishes ten commands a second."""
     began = robot.seconds

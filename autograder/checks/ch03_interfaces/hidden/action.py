@@ -9,12 +9,12 @@ from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
 from rclpy.action import get_action_names_and_types
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, Driver, stopped
 
-GROUP = "action"
+check = group("action")
 MOVES = ("drive_moves",)
 SLACK = 0.02  # m
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
@@ -30,16 +30,9 @@ EXECUTOR = (
 )
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("drive_distance", "generated"),
-    hints=(
-        "Start it with ros2 run my_robot_package distance_driver and read its last lines.",
-        "ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=1, depends=("drive_distance", "generated"), doc=contract.ACTION)
+@hint("Start it with ros2 run my_robot_package distance_driver and read its last lines.")
+@hint("ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.")
 def test_drive_serves(driver: Driver) -> None:
     """The node distance_driver serves the action drive_distance."""
     names = driver.nodes()
@@ -56,13 +49,8 @@ def test_drive_serves(driver: Driver) -> None:
     expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("drive_serves",),
-    hints=("Start with self.position = None, and reject while it is None.",),
-    doc=contract.ACTION,
-)
+@check(points=1, depends=("drive_serves",), doc=contract.ACTION)
+@hint("Start with self.position = None, and reject while it is None.")
 def test_drive_needs_odometry(driver: Driver) -> None:
     """Before any odometry has come, a goal is rejected."""
     goal = driver.send(1.0)
@@ -72,13 +60,8 @@ def test_drive_needs_odometry(driver: Driver) -> None:
     expect(not driver.messages(COMMANDS), "The robot was moved before the first odometry.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drive_serves",),
-    hints=EXECUTOR,
-    doc=contract.GROUPS,
-)
+@check(points=2, depends=("drive_serves",), doc=contract.GROUPS)
+@hint(*EXECUTOR)
 def test_drive_moves(ready: Driver, draw: random.Random) -> None:
     """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
     speed = draw.uniform(0.3, 0.45)
@@ -94,7 +77,8 @@ def test_drive_moves(ready: Driver, draw: random.Random) -> None:
     expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
 
 
-@check(points=2, group=GROUP, depends=MOVES, hints=EXECUTOR, doc=contract.ACTION)
+@check(points=2, depends=MOVES, doc=contract.ACTION)
+@hint(*EXECUTOR)
 def test_drive_succeeds(ready: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
     for speed in (0.5, 0.4):
@@ -111,13 +95,8 @@ def test_drive_succeeds(ready: Driver, draw: random.Random) -> None:
         ready.place(ready.x, ready.y, ready.heading + math.pi / 2.0)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drive_succeeds",),
-    hints=("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.",),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=("drive_succeeds",), doc=contract.ACTION)
+@hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 def test_drive_result(ready: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = ready.x, ready.y
@@ -130,15 +109,8 @@ def test_drive_result(ready: Driver, draw: random.Random) -> None:
     expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=MOVES,
-    hints=(
-        "goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=MOVES, doc=contract.ACTION)
+@hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
 def test_drive_feedback(ready: Driver, draw: random.Random) -> None:
     """Feedback comes on the way: driven grows, and remaining is what is left."""
     distance = draw.uniform(0.4, 0.5)
@@ -153,16 +125,9 @@ def test_drive_feedback(ready: Driver, draw: random.Random) -> None:
     expect(driven == sorted(driven) and driven[-1] > driven[0], "driven did not grow on the way.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drive_serves",),
-    hints=(
-        "goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.",
-        "0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=("drive_serves",), doc=contract.ACTION)
+@hint("goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.")
+@hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(ready: Driver, draw: random.Random) -> None:
     """A goal whose distance or speed is out of its range is rejected, and the robot stays."""
     over = draw.uniform(0.05, 2.0)
@@ -186,16 +151,8 @@ def test_drive_rejects(ready: Driver, draw: random.Random) -> None:
     expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=MOVES,
-    hints=(
-        "At most means <=: 5.0 m and 0.5 m/s can be driven.",
-        "speed has a default in the goal; do not ask for more.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=1, depends=MOVES, doc=contract.ACTION)
+@hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
 def test_drive_limits(ready: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""
     for distance, speed in ((MAX_DISTANCE, None), (0.5, MAX_SPEED)):

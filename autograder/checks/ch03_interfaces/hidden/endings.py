@@ -7,23 +7,18 @@ import random
 
 from action_msgs.msg import GoalStatus
 
-from autograder.checks import check, expect
-from autograder.checks.ch03_interfaces.hidden.action import GROUP, LONG, MOVES, NAMES, straight
+from autograder.checks import expect, group, hint
+from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, straight
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import PATIENCE
 from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
 
+check = group("action", doc=contract.ACTION)
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=MOVES,
-    hints=(
-        "Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().",
-        "cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.",
-    ),
-    doc=contract.ACTION,
-)
+
+@check(points=3, depends=MOVES)
+@hint("Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().")
+@hint("cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.")
 def test_drive_cancels(ready: Driver, draw: random.Random) -> None:
     """A cancel stops the robot at once: the goal ends CANCELED, and the result says how far it came and why."""
     x, y = ready.x, ready.y
@@ -48,16 +43,9 @@ def test_drive_cancels(ready: Driver, draw: random.Random) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drive_cancels",),
-    hints=(
-        "Remember that a goal is being driven when you accept it, and forget it when it has ended.",
-        "self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=("drive_cancels",))
+@hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
+@hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(ready: Driver) -> None:
     """While a goal is driven another one is rejected; the first goes on, and after it there is room for the next."""
     first = ready.start(4.5, 0.3)
@@ -77,16 +65,9 @@ def test_drive_one_at_a_time(ready: Driver) -> None:
     ready.finish(third, LONG, "With 0.10 m to drive")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=MOVES,
-    hints=(
-        "Remember how far the robot had come, and when; a centimetre more sets both anew.",
-        "self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=MOVES)
+@hint("Remember how far the robot had come, and when; a centimetre more sets both anew.")
+@hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
 def test_drive_stuck(ready: Driver) -> None:
     """A robot that gets no further for a second is stopped, and the goal ends ABORTED with a reason."""
     ready.stuck = True
@@ -105,13 +86,8 @@ def test_drive_stuck(ready: Driver) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.7)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drive_stuck",),
-    hints=("Without odometry the position stays as it was, and that is no progress, either.",),
-    doc=contract.ACTION,
-)
+@check(points=2, depends=("drive_stuck",))
+@hint("Without odometry the position stays as it was, and that is no progress, either.")
 def test_drive_blind(ready: Driver) -> None:
     """When the odometry falls silent on the way, the robot is stopped and the goal ends ABORTED."""
     goal = ready.start(4.5, 0.5)

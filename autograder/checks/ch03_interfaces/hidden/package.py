@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 from autograder.diagnosis import OK, Diagnosis
@@ -14,7 +14,7 @@ from autograder.packages import find_packages
 from autograder.probes import manifest
 from autograder.probes.installed import look
 
-GROUP = "package"
+check = group("package", doc=contract.DEFINE)
 GENERATORS, RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
 GROUP_OF_INTERFACES = "rosidl_interface_packages"
 HINTS = (
@@ -23,7 +23,8 @@ HINTS = (
 )
 
 
-@check(points=2, group=GROUP, hints=HINTS, doc=contract.DEFINE)
+@check(points=2)
+@hint(*HINTS)
 def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
@@ -43,32 +44,18 @@ def test_manifest(workspace: Workspace) -> None:
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 5), 2))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("readable",),
-    hints=(
-        "Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.",
-        "Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.",
-    ),
-    doc=contract.DEFINE,
-)
+@check(points=2, depends=("readable",))
+@hint("Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.")
+@hint("Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds my_robot_interfaces."""
     if builds[INTERFACES] is not OK:
         raise StudentError(builds[INTERFACES])
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("builds",),
-    hints=(
-        "Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.",
-        "rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.",
-    ),
-    doc=contract.DEFINE,
-)
+@check(points=2, depends=("builds",))
+@hint("Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.")
+@hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
     """The build generates Python classes from all three definitions."""
     installed = look(workspace.install, INTERFACES)
@@ -86,13 +73,8 @@ def test_generated(workspace: Workspace) -> None:
         raise CheckFailed(f"There is no class for {', '.join(absent)}: {why}.", fraction=fraction)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("builds",),
-    hints=("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.",),
-    doc=contract.DEFINE,
-)
+@check(points=1, depends=("builds",))
+@hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
 def test_indexed(workspace: Workspace) -> None:
     """The ament index knows the package, so that ros2 and other packages find it."""
     installed = look(workspace.install, INTERFACES)

@@ -6,27 +6,20 @@ import math
 import random
 from typing import Any
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import METRES_PER_PERCENT, UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import SERVICE, Reporter
 
-GROUP = "service"
+check = group("service", doc=contract.SERVICE)
 ANSWERS = ("trip_answers",)
 SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("status_starts",),
-    hints=(
-        "self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.",
-        "check_trip(self, request, response) returns the response.",
-    ),
-    doc=contract.SERVICE,
-)
+@check(points=1, depends=("status_starts",))
+@hint("self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.")
+@hint("check_trip(self, request, response) returns the response.")
 def test_trip_answers(reporter: Reporter) -> None:
     """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
     there: dict[str, list[str]] = {}
@@ -45,19 +38,15 @@ def test_trip_answers(reporter: Reporter) -> None:
     reporter.ask([])
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=ANSWERS,
-    hints=("An unknown battery makes no trip possible; start with possible = False.",),
-    doc=contract.SERVICE,
-)
+@check(points=2, depends=ANSWERS)
+@hint("An unknown battery makes no trip possible; start with possible = False.")
 def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
     _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
 
 
-@check(points=2, group=GROUP, depends=ANSWERS, hints=(RULE,), doc=contract.SERVICE)
+@check(points=2, depends=ANSWERS)
+@hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
     for _ in range(4):
@@ -75,13 +64,8 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
         expect(answer.battery_at_end == left, f"{situation}, battery_at_end is {answer.battery_at_end}, not {left}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("trip_level",),
-    hints=(RULE, "Exactly the reserve left is enough: at least means >=."),
-    doc=contract.SERVICE,
-)
+@check(points=2, depends=("trip_level",))
+@hint(RULE, "Exactly the reserve left is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
     for _ in range(2):
@@ -95,13 +79,8 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
             expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("trip_level",),
-    hints=("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not."),
-    doc=contract.SERVICE,
-)
+@check(points=1, depends=("trip_level",))
+@hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
     reporter.level(draw.randrange(10, 40))
@@ -110,16 +89,9 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=ANSWERS,
-    hints=(
-        "A leg is a distance: at least 0, and finite. nan is not at least 0.",
-        "0.0 <= leg < math.inf holds for distances alone.",
-    ),
-    doc=contract.SERVICE,
-)
+@check(points=2, depends=ANSWERS)
+@hint("A leg is a distance: at least 0, and finite. nan is not at least 0.")
+@hint("0.0 <= leg < math.inf holds for distances alone.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
     reporter.level(draw.randrange(60, 101))
@@ -129,13 +101,8 @@ def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
         _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("trip_possible",),
-    hints=("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.",),
-    doc=contract.SERVICE,
-)
+@check(points=1, depends=("trip_possible",))
+@hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
     reporter.level(50)

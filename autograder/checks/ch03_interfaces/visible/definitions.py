@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import Visibility, check
+from autograder.checks import group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like
 from autograder.diagnosis import OK, Diagnosis
@@ -12,8 +12,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes.interfaces import Aspect
 
-GROUP = "definitions"
-SEEN = Visibility.VISIBLE
+check = group("definitions")
 ALL = tuple(Aspect)
 TABLES = (
     "Compare your file with the exercise's table, line by line.",
@@ -21,34 +20,30 @@ TABLES = (
 )
 
 
-@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.DEFINE)
+@check(points=1, doc=contract.DEFINE)
+@hint(*TABLES)
 def test_robot_status(workspace: Workspace) -> None:
     """msg/RobotStatus.msg is as the table says."""
     expect_like(workspace, contract.ROBOT_STATUS, *ALL)
 
 
-@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.LANGUAGE)
+@check(points=1, doc=contract.LANGUAGE)
+@hint(*TABLES)
 def test_check_trip(workspace: Workspace) -> None:
     """srv/CheckTrip.srv is as the table says."""
     expect_like(workspace, contract.CHECK_TRIP, *ALL)
 
 
-@check(points=1, group=GROUP, visibility=SEEN, hints=TABLES, doc=contract.LANGUAGE)
+@check(points=1, doc=contract.LANGUAGE)
+@hint(*TABLES)
 def test_drive_distance(workspace: Workspace) -> None:
     """action/DriveDistance.action is as the table says."""
     expect_like(workspace, contract.DRIVE_DISTANCE, *ALL)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    hints=(
-        "Read the first error above; `colcon build` in a terminal shows the same.",
-        "CMakeLists.txt names each file in rosidl_generate_interfaces; package.xml says ament_cmake in <export>.",
-    ),
-    doc=contract.DEFINE,
-)
+@check(points=1, doc=contract.DEFINE)
+@hint("Read the first error above; `colcon build` in a terminal shows the same.")
+@hint("CMakeLists.txt names each file in rosidl_generate_interfaces; package.xml says ament_cmake in <export>.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both packages."""
     for diagnosis in builds.values():

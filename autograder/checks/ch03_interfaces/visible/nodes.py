@@ -4,26 +4,17 @@ from __future__ import annotations
 
 from action_msgs.msg import GoalStatus
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 
-SEEN = Visibility.VISIBLE
 BUILT = ("robot_status", "check_trip", "drive_distance", "builds")
 
 
-@check(
-    points=1,
-    group="status",
-    visibility=SEEN,
-    depends=BUILT,
-    hints=(
-        "create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.",
-        "A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.",
-    ),
-    doc=contract.BATTERY,
-)
+@check(points=1, group="status", depends=BUILT, doc=contract.BATTERY)
+@hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.")
+@hint("A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.")
 def test_status(reporter: Reporter) -> None:
     """The status says what the battery says: unknown at first, then 40 percent."""
     first = reporter.status()
@@ -35,14 +26,8 @@ def test_status(reporter: Reporter) -> None:
     expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
 
 
-@check(
-    points=1,
-    group="service",
-    visibility=SEEN,
-    depends=BUILT,
-    hints=("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.",),
-    doc=contract.SERVICE,
-)
+@check(points=1, group="service", depends=BUILT, doc=contract.SERVICE)
+@hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
     reporter.level(40)
@@ -54,17 +39,9 @@ def test_trip(reporter: Reporter) -> None:
         )
 
 
-@check(
-    points=1,
-    group="action",
-    visibility=SEEN,
-    depends=BUILT,
-    hints=(
-        "goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.",
-        "Without a MultiThreadedExecutor, execute never hears of the odometry.",
-    ),
-    doc=contract.ACTION,
-)
+@check(points=1, group="action", depends=BUILT, doc=contract.ACTION)
+@hint("goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.")
+@hint("Without a MultiThreadedExecutor, execute never hears of the odometry.")
 def test_drive(driver: Driver) -> None:
     """The robot drives 0.2 m, with feedback, and stops."""
     driver.place(0.0, 0.0, 0.0)
@@ -76,14 +53,8 @@ def test_drive(driver: Driver) -> None:
     expect(stopped(commands), "After the goal had ended, the last command was no stop.")
 
 
-@check(
-    points=1,
-    group="action",
-    visibility=SEEN,
-    depends=("drive",),
-    hints=("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.",),
-    doc=contract.ACTION,
-)
+@check(points=1, group="action", depends=("drive",), doc=contract.ACTION)
+@hint("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.")
 def test_cancel(driver: Driver) -> None:
     """A cancel stops the robot, and the goal ends CANCELED."""
     goal = driver.start(4.0, 0.3)

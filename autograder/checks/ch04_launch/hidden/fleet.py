@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.shared import Shared
 from autograder.checks.ch04_launch.support import contract
@@ -11,32 +11,21 @@ from autograder.checks.ch04_launch.visible.launches import HEAR_SECONDS, speaker
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
-GROUP = "fleet"
+check = group("fleet")
 MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is
 GROUPED = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
 
 
-@check(
-    points=3,
-    group=GROUP,
-    hints=("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED),
-    doc=contract.LARGE,
-)
+@check(points=3, doc=contract.LARGE)
+@hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED)
 def test_two_robots(shared: Shared) -> None:
     """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
     launch_probe.expect_nodes(shared.fleet(), in_spaces(FIRST, SECOND))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("two_robots",),
-    hints=(
-        "IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)",
-        "path leads to launch/robot.launch.py in the package's share folder.",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=2, depends=("two_robots",), doc=contract.LARGE)
+@hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
+@hint("path leads to launch/robot.launch.py in the package's share folder.")
 def test_includes(shared: Shared) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
     wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
@@ -48,15 +37,9 @@ def test_includes(shared: Shared) -> None:
     )
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=(
-        "ros2 launch -s my_robot_bringup two_robots.launch.py shows what you have declared.",
-        "DeclareLaunchArgument('first', default_value='robot1', description='...')",
-    ),
-    doc=contract.SUBSTITUTIONS,
-)
+@check(points=1, doc=contract.SUBSTITUTIONS)
+@hint("ros2 launch -s my_robot_bringup two_robots.launch.py shows what you have declared.")
+@hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(shared: Shared) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
     arguments = launch_probe.shown_arguments(shared.fleet_workspace(), PACKAGE, FLEET)  # those of what it includes, too
@@ -64,28 +47,16 @@ def test_fleet_arguments(shared: Shared) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("two_robots",),
-    hints=("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED),
-    doc=contract.SUBSTITUTIONS,
-)
+@check(points=2, depends=("two_robots",), doc=contract.SUBSTITUTIONS)
+@hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
 def test_spaces(shared: Shared, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
     launch_probe.expect_nodes(_renamed(shared, inputs), in_spaces(*inputs.names))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("spaces",),
-    hints=(
-        "launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.",
-        "A robot's robot_name is its own namespace's name.",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=2, depends=("spaces",), doc=contract.LARGE)
+@hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
+@hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(shared: Shared, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
     harness = _renamed(shared, inputs)
@@ -93,16 +64,9 @@ def test_robot_names(shared: Shared, inputs: Inputs) -> None:
         launch_probe.expect_parameters(harness, f"/{name}/reporter", {"robot_name": name})
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("spaces",),
-    hints=(
-        "The included file has an argument of its own called speed: hand yours on to it.",
-        "launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=2, depends=("spaces",), doc=contract.LARGE)
+@hint("The included file has an argument of its own called speed: hand yours on to it.")
+@hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(shared: Shared, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
     harness = _renamed(shared, inputs)
@@ -110,16 +74,9 @@ def test_fleet_speed(shared: Shared, inputs: Inputs) -> None:
         launch_probe.expect_parameters(harness, f"/{name}/driver", {"speed": inputs.speed})
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("two_robots",),
-    hints=(
-        "SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.",
-        "With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=3, depends=("two_robots",), doc=contract.LARGE)
+@hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
+@hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
 def test_status(shared: Shared) -> None:
     """Both robots report on /fleet/status."""
     harness = shared.fleet()
@@ -133,16 +90,9 @@ def test_status(shared: Shared) -> None:
     expect(len(speakers(harness)) > 0, f"Nothing was heard on {SHARED} within {HEAR_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("two_robots",),
-    hints=(
-        "Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.",
-        "ros2 topic info -v /robot1/cmd_vel names who is at which end.",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=2, depends=("two_robots",), doc=contract.LARGE)
+@hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
+@hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(shared: Shared) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
     harness = shared.fleet()
@@ -154,7 +104,8 @@ def test_own_commands(shared: Shared) -> None:
         )
 
 
-@check(points=1, group=GROUP, depends=("two_robots",), hints=("What Node(...) starts, the launch ends.",))
+@check(points=1, depends=("two_robots",))
+@hint("What Node(...) starts, the launch ends.")
 def test_fleet_stop(shared: Shared) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
     launch_probe.expect_clean_stop(shared.fleet())

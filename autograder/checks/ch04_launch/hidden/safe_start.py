@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.shared import Shared
 from autograder.checks.ch04_launch.support import contract
@@ -12,19 +12,15 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
-GROUP = "safe_start"
+check = group("safe_start")
 RESPAWN_SECONDS = 10.0  # real time; half a second is asked for
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
 WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
 
-@check(
-    points=3,
-    group=GROUP,
-    hints=("The driver is in no list but the one that after_self_test returns.", WAITS),
-    doc=contract.EVENTS,
-)
+@check(points=3, doc=contract.EVENTS)
+@hint("The driver is in no list but the one that after_self_test returns.", WAITS)
 def test_order(shared: Shared, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
     harness = shared.safe(battery=inputs.enough)
@@ -39,16 +35,9 @@ def test_order(shared: Shared, inputs: Inputs) -> None:
     expect("self_test" in launch_probe.ended(before), "The driver was started before the self-test had ended.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("order",),
-    hints=(
-        "The reporter waits for nobody: it stands in the LaunchDescription itself.",
-        "What stands in the list is started at once, one thing after the other, without waiting.",
-    ),
-    doc=contract.EVENTS,
-)
+@check(points=2, depends=("order",), doc=contract.EVENTS)
+@hint("The reporter waits for nobody: it stands in the LaunchDescription itself.")
+@hint("What stands in the list is started at once, one thing after the other, without waiting.")
 def test_reporter_first(shared: Shared, inputs: Inputs) -> None:
     """The reporter starts at once, while the self-test still runs."""
     harness = shared.safe(battery=inputs.enough)
@@ -57,15 +46,9 @@ def test_reporter_first(shared: Shared, inputs: Inputs) -> None:
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 
 
-@check(
-    points=3,
-    group=GROUP,
-    hints=(
-        "event.returncode is the exit status of the process that has ended; 0 is success.",
-        "return [Shutdown(reason='...')] where it is not 0.",
-    ),
-    doc=contract.EVENTS,
-)
+@check(points=3, doc=contract.EVENTS)
+@hint("event.returncode is the exit status of the process that has ended; 0 is success.")
+@hint("return [Shutdown(reason='...')] where it is not 0.")
 def test_fails_safe(shared: Shared, inputs: Inputs) -> None:
     """When the self-test fails, the driver is never started and everything ends."""
     harness = shared.safe(battery=inputs.empty)
@@ -80,15 +63,9 @@ def test_fails_safe(shared: Shared, inputs: Inputs) -> None:
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("order",),
-    hints=(
-        "80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.",
-        "ParameterValue(LaunchConfiguration('battery'), value_type=float)",
-    ),
-)
+@check(points=1, depends=("order",))
+@hint("80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.")
+@hint("ParameterValue(LaunchConfiguration('battery'), value_type=float)")
 def test_whole_battery(shared: Shared) -> None:
     """The default, 80 without a point, is a battery too."""
     harness = shared.safe()
@@ -98,13 +75,8 @@ def test_whole_battery(shared: Shared) -> None:
     )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("reporter_first",),
-    hints=("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own."),
-    doc=contract.LAUNCH,
-)
+@check(points=2, depends=("reporter_first",), doc=contract.LAUNCH)
+@hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawns(shared: Shared, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
     harness = shared.safe(battery=inputs.enough)
@@ -115,25 +87,15 @@ def test_respawns(shared: Shared, inputs: Inputs) -> None:
     expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("order",),
-    hints=("The handler's target_action is the very Node that is started.", FOLLOWS),
-    doc=contract.EVENTS,
-)
+@check(points=2, depends=("order",), doc=contract.EVENTS)
+@hint("The handler's target_action is the very Node that is started.", FOLLOWS)
 def test_driver_crash(shared: Shared, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
     _expect_end(shared.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("whole_battery",),
-    hints=("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS),
-    doc=contract.EVENTS,
-)
+@check(points=1, depends=("whole_battery",), doc=contract.EVENTS)
+@hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
 def test_driver_end(shared: Shared) -> None:
     """When the driver ends by itself, with exit status 0, everything ends too."""
     _expect_end(shared.safe(), signal.SIGINT, "The driver ended with exit status 0")

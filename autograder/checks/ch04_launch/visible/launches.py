@@ -9,14 +9,13 @@ from dataclasses import dataclass
 import pytest
 from std_msgs.msg import String
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
-SEEN = Visibility.VISIBLE
 HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
 
 
@@ -48,16 +47,9 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         )
 
 
-@check(
-    points=1,
-    group="robot",
-    visibility=SEEN,
-    hints=(
-        "DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.",
-        "The names are robot_name, speed and report.",
-    ),
-    doc=contract.SUBSTITUTIONS,
-)
+@check(points=1, group="robot", doc=contract.SUBSTITUTIONS)
+@hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
+@hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
     """robot.launch.py declares robot_name, speed and report."""
     arguments = launch_probe.shown_arguments(workspace, PACKAGE, ROBOT)
@@ -65,17 +57,9 @@ def test_arguments(workspace: Workspace) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(
-    points=1,
-    group="robot",
-    visibility=SEEN,
-    depends=("arguments",),
-    hints=(
-        "Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).",
-        "parameters=[config, {'speed': speed}]: what stands later wins.",
-    ),
-    doc=contract.LAUNCH,
-)
+@check(points=1, group="robot", depends=("arguments",), doc=contract.LAUNCH)
+@hint("Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
+@hint("parameters=[config, {'speed': speed}]: what stands later wins.")
 def test_robot(launches: Launches) -> None:
     """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
     launch_probe.expect_nodes(launches.robot, [DRIVER, REPORTER])
@@ -84,29 +68,16 @@ def test_robot(launches: Launches) -> None:
     launch_probe.expect_clean_stop(launches.robot)
 
 
-@check(
-    points=1,
-    group="robot",
-    visibility=SEEN,
-    depends=("robot",),
-    hints=("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.",),
-    doc=contract.SUBSTITUTIONS,
-)
+@check(points=1, group="robot", depends=("robot",), doc=contract.SUBSTITUTIONS)
+@hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 def test_quiet(launches: Launches) -> None:
     """With report:=false, robot.launch.py starts the driver alone."""
     launch_probe.expect_nodes(launches.quiet, [DRIVER])
 
 
-@check(
-    points=1,
-    group="fleet",
-    visibility=SEEN,
-    hints=(
-        "GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])",
-        "SetRemap must stand before the include: it holds for what follows it in its group.",
-    ),
-    doc=contract.LARGE,
-)
+@check(points=1, group="fleet", doc=contract.LARGE)
+@hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
+@hint("SetRemap must stand before the include: it holds for what follows it in its group.")
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts two robots, and both report on /fleet/status."""
     harness = launches.fleet
@@ -115,16 +86,9 @@ def test_two_robots(launches: Launches) -> None:
     expect(len(speakers(harness)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(harness))) or 'nobody'} was heard.")
 
 
-@check(
-    points=1,
-    group="safe_start",
-    visibility=SEEN,
-    hints=(
-        "The driver is in no list but the one that after_self_test returns.",
-        "event.returncode is the exit status of the process that has ended; 0 is success.",
-    ),
-    doc=contract.EVENTS,
-)
+@check(points=1, group="safe_start", doc=contract.EVENTS)
+@hint("The driver is in no list but the one that after_self_test returns.")
+@hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 def test_safe_start(launches: Launches) -> None:
     """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
     launch_probe.expect_nodes(launches.full, [DRIVER, REPORTER])

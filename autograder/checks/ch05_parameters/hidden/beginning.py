@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch05_parameters.hidden.conftest import Custom
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
@@ -15,58 +15,39 @@ from autograder.harness import Workspace, drive
 from autograder.probes.parameters import Value, differences
 from sim import Pose, RobotSpec, Simulation, World, box
 
-GROUP = "start"
+check = group("start")
 RADIUS = 0.18  # m
 SECONDS = 20.0
 NEAR = 0.02  # m between where it stands and where it should
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "declare_parameter takes an override by itself; a set_parameters after it would undo that.",
-        "ignore_override=True lets the default win over a file: leave it out.",
-    ),
-    doc=contract.ARGUMENTS,
-)
+@check(points=2, depends=("names",), doc=contract.ARGUMENTS)
+@hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
+@hint("ignore_override=True lets the default win over a file: leave it out.")
 def test_overrides(custom: Custom) -> None:
     """Started with values from the command line, it has these values."""
     wrong = differences(custom.robot.parameters.values(*custom.values), custom.values)
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(custom.values)), 2))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("overrides",),
-    hints=("speed, which is given, asks for max_linear_velocity at each command: leave it so.",),
-)
+@check(points=2, depends=("overrides",))
+@hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
 def test_start_speed(custom: Custom) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
     speed = custom.robot.speed_at(custom.slow + 0.3)
     expect_speed(speed, custom.velocity, f"Started with max_linear_velocity {custom.velocity}")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("overrides",),
-    hints=("create_timer gets a period in seconds: 1.0 / frequency.",),
-)
+@check(points=2, depends=("overrides",))
+@hint("create_timer gets a period in seconds: 1.0 / frequency.")
 def test_start_rate(custom: Custom) -> None:
     """It publishes at the frequency that it was started with."""
     expect_rate(custom.robot.command_rate(), custom.frequency, f"Started with control_frequency {custom.frequency}")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("overrides",),
-    hints=("A battery below battery_threshold, in percent, means: stand still.",),
-)
+@check(points=1, depends=("overrides",))
+@hint("A battery below battery_threshold, in percent, means: stand still.")
 def test_start_threshold(custom: Custom) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
     for charge, speed in ((custom.threshold - 5, 0.0), (custom.threshold + 5, custom.velocity)):
@@ -75,15 +56,9 @@ def test_start_threshold(custom: Custom) -> None:
         expect_speed(custom.robot.speed_at(3.0), speed, situation)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("start_speed", "start_threshold"),
-    hints=(
-        "Look at the picture: where does it stand, and where should it?",
-        "Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).",
-    ),
-)
+@check(points=3, depends=("start_speed", "start_threshold"))
+@hint("Look at the picture: where does it stand, and where should it?")
+@hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
 def test_stops(custom: Custom, draw: random.Random, gallery: Gallery) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
     recording = drive(custom.robot, _towards_a_wall(draw), SECONDS).recording
@@ -97,15 +72,9 @@ def test_stops(custom: Custom, draw: random.Random, gallery: Gallery) -> None:
     expect(end < custom.safety + NEAR, sentence, fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("overrides",),
-    hints=(
-        "After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.",
-        "Equal distances do not fit together, either: it divides by their difference.",
-    ),
-)
+@check(points=2, depends=("overrides",))
+@hint("After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.")
+@hint("Equal distances do not fit together, either: it divides by their difference.")
 def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = draw.randrange(40, 90) / 100

@@ -5,28 +5,21 @@ from __future__ import annotations
 import random
 import re
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, scan
 from autograder.probes.parameters import Value, differences
 
-GROUP = "changes"
+check = group("changes")
 DISTANCES = ("safety_distance", "slow_distance")
 SPEED = 0.3  # m/s, the default
 ROUNDED = 0.051  # a value in a sentence may be rounded to one decimal
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "add_on_set_parameters_callback(self.validate) in __init__; it returns SetParametersResult(successful=...).",
-        "A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=3, depends=("names",), doc=contract.PARAMETERS)
+@hint("add_on_set_parameters_callback(self.validate) in __init__; it returns SetParametersResult(successful=...).")
+@hint("A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).")
 def test_contradiction(robot: Robot, draw: random.Random) -> None:
     """A safety distance that would not be below the slow distance is refused, whichever of the two is set."""
     above, below = round(draw.uniform(1.1, 2.5), 2), round(draw.uniform(0.25, 0.45), 2)
@@ -43,12 +36,8 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It refused {_told(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("contradiction",),
-    hints=("SetParametersResult(successful=False, reason=...), with contradiction's sentence.",),
-)
+@check(points=1, depends=("contradiction",))
+@hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
 def test_reason(robot: Robot, draw: random.Random) -> None:
     """Its reason names both parameters and their values."""
     safety = draw.randrange(120, 280) / 100
@@ -61,12 +50,8 @@ def test_reason(robot: Robot, draw: random.Random) -> None:
     )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("contradiction",),
-    hints=("Judge what will be, with all the values of the request; not one value after the other.",),
-)
+@check(points=2, depends=("contradiction",))
+@hint("Judge what will be, with all the values of the request; not one value after the other.")
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
     far = round(draw.uniform(1.4, 1.8), 2)
@@ -79,16 +64,9 @@ def test_together(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It took {_told(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("contradiction",),
-    hints=(
-        "validate says yes or no and does nothing else: no attribute, no timer, no log of a change.",
-        "What is to be done once a request was accepted stands in apply.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=2, depends=("contradiction",), doc=contract.PARAMETERS)
+@hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
+@hint("What is to be done once a request was accepted stands in apply.")
 def test_no_side_effects(fresh_robot: Robot) -> None:
     """A refused request changes nothing: no value, no speed, no rate."""
     robot = fresh_robot
@@ -103,16 +81,9 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
     expect_rate(robot.command_rate(), before, "After a refused request for 25 Hz")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "A value that was copied to an attribute in __init__ stays what it was.",
-        "speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.",
-    ),
-    doc=contract.IN_A_CLASS,
-)
+@check(points=2, depends=("names",), doc=contract.IN_A_CLASS)
+@hint("A value that was copied to an attribute in __init__ stays what it was.")
+@hint("speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.")
 def test_speed_change(robot: Robot, draw: random.Random) -> None:
     """A new max_linear_velocity is driven at once."""
     expect_speed(robot.speed_at(2.5), SPEED, "With its defaults and 2.5 m of free way")
@@ -121,12 +92,8 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
     expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("together",),
-    hints=("Both distances decide about the speed at each command, as they are then.",),
-)
+@check(points=2, depends=("together",))
+@hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide at once where it slows down and where it stops."""
     safety = draw.randrange(110, 150) / 100
@@ -137,12 +104,8 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
         expect_speed(robot.speed_at(distance), speed, situation)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("names",),
-    hints=("The threshold is asked for at each command, as it is then.",),
-)
+@check(points=1, depends=("names",))
+@hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides at once whether it stands still."""
     robot.charge(50.0)
@@ -151,15 +114,9 @@ def test_threshold_change(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...",
-        "A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.",
-    ),
-)
+@check(points=3, depends=("names",))
+@hint("add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...")
+@hint("A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.")
 def test_rate_change(robot: Robot, draw: random.Random) -> None:
     """A new control_frequency sets the rate of its commands, up and down."""
     for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
@@ -167,12 +124,8 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
         expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("rate_change", "speed_change"),
-    hints=("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.",),
-)
+@check(points=1, depends=("rate_change", "speed_change"))
+@hint("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.")
 def test_undisturbed(robot: Robot) -> None:
     """Its commands keep coming while somebody turns at another parameter all the time."""
     robot.see(2.5)
@@ -186,12 +139,8 @@ def test_undisturbed(robot: Robot) -> None:
     expect_rate(rate, 10.0, "While max_linear_velocity was changed all the time")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("names",),
-    hints=("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.",),
-)
+@check(points=1, depends=("names",))
+@hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
 def test_passes(robot: Robot) -> None:
     """Requests that have nothing to do with the distances pass."""
     _change(robot, robot.parameters.values("use_sim_time"))  # what it is: the harness's time goes by it

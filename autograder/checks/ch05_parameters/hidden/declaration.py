@@ -6,13 +6,13 @@ import random
 
 from rcl_interfaces.msg import ParameterDescriptor
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED, Wanted
 from autograder.checks.ch05_parameters.support.robot import Robot
 from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, near_misses, said, shortened
 
-GROUP = "declaration"
+check = group("declaration")
 SPELT = {
     "m": {"m", "metre", "metres", "meter", "meters"},
     "s": {"s", "second", "seconds"},
@@ -21,31 +21,18 @@ SPELT = {
 }
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=(
-        "Read the sentence above, then the last lines of the traceback below it.",
-        "python -m my_robot_package.nodes.configured_node, run in ws/src/my_robot_package, shows the same.",
-    ),
-    doc=contract.IN_A_CLASS,
-)
+@check(points=1, doc=contract.IN_A_CLASS)
+@hint("Read the sentence above, then the last lines of the traceback below it.")
+@hint("python -m my_robot_package.nodes.configured_node, run in ws/src/my_robot_package, shows the same.")
 def test_starts(robot: Robot) -> None:
     """The node configured_node starts and spins."""
     names = robot.nodes()
     expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("starts",),
-    hints=(
-        "One node.declare_parameter(name, default, descriptor) for each line of the table.",
-        "Compare the names letter by letter with ros2 param list /configured_node.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=2, depends=("starts",), doc=contract.PARAMETERS)
+@hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
+@hint("Compare the names letter by letter with ros2 param list /configured_node.")
 def test_names(robot: Robot) -> None:
     """It declares the six parameters of the table."""
     found = robot.parameters.names()
@@ -53,16 +40,9 @@ def test_names(robot: Robot) -> None:
     expect(not missing, missing_sentence(WANTED, found), fraction=_share(len(missing)))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.",
-        "A default of None leaves the type open.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=2, depends=("names",), doc=contract.PARAMETERS)
+@hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
+@hint("A default of None leaves the type open.")
 def test_types(robot: Robot) -> None:
     """Each has the type of the table."""
     wrong = [
@@ -73,19 +53,16 @@ def test_types(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, group=GROUP, depends=("types",), hints=("The default is declare_parameter's second argument.",))
+@check(points=1, depends=("types",))
+@hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
     """Started without any values, it has the defaults of the table."""
     wrong = differences(robot.initial, DEFAULTS)
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("names",),
-    hints=("ParameterDescriptor(description='...') is declare_parameter's third argument.",),
-)
+@check(points=1, depends=("names",))
+@hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
     described = robot.parameters.descriptors(*WANTED)
@@ -94,16 +71,9 @@ def test_descriptions(robot: Robot) -> None:
     expect(not poor, f"The description is missing, or names no unit: {', '.join(named)}.", fraction=_share(len(poor)))
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.",
-        "An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=3, depends=("names",), doc=contract.PARAMETERS)
+@hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
+@hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.")
 def test_ranges(robot: Robot, draw: random.Random) -> None:
     """Values outside the limits of the table are refused, and the descriptors say the limits."""
     described = robot.parameters.descriptors(*WANTED)
@@ -120,12 +90,8 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("names",),
-    hints=("read_only=True in the descriptor of robot_name; the others can be changed.",),
-)
+@check(points=1, depends=("names",))
+@hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
     """The robot's name is fixed once it has started."""
     before = robot.parameters.values("robot_name")
@@ -136,12 +102,8 @@ def test_read_only(robot: Robot) -> None:
     expect(fixed == ["robot_name"], f"Its descriptors say read-only of: {', '.join(fixed) or 'nothing'}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("types",),
-    hints=("dynamic_typing in a descriptor lets a value of any type in: leave it out.",),
-)
+@check(points=1, depends=("types",))
+@hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
     taken = [
@@ -157,15 +119,9 @@ def test_typed(robot: Robot) -> None:
     expect(not taken, f"It took {', '.join(taken)}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("names",),
-    hints=(
-        "Every declared name has work to do: what is not in the table is not declared.",
-        "allow_undeclared_parameters lets every misspelling in: leave it out.",
-    ),
-)
+@check(points=1, depends=("names",))
+@hint("Every declared name has work to do: what is not in the table is not declared.")
+@hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:
     """It declares nothing else, and refuses a name that was not declared."""
     others = sorted(robot.parameters.names() - set(WANTED))

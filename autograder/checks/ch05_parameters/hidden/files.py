@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 import pytest
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import OWN, SHARED, WANTED, fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 from autograder.harness import Workspace
 from autograder.probes.parameters import Value, differences, near_misses, read_file, shortened
 
-GROUP = "files"
+check = group("files")
 Entries = dict[str, dict[str, Value]]
 
 
@@ -23,28 +23,16 @@ def fleet(workspace: Workspace) -> Callable[[], Entries]:
     return lambda: read_file(fleet_path(workspace))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("starts",),
-    hints=(
-        "Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.",
-        "config/configured_node.yaml is an example for one node.",
-    ),
-    doc=contract.ARGUMENTS,
-)
+@check(points=2, depends=("starts",), doc=contract.ARGUMENTS)
+@hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
+@hint("config/configured_node.yaml is an example for one node.")
 def test_file(fleet: Callable[[], Entries]) -> None:
     """config/fleet_params.yaml is installed and nested as ROS reads it."""
     expect(bool(fleet()), "It names no node.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("file",),
-    hints=("A name that no node declares is dropped without a word: compare it with the table of exercise 1.",),
-    doc=contract.PARAMETERS,
-)
+@check(points=1, depends=("file",), doc=contract.PARAMETERS)
+@hint("A name that no node declares is dropped without a word: compare it with the table of exercise 1.")
 def test_file_names(fleet: Callable[[], Entries]) -> None:
     """The file sets declared names only."""
     names = {name for values in fleet().values() for name in values}
@@ -54,51 +42,31 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
     expect(not unknown, f"No node declares {', '.join(told)}: it would have no effect.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("file_names", "overrides", "types"),
-    hints=("What every robot has stands under /**, which fits every name.",),
-)
+@check(points=2, depends=("file_names", "overrides", "types"))
+@hint("What every robot has stands under /**, which fits every name.")
 def test_any_robot(workspace: Workspace) -> None:
     """A robot that the file does not name gets what every robot has."""
     _expect_values(workspace, "joiner")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("file_names", "overrides", "types"),
-    hints=(
-        "Of all entries that fit a node the last one wins: /** stands first.",
-        "The key is the node's name, scout; its values stand under its own ros__parameters.",
-    ),
-)
+@check(points=2, depends=("file_names", "overrides", "types"))
+@hint("Of all entries that fit a node the last one wins: /** stands first.")
+@hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_scout(workspace: Workspace) -> None:
     """The robot scout gets its own values, and over the rest what every robot has."""
     _expect_values(workspace, "scout")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("file_names", "overrides", "types"),
-    hints=(
-        "Of all entries that fit a node the last one wins: /** stands first.",
-        "20.0 and 1.0 are doubles; 20 and 1 would keep the node from starting.",
-    ),
-)
+@check(points=2, depends=("file_names", "overrides", "types"))
+@hint("Of all entries that fit a node the last one wins: /** stands first.")
+@hint("20.0 and 1.0 are doubles; 20 and 1 would keep the node from starting.")
 def test_porter(workspace: Workspace) -> None:
     """The robot porter gets its own values, and over the rest what every robot has."""
     _expect_values(workspace, "porter")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("file_names",),
-    hints=("A robot's entry holds only what is its own: the rest comes from /**.",),
-)
+@check(points=1, depends=("file_names",))
+@hint("A robot's entry holds only what is its own: the rest comes from /**.")
 def test_stands_once(fleet: Callable[[], Entries]) -> None:
     """What every robot has stands once, under /**."""
     entries = fleet()

@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
 from autograder.probes.parameters import Value
 
-GROUP = "changes"
-SEEN = Visibility.VISIBLE
+check = group("changes")
 PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("table",),
-    hints=(
-        "proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.",
-        "proposed.get('slow_distance', self.value('slow_distance')) is what it will be.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=1, depends=("table",), doc=contract.PARAMETERS)
+@hint("proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.")
+@hint("proposed.get('slow_distance', self.value('slow_distance')) is what it will be.")
 def test_contradiction(robot: Robot) -> None:
     """It refuses a safety distance above the slow distance, and its reason names both."""
     answer = robot.change({"safety_distance": 1.5})
@@ -31,16 +22,9 @@ def test_contradiction(robot: Robot) -> None:
     expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("contradiction",),
-    hints=(
-        "Judge what will be, with all the values of the request; not one value after the other.",
-        "speed, which is given, asks for both distances at each command.",
-    ),
-)
+@check(points=1, depends=("contradiction",))
+@hint("Judge what will be, with all the values of the request; not one value after the other.")
+@hint("speed, which is given, asks for both distances at each command.")
 def test_together(robot: Robot) -> None:
     """It takes both distances in one request, and stops where they say."""
     answer = robot.change(PAIR)
@@ -49,16 +33,9 @@ def test_together(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.1), 0.3, "With a slow distance of 2.0 m and a wall 2.1 m ahead")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("table",),
-    hints=(
-        "In apply, look for control_frequency among the names of what has changed.",
-        "self.timer.timer_period_ns = round(1e9 / frequency)",
-    ),
-)
+@check(points=1, depends=("table",))
+@hint("In apply, look for control_frequency among the names of what has changed.")
+@hint("self.timer.timer_period_ns = round(1e9 / frequency)")
 def test_rate(robot: Robot) -> None:
     """A new control_frequency sets the rate of its commands."""
     answer = robot.change({"control_frequency": 20.0})

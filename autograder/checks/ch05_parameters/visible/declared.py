@@ -2,43 +2,27 @@
 
 from __future__ import annotations
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
 from autograder.checks.ch05_parameters.support.robot import Robot
 from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, said
 
-GROUP = "declaration"
-SEEN = Visibility.VISIBLE
+check = group("declaration")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    hints=(
-        "Read the sentence above, then the last lines of the traceback below it.",
-        "Both files have to be saved: run the cells of exercise 1 and of exercise 2.",
-    ),
-    doc=contract.IN_A_CLASS,
-)
+@check(points=1, doc=contract.IN_A_CLASS)
+@hint("Read the sentence above, then the last lines of the traceback below it.")
+@hint("Both files have to be saved: run the cells of exercise 1 and of exercise 2.")
 def test_starts(robot: Robot) -> None:
     """The package builds and its node configured_node spins."""
     names = robot.nodes()
     expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("starts",),
-    hints=(
-        "One node.declare_parameter(name, default, descriptor) for each line of the table.",
-        "The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=1, depends=("starts",), doc=contract.PARAMETERS)
+@hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
+@hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
 def test_table(robot: Robot) -> None:
     """It declares the six parameters with the types and defaults of the table."""
     expect(not (sentence := missing_sentence(WANTED, robot.parameters.names())), sentence)
@@ -51,17 +35,9 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("table",),
-    hints=(
-        "floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.",
-        "An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.",
-    ),
-    doc=contract.PARAMETERS,
-)
+@check(points=1, depends=("table",), doc=contract.PARAMETERS)
+@hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
+@hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
     """It refuses -1 m/s, 101 percent and another name, each with a reason."""
     requests: dict[str, Value] = {"max_linear_velocity": -1.0, "battery_threshold": 101, "robot_name": "R2"}

@@ -2,44 +2,27 @@
 
 from __future__ import annotations
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 from autograder.harness import Workspace
 from autograder.probes.parameters import differences, read_file
 
-GROUP = "files"
-SEEN = Visibility.VISIBLE
+check = group("files")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("starts",),
-    hints=(
-        "Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.",
-        "config/configured_node.yaml is an example for one node.",
-    ),
-    doc=contract.ARGUMENTS,
-)
+@check(points=1, depends=("starts",), doc=contract.ARGUMENTS)
+@hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
+@hint("config/configured_node.yaml is an example for one node.")
 def test_file(workspace: Workspace) -> None:
     """config/fleet_params.yaml is nested as ROS reads it."""
     expect(bool(read_file(fleet_path(workspace))), "It names no node.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("file", "table"),
-    hints=(
-        "Of all entries that fit a node the last one wins: /** stands first.",
-        "The key is the node's name, scout; its values stand under its own ros__parameters.",
-    ),
-    doc=contract.ARGUMENTS,
-)
+@check(points=1, depends=("file", "table"), doc=contract.ARGUMENTS)
+@hint("Of all entries that fit a node the last one wins: /** stands first.")
+@hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_scout(workspace: Workspace) -> None:
     """The robot scout gets its own values, and over the rest what every robot has."""
     with Robot.of_fleet(workspace, "scout") as robot:

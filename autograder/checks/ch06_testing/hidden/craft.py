@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.contract import LEAST
@@ -11,33 +11,21 @@ from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.junit import Verdict
 
-GROUP = "craft"
+check = group("craft")
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest; tests_require is no longer read."
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("guard_pass",),
-    hints=contract.NO_SLEEP,
-    doc=contract.PYTEST,
-)
+@check(points=1, depends=("guard_pass",), doc=contract.PYTEST)
+@hint(*contract.NO_SLEEP)
 def test_no_sleep(examination: Examination) -> None:
     """No test waits with time.sleep."""
     expect_awake(examination.source)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("guard_right", "launch_right"),
-    hints=(
-        "Each loop that waits needs a deadline, after which the test fails.",
-        "spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.",
-    ),
-    doc=contract.PYTEST,
-)
+@check(points=1, depends=("guard_right", "launch_right"), doc=contract.PYTEST)
+@hint("Each loop that waits needs a deadline, after which the test fails.")
+@hint("spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.")
 def test_ends(examination: Examination) -> None:
     """The tests end by themselves on a node that never answers."""
     endless = examination.endless()
@@ -46,13 +34,8 @@ def test_ends(examination: Examination) -> None:
     )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("limits_pass",),
-    hints=("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS),
-    doc=contract.CLI,
-)
+@check(points=2, depends=("limits_pass",), doc=contract.CLI)
+@hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
     report = examination.colcon
@@ -63,16 +46,9 @@ def test_colcon(examination: Examination) -> None:
     expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("colcon",),
-    hints=(
-        "A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.",
-        "Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.",
-    ),
-    doc=contract.CLI,
-)
+@check(points=2, depends=("colcon",), doc=contract.CLI)
+@hint("A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.")
+@hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")
 def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
     verdicts = examination.colcon.claims.verdicts

@@ -8,22 +8,17 @@ from statistics import fmean
 
 from rclpy.qos import ReliabilityPolicy
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGGING, QOS, TOLERANCE
 from autograder.checks.ch07_best_practices.support.robot import Processor, scan
 
-GROUP = "processor"
+check = group("processor")
 SECONDS = 20.0
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=(
-        "setup.py must name sensor_processor = my_robot_package.nodes.sensor_processor:main.",
-        "create_publisher twice and create_subscription once, in __init__; the names are relative.",
-    ),
-)
+@check(points=1)
+@hint("setup.py must name sensor_processor = my_robot_package.nodes.sensor_processor:main.")
+@hint("create_publisher twice and create_subscription once, in __init__; the names are relative.")
 def test_endpoints(processor: Processor) -> None:
     """sensor_processor takes scan and offers scan_filtered and mean_distance."""
     expect(processor.takes("/scan"), "It does not subscribe to scan as sensor_msgs/msg/LaserScan.")
@@ -32,13 +27,8 @@ def test_endpoints(processor: Processor) -> None:
         expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("endpoints",),
-    hints=("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort."),
-    doc=QOS,
-)
+@check(points=2, depends=("endpoints",), doc=QOS)
+@hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
     """It asks for scans as a lidar offers them, and offers its own likewise: best effort."""
     taken = processor.node.get_subscriptions_info_by_topic("/scan")
@@ -49,12 +39,8 @@ def test_sensor_qos(processor: Processor) -> None:
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("endpoints",),
-    hints=("msg.ranges = self.processor.process(...).", "Hand on the message's own range_min and range_max."),
-)
+@check(points=2, depends=("endpoints",))
+@hint("msg.ranges = self.processor.process(...).", "Hand on the message's own range_min and range_max.")
 def test_filtered(processor: Processor, draw: random.Random) -> None:
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
     far = round(draw.uniform(11.0, 15.0), 1)
@@ -66,12 +52,8 @@ def test_filtered(processor: Processor, draw: random.Random) -> None:
     expect(right, f"{sent} (0.05 to {far + 1.0} m) came out as {[round(r, 3) for r in got]}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("filtered",),
-    hints=("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles."),
-)
+@check(points=1, depends=("filtered",))
+@hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, limits and intensities come out as they went in."""
     sent = scan([1.0, 2.0, 3.0])
@@ -86,12 +68,8 @@ def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
         expect(alike, f"{field} went in as {wanted} and came out as {got}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("filtered",),
-    hints=("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)"),
-)
+@check(points=2, depends=("filtered",))
+@hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
     means = [round(draw.uniform(0.5, 3.0), 2) for _ in range(14)]
@@ -103,12 +81,8 @@ def test_mean_of_ten(fresh_processor: Processor, draw: random.Random) -> None:
     expect(wrong is None, f"After {i + 1} scans it said {said[i]:.3f} m instead of {wanted[i]:.3f} m.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("filtered",),
-    hints=("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None."),
-)
+@check(points=1, depends=("filtered",))
+@hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
 def test_blind_scan(processor: Processor) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
     filtered, means = processor.show(scan([nan, 0.0, inf]))
@@ -116,13 +90,8 @@ def test_blind_scan(processor: Processor) -> None:
     expect(not means, f"A scan without any distance made it say {means} m.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("blind_scan",),
-    hints=("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second."),
-    doc=LOGGING,
-)
+@check(points=2, depends=("blind_scan",), doc=LOGGING)
+@hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
 def test_warns_now_and_then(processor: Processor) -> None:
     """While the lidar sees nothing, it warns, at most once a second."""
     before = processor.output.count("[WARN]")
@@ -132,12 +101,8 @@ def test_warns_now_and_then(processor: Processor) -> None:
     expect(warnings <= SECONDS + 2, f"Blind for {SECONDS:.0f} s, it warned {warnings} times.", fraction=0.5)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("filtered",),
-    hints=("Loop over what is there.", "Other lidars have other numbers of beams."),
-)
+@check(points=1, depends=("filtered",))
+@hint("Loop over what is there.", "Other lidars have other numbers of beams.")
 def test_any_lidar(processor: Processor) -> None:
     """It takes scans of any length, an empty one too."""
     for beams in (0, 1, 7, 1080):

@@ -6,7 +6,7 @@ import random
 from math import inf, nan
 from statistics import fmean
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import (
     DEQUE,
     REP_117,
@@ -18,11 +18,12 @@ from autograder.checks.ch07_best_practices.support.contract import (
 from autograder.harness import Workspace
 from autograder.probes.calls import Outcome, call, calls, make, same, value
 
-GROUP = "utils"
+check = group("utils")
 LOW, HIGH = 0.2, 6.0
 
 
-@check(points=1, group=GROUP, hints=(RULE_PLACE, "A list comprehension with a conditional expression."), doc=REP_117)
+@check(points=1, doc=REP_117)
+@hint(RULE_PLACE, "A list comprehension with a conditional expression.")
 def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
     readings = [round(draw.uniform(LOW, HIGH), 3) if i % 3 else draw.choice((0.0, nan, 50.0)) for i in range(40)]
@@ -34,13 +35,8 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("keeps_places",),
-    hints=(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan."),
-    doc=REP_117,
-)
+@check(points=2, depends=("keeps_places",), doc=REP_117)
+@hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
     phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
@@ -49,32 +45,24 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     expect(not wrong, f"{wrong[0] if wrong else ''} is outside {LOW} to {HIGH} m, and was not replaced by nan.")
 
 
-@check(points=1, group=GROUP, depends=("keeps_places",), hints=(RULE_MASK, "Both limits belong to the range: <=."))
+@check(points=1, depends=("keeps_places",))
+@hint(RULE_MASK, "Both limits belong to the range: <=.")
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
     masked = _masked(workspace, [LOW, HIGH])
     expect(same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("keeps_places",),
-    hints=("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK),
-    doc=REP_117,
-)
+@check(points=2, depends=("keeps_places",), doc=REP_117)
+@hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
     masked = _masked(workspace, [inf, 1.0, -inf])
     expect(same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("keeps_places",),
-    hints=("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0."),
-)
+@check(points=2, depends=("keeps_places",))
+@hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
     near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
@@ -85,12 +73,8 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     expect(same(masked, [near, far, nan, nan]), f"{shown} returned {masked}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("keeps_places",),
-    hints=("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list."),
-)
+@check(points=1, depends=("keeps_places",))
+@hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
     """mask_invalid leaves the list that it was given as it was."""
     readings = [0.0, 1.0, 99.0]
@@ -99,7 +83,8 @@ def test_input_untouched(workspace: Workspace) -> None:
     expect(same(list(outcome.arguments[:1]), [readings]), f"The caller's {readings} became {outcome.arguments[0]}.")
 
 
-@check(points=2, group=GROUP, hints=(RULE_MEAN, "sum(...) / len(...) of the readings that are finite."))
+@check(points=2)
+@hint(RULE_MEAN, "sum(...) / len(...) of the readings that are finite.")
 def test_mean(workspace: Workspace, draw: random.Random) -> None:
     """mean_distance is the mean of the finite readings."""
     finite = [round(draw.uniform(LOW, HIGH), 3) for _ in range(9)]
@@ -111,12 +96,8 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("mean",),
-    hints=("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching."),
-)
+@check(points=1, depends=("mean",))
+@hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
 def test_no_mean(workspace: Workspace) -> None:
     """Without a finite reading, mean_distance is None."""
     for readings in ([], [nan, nan], [inf]):
@@ -125,13 +106,8 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("keeps_places", "mean"),
-    hints=("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room."),
-    doc=DEQUE,
-)
+@check(points=2, depends=("keeps_places", "mean"), doc=DEQUE)
+@hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
     size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
@@ -143,12 +119,8 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     )
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("bounded_history", "no_mean"),
-    hints=("Append the mean only if it is not None.", "A scan without a distance says nothing about distances."),
-)
+@check(points=1, depends=("bounded_history", "no_mean"))
+@hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
 def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
     *_, average = _processed(workspace, 3, [[2.0], [nan], [inf, 0.0], [4.0]])
@@ -159,12 +131,8 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("masks_phantoms", "mean", "bounded_history"),
-    hints=("A library returns data; who calls it decides what is logged.", "Remove print()."),
-)
+@check(points=1, depends=("masks_phantoms", "mean", "bounded_history"))
+@hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
     outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])

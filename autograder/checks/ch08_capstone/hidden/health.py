@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.nodes import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -12,20 +12,13 @@ from autograder.checks.ch08_capstone.support.contract import DEGRADED, FAILED, O
 from autograder.checks.ch08_capstone.support.system import System, report_in_words
 from autograder.harness import Stamped
 
-GROUP = "step_2"
+check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("processor", "controller", "monitor"),
-    hints=(
-        "A topic that was never heard is silent, too: start with None for each.",
-        "FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.",
-    ),
-    doc=contract.NODES_DOC,
-)
+@check(points=3, depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@hint("A topic that was never heard is silent, too: start with None for each.")
+@hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 def test_health_levels(system: System) -> None:
     """Twice a second it reports: FAILED before anything was seen, OK when all is well, DEGRADED when blind."""
     _expect_report(system.first.reports[-1:], FAILED, DEAD, "Before the first scan")
@@ -39,15 +32,9 @@ def test_health_levels(system: System) -> None:
     _expect_report(blind.reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("health_levels",),
-    hints=(
-        "Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.",
-        "A callback of the dead topic cannot tell that it is dead: only a timer can.",
-    ),
-)
+@check(points=3, depends=("health_levels",))
+@hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
+@hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")
 def test_dead_sensor(system: System) -> None:
     """Within 2 s of a lidar's death health is FAILED and names what is silent; within 2 s of its return it is OK."""
     system.see(OPEN, 2.0)

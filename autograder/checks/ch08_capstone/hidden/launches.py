@@ -9,7 +9,7 @@ from random import Random
 import pytest
 import yaml
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -24,7 +24,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
-GROUP = "step_4"
+check = group("step_4", doc=contract.LAUNCH_DOC)
 SHARED = ("shares", "interface_package")
 STARTS = ("executables", *SHARED)
 OTHER_CONFIG = "config/of_another_robot.yaml"
@@ -57,16 +57,9 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         yield Launched(harness, values)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=SHARED,
-    hints=(
-        "ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.",
-        "DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=1, depends=SHARED)
+@hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
+@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch_arguments(workspace: Workspace) -> None:
     """The launch file declares params_file, by default the package's own, and use_sim_time, by default false."""
     arguments = launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE)
@@ -84,7 +77,8 @@ def test_launch_arguments(workspace: Workspace) -> None:
     expect(bool(found.description), "The argument params_file has no description.", fraction=0.5)
 
 
-@check(points=2, group=GROUP, depends=STARTS, hints=HINTS, doc=contract.LAUNCH_DOC)
+@check(points=2, depends=STARTS)
+@hint(*HINTS)
 def test_launch_starts(launched: Launched) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
     launch_probe.expect_nodes(launched.harness, [name_of(name) for name in PROGRAMS])
@@ -94,7 +88,8 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, group=GROUP, depends=("launch_starts",), hints=HINTS, doc=contract.LAUNCH_DOC)
+@check(points=2, depends=("launch_starts",))
+@hint(*HINTS)
 def test_launch_configures(launched: Launched) -> None:
     """What params_file and use_sim_time say reaches all three nodes."""
     for node, values in launched.values.items():
@@ -105,16 +100,9 @@ def test_launch_configures(launched: Launched) -> None:
         launch_probe.expect_parameters(launched.harness, name_of(node), known)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("launch_starts",),
-    hints=(
-        "Each program's main goes through run(...), which ends without a traceback.",
-        "except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=2, depends=("launch_starts",))
+@hint("Each program's main goes through run(...), which ends without a traceback.")
+@hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
 def test_launch_stops(launched: Launched) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
     launch_probe.expect_clean_stop(launched.harness)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences, load_messages
@@ -14,7 +14,7 @@ from autograder.harness import Workspace
 from autograder.probes import manifest
 from autograder.probes.installed import look
 
-GROUP = "step_3"
+check = group("step_3", doc=contract.INTERFACES_DOC)
 NEEDS = {
     "buildtool": ("ament_cmake", "rosidl_default_generators"),
     "exec": ("rosidl_default_runtime", "std_msgs"),
@@ -22,27 +22,23 @@ NEEDS = {
 TABLES = ("Compare with the table of step 3, letter by letter; comments are yours.",)
 
 
-@check(points=2, group=GROUP, hints=TABLES, doc=contract.INTERFACES_DOC)
+@check(points=2)
+@hint(*TABLES)
 def test_clearance_message(workspace: Workspace) -> None:
     """Clearance.msg has the fields of the contract, in its order, with its types."""
     _expect_like(workspace, CLEARANCE)
 
 
-@check(points=2, group=GROUP, hints=TABLES, doc=contract.INTERFACES_DOC)
+@check(points=2)
+@hint(*TABLES)
 def test_health_message(workspace: Workspace) -> None:
     """Health.msg has the constants and fields of the contract, in its order, with its types."""
     _expect_like(workspace, HEALTH)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)',
-        "package.xml: buildtool_depend on the generators, exec_depend on the runtime, and member_of_group.",
-    ),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=2)
+@hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
+@hint("package.xml: buildtool_depend on the generators, exec_depend on the runtime, and member_of_group.")
 def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both messages, and the manifest declares what that takes."""
     require_built(builds, INTERFACES)

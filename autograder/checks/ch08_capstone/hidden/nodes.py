@@ -10,7 +10,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
 from autograder.checks.ch08_capstone.conftest import Stable
 from autograder.checks.ch08_capstone.hidden.graph import expect_ends
@@ -18,7 +18,7 @@ from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PARAMETERS, PROCESSOR, TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
 
-GROUP = "step_2"
+check = group("step_2")
 BUILT = ("build", "clearance_message", "interface_package")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
@@ -32,34 +32,30 @@ ENDS = (
 )
 
 
-@check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
+@check(points=1, depends=BUILT, doc=contract.NODES_DOC)
+@hint(*ENDS)
 def test_processor(stable: Stable) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_ends(stable.system(PROCESSOR).harness.node, PROCESSOR)
 
 
-@check(points=1, group=GROUP, depends=BUILT, hints=ENDS, doc=contract.NODES_DOC)
+@check(points=1, depends=BUILT, doc=contract.NODES_DOC)
+@hint(*ENDS)
 def test_controller(stable: Stable) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_ends(stable.system(CONTROLLER).harness.node, CONTROLLER)
 
 
-@check(points=1, group=GROUP, depends=(*BUILT, "health_message"), hints=ENDS, doc=contract.NODES_DOC)
+@check(points=1, depends=(*BUILT, "health_message"), doc=contract.NODES_DOC)
+@hint(*ENDS)
 def test_monitor(stable: Stable) -> None:
     """The node status_monitor has its name, and its topics with their types."""
     expect_ends(stable.system(MONITOR).harness.node, MONITOR)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("processor", "monitor"),
-    hints=(
-        "A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.",
-        "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.",
-    ),
-    doc=contract.QOS_DOC,
-)
+@check(points=2, depends=("processor", "monitor"), doc=contract.QOS_DOC)
+@hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
+@hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
 def test_qos(stable: Stable) -> None:
     """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
     graph = stable.system(PROCESSOR, MONITOR).harness.node
@@ -71,16 +67,9 @@ def test_qos(stable: Stable) -> None:
         expect(durable, f"{peer.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("processor",),
-    hints=(
-        "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.",
-        "The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.",
-    ),
-    doc=contract.SCAN_DOC,
-)
+@check(points=3, depends=("processor",), doc=contract.SCAN_DOC)
+@hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
+@hint("The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.")
 def test_sectors(seeing: System, draw: random.Random) -> None:
     """Each scan becomes one clearance: the nearest thing ahead, on the left and on the right, and the scan's header."""
     for beams, first in ((360, 0.0), (draw.randrange(500, 700), -180.0)):
@@ -113,16 +102,9 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("sectors",),
-    hints=(
-        "min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.",
-        "min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.",
-    ),
-    doc=contract.REP_117,
-)
+@check(points=3, depends=("sectors",), doc=contract.REP_117)
+@hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")
+@hint("min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.")
 def test_readings(seeing: System, draw: random.Random) -> None:
     """Readings count by REP 117, and a sector without one that counts makes the clearance invalid."""
     bearing, wall = draw.uniform(-20.0, 10.0), draw.uniform(0.8, 1.6)
@@ -150,16 +132,9 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("sectors", "controller"),
-    hints=(
-        "The way is clear: linear.x is forward_speed.",
-        "The timer calls control ten times a second, and control publishes once each time, whatever happens.",
-    ),
-    doc=contract.NODES_DOC,
-)
+@check(points=2, depends=("sectors", "controller"), doc=contract.NODES_DOC)
+@hint("The way is clear: linear.x is forward_speed.")
+@hint("The timer calls control ten times a second, and control publishes once each time, whatever happens.")
 def test_drives(driving: System, draw: random.Random) -> None:
     """It drives forward while the way is clear, with ten commands a second."""
     distance = draw.uniform(0.9, 3.0)
@@ -170,15 +145,9 @@ def test_drives(driving: System, draw: random.Random) -> None:
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("drives",),
-    hints=(
-        "Compare left with right when the turn begins, and remember the choice.",
-        "The remembered turn ends when the way is clear again, not when the sides look different.",
-    ),
-)
+@check(points=3, depends=("drives",))
+@hint("Compare left with right when the turn begins, and remember the choice.")
+@hint("The remembered turn ends when the way is clear again, not when the sides look different.")
 def test_turns(driving: System, draw: random.Random) -> None:
     """In front of an obstacle it turns towards the side with more room, and keeps the direction until it is clear."""
     for side, sign in (("left", 1.0), ("right", -1.0)):
@@ -193,15 +162,9 @@ def test_turns(driving: System, draw: random.Random) -> None:
         expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("drives",),
-    hints=(
-        "No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.",
-        "Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.",
-    ),
-)
+@check(points=3, depends=("drives",))
+@hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
+@hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
 def test_stops(driving: System) -> None:
     """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
     expect_still(driving.first.commands, "Before the first scan")
@@ -219,16 +182,9 @@ def test_stops(driving: System) -> None:
     expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drives",),
-    hints=(
-        "self.create_service(SetBool, 'enable', self.enable_callback)",
-        "The callback remembers request.data and returns the response with success = True.",
-    ),
-    doc=contract.SERVICE_DOC,
-)
+@check(points=2, depends=("drives",), doc=contract.SERVICE_DOC)
+@hint("self.create_service(SetBool, 'enable', self.enable_callback)")
+@hint("The callback remembers request.data and returns the response with success = True.")
 def test_enable(driving: System, stable: Stable) -> None:
     """The service enable holds the robot still, and lets it go again."""
     try:

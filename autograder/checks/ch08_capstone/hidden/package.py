@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
@@ -13,20 +13,14 @@ from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
 
-GROUP = "step_1"
+check = group("step_1", doc=contract.PACKAGES_DOC)
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.",
-        "<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=2)
+@hint("The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.")
+@hint("<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.")
 def test_manifests(workspace: Workspace) -> None:
     """Both packages have a package.xml that ROS accepts, with the licence, the version and the right build type."""
     for name, build_type in ((PACKAGE, "ament_python"), (INTERFACES, "ament_cmake")):
@@ -44,17 +38,12 @@ def test_manifests(workspace: Workspace) -> None:
         )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("manifests",),
-    hints=(
-        "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
-        "machine.",
-        "The launch file needs three packages, too; the linters and launch_pytest are test_depends.",
-    ),
-    doc=contract.PACKAGES_DOC,
+@check(points=2, depends=("manifests",))
+@hint(
+    "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
+    "machine."
 )
+@hint("The launch file needs three packages, too; the linters and launch_pytest are test_depends.")
 def test_dependencies(workspace: Workspace) -> None:
     """The manifest of the nodes declares every package that their code, launch file and tests use."""
     source = source_of(workspace, PACKAGE)
@@ -67,30 +56,17 @@ def test_dependencies(workspace: Workspace) -> None:
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=(
-        "Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.",
-        "setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1)
+@hint("Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.")
+@hint("setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.")
 def test_build(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds the package of the nodes."""
     require_built(builds, PACKAGE)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("build",),
-    hints=(
-        "entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}",
-        "install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, depends=("build",))
+@hint("entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}")
+@hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
     """The build installs the package's three executables where ros2 run looks."""
     found = look(workspace.install, PACKAGE)
@@ -104,16 +80,9 @@ def test_executables(workspace: Workspace) -> None:
     )
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("build",),
-    hints=(
-        "data_files holds pairs: a folder below share/, and the files that go there.",
-        "('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, depends=("build",))
+@hint("data_files holds pairs: a folder below share/, and the files that go there.")
+@hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
     """setup.py installs the manifest, the launch file and the configuration."""
     found = look(workspace.install, PACKAGE)
@@ -122,13 +91,8 @@ def test_shares(workspace: Workspace) -> None:
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("manifests", "build"),
-    hints=("Copy the four from one file to the other, to the letter.",),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, depends=("manifests", "build"))
+@hint("Copy the four from one file to the other, to the letter.")
 def test_agreement(workspace: Workspace) -> None:
     """package.xml and setup.py agree on version, licence and maintainer."""
     declared = manifest.read(source_of(workspace, PACKAGE))

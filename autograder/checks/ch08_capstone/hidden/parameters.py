@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.nodes import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -21,19 +21,12 @@ from autograder.checks.ch08_capstone.support.system import System, expect_drivin
 from autograder.harness import Stamped, Workspace
 from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
 
-GROUP = "step_5"
+check = group("step_5", doc=contract.PARAMETERS_DOC)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("processor", "controller", "monitor"),
-    hints=(
-        "ros2 param list /navigation_controller shows what a node declares.",
-        "declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...'): name and default as in the table.",
-    ),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=2, depends=("processor", "controller", "monitor"))
+@hint("ros2 param list /navigation_controller shows what a node declares.")
+@hint("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...'): name and default as in the table.")
 def test_declared(system: System) -> None:
     """Each node declares its parameters, with the defaults of the contract."""
     for node, wanted in PARAMETERS.items():
@@ -44,16 +37,9 @@ def test_declared(system: System) -> None:
         expect(not wrong, f"{node}: {'; '.join(wrong)}.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("declared",),
-    hints=(
-        "ros2 param describe /navigation_controller safety_distance shows the range.",
-        "floating_point_range=[FloatingPointRange(from_value=0.3, to_value=2.0)] in the ParameterDescriptor.",
-    ),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=2, depends=("declared",))
+@hint("ros2 param describe /navigation_controller safety_distance shows the range.")
+@hint("floating_point_range=[FloatingPointRange(from_value=0.3, to_value=2.0)] in the ParameterDescriptor.")
 def test_ranges(system: System) -> None:
     """Each parameter has a description and the range of the contract, and a value outside is refused."""
     for node, wanted in PARAMETERS.items():
@@ -71,16 +57,9 @@ def test_ranges(system: System) -> None:
             expect(refused, f"{node}: {name} can be set to {bounds.highest * 2:g}.")
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("declared", "drives", "turns", "sectors", "dead_sensor"),
-    hints=(
-        "A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.",
-        "Every parameter of the table is used: a number in the code that stands for one makes it a decoration.",
-    ),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=3, depends=("declared", "drives", "turns", "sectors", "dead_sensor"))
+@hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
+@hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
 def test_used(system: System) -> None:
     """A parameter that is changed while the system runs has an effect at once."""
     wrong = [said for said in (_effect(system, *case) for case in _CASES) if said]
@@ -88,16 +67,9 @@ def test_used(system: System) -> None:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / len(_CASES), 2))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("shares",),
-    hints=(
-        "By node, then ros__parameters, then name and value, each level indented by two blanks.",
-        "A name that no node declares is ignored without a word: compare letter by letter.",
-    ),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=2, depends=("shares",))
+@hint("By node, then ros__parameters, then name and value, each level indented by two blanks.")
+@hint("A name that no node declares is ignored without a word: compare letter by letter.")
 def test_config(workspace: Workspace) -> None:
     """The configuration file holds every parameter with its default, by node."""
     file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)

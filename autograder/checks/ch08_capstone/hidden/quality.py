@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
@@ -14,7 +14,7 @@ from autograder.probes.junit import Verdict
 from autograder.probes.test_reports import Report
 from autograder.probes.test_runs import take
 
-GROUP = "step_7"
+check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
 SHOWN = 5
 
@@ -25,16 +25,9 @@ def tested(workspace: Workspace) -> Report:
     return colcon_test(workspace, PACKAGE)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("build", "interface_package"),
-    hints=(
-        "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
-        "test_flake8.py, test_pep257.py and test_integration.py are in test/, too.",
-    ),
-    doc=contract.TESTING_DOC,
-)
+@check(points=2, depends=("build", "interface_package"))
+@hint("extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.")
+@hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: Report) -> None:
     """Colcon test finds the package's tests: the student's own, the integration test and both linters."""
     ran = tested.executed
@@ -48,16 +41,9 @@ def test_colcon_finds_tests(tested: Report) -> None:
         )
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("colcon_finds_tests",),
-    hints=(
-        "Run colcon test in a terminal, then colcon test-result --all --verbose.",
-        "The linters name a file, a line and a rule: mend them one by one.",
-    ),
-    doc=contract.TESTING_DOC,
-)
+@check(points=2, depends=("colcon_finds_tests",))
+@hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
+@hint("The linters name a file, a line and a rule: mend them one by one.")
 def test_linters_pass(workspace: Workspace, tested: Report) -> None:
     """Flake8 and PEP 257 have nothing to say."""
     for name in LINTERS:
@@ -68,7 +54,6 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
 
 @check(
     points=2,
-    group=GROUP,
     depends=(
         "colcon_finds_tests",
         "qos",
@@ -80,12 +65,9 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
         "launch_starts",
         "config",
     ),
-    hints=(
-        "Run colcon test in a terminal, then colcon test-result --all --verbose.",
-        "test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.",
-    ),
-    doc=contract.TESTING_DOC,
 )
+@hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
+@hint("test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.")
 def test_tests_pass(tested: Report) -> None:
     """Every test of the package passes, the one that launches the whole system, too."""
     bad = [name for name in tested.failed if name not in LINTERS]

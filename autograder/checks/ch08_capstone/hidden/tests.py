@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from autograder.checks import CheckFailed, check, expect
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, faulty, right
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
@@ -16,7 +16,7 @@ from autograder.harness import Workspace
 from autograder.probes import test_runs
 from autograder.probes.test_reports import Report, TestRun
 
-GROUP = "step_6"
+check = group("step_6")
 FILE = "test_sectors.py"
 LEAST = 4
 BROKEN = 3  # of the faults, drawn from the seed: each costs a process
@@ -45,15 +45,9 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(faults, 1)))
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=(
-        "Run pytest on test/test_sectors.py in a terminal, in the package's folder.",
-        "Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.",
-    ),
-    doc=contract.TESTING_DOC,
-)
+@check(points=2, doc=contract.TESTING_DOC)
+@hint("Run pytest on test/test_sectors.py in a terminal, in the package's folder.")
+@hint("Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.")
 def test_sector_tests_pass(examined: Examined) -> None:
     """The tests of the sectors pass on a right sectors.py, and there are at least four of them."""
     report = examined.right
@@ -66,16 +60,9 @@ def test_sector_tests_pass(examined: Examined) -> None:
     expect(count >= LEAST, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
 
 
-@check(
-    points=4,
-    group=GROUP,
-    depends=("sector_tests_pass",),
-    hints=(
-        "One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.",
-        "Put the odd reading before a wall and after it: the order of the beams must not matter.",
-    ),
-    doc=contract.REP_117,
-)
+@check(points=4, depends=("sector_tests_pass",), doc=contract.REP_117)
+@hint("One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
+@hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
 def test_sector_tests_find_faults(examined: Examined) -> None:
     """The tests of the sectors fail on broken versions of sectors.py."""
     missed = [fault.what for fault, report in examined.faulty if not report.objects(examined.right)]

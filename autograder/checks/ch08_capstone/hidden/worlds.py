@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, check, expect, temporal
+from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch08_capstone.hidden import tracks
 from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
 from autograder.gallery import Gallery
 from sim import clearance
 from sim.rows import row_at, state_at
 
-GROUP = "step_2"
+check = group("step_2")
 DRIVES = ("drives",)  # not on turning: a collision shows more than a failed reaction, and earns its share
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
 STEADY = "changes < 3.5"  # turns that followed one to the other side, in the newest MEMORY seconds
@@ -21,7 +21,8 @@ BACK_WITHIN = 2.0  # s
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
-@check(points=3, group=GROUP, depends=DRIVES, hints=PICTURE)
+@check(points=3, depends=DRIVES)
+@hint(*PICTURE)
 def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
     driven = drives.room
@@ -36,15 +37,9 @@ def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("drives", "turns"),
-    hints=(
-        "A turn that has begun keeps its direction until the way is clear.",
-        "self.turn remembers it; the sides are compared only when a turn begins.",
-    ),
-)
+@check(points=2, depends=("drives", "turns"))
+@hint("A turn that has begun keeps its direction until the way is clear.")
+@hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
     """It does not swing to and fro between left and right."""
     for driven in (drives.room, drives.corridor):
@@ -57,15 +52,9 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
             _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=DRIVES,
-    hints=(
-        "At the bend it has to turn towards the side with more room, and then drive on.",
-        "A robot that turns too far looks back to where it came from: a turn ends when the way is clear.",
-    ),
-)
+@check(points=3, depends=DRIVES)
+@hint("At the bend it has to turn towards the side with more room, and then drive on.")
+@hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, gallery: Gallery) -> None:
     """It finds its way round the bend of a corridor."""
     driven = drives.corridor
@@ -76,15 +65,9 @@ def test_gets_on(drives: Drives, gallery: Gallery) -> None:
     _keep(gallery, driven, caption)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("stops",),
-    hints=(
-        "Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?",
-        "A clearance that is not valid means stop at once.",
-    ),
-)
+@check(points=3, depends=("stops",))
+@hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
+@hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     driven = drives.faulty
@@ -102,12 +85,8 @@ def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
     _keep(gallery, driven, "the lidar died and came back, was blocked and came free; the robot stood still meanwhile.")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("stops_in_time",),
-    hints=("Look at the newest clearance every time: a stop is no state to be stuck in.",),
-)
+@check(points=2, depends=("stops_in_time",))
+@hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, gallery: Gallery) -> None:
     """Within 2 s of its lidar's return it drives again."""
     driven = drives.faulty

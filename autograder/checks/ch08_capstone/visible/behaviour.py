@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
@@ -20,19 +20,11 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
 from autograder.probes.parameters import differences, missing_sentence
 
-GROUP = "step_2"
-SEEN = Visibility.VISIBLE
 OPEN = scan(fill=3.0)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("package", "definitions", "interfaces_build"),
-    hints=("The sentence above names the error, the lines below it say where.",),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="step_2", depends=("package", "definitions", "interfaces_build"), doc=contract.NODES_DOC)
+@hint("The sentence above names the error, the lines below it say where.")
 def test_starts(system: System) -> None:
     """Step 2: the three nodes start under their names."""
     nodes = system.harness.nodes()
@@ -40,17 +32,9 @@ def test_starts(system: System) -> None:
     expect(not absent, f"No node is called {' or '.join(absent)}; there is: {', '.join(nodes) or 'none'}.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("starts",),
-    hints=(
-        "scan comes best-effort: qos_profile_sensor_data.",
-        "A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.",
-    ),
-    doc=contract.SCAN_DOC,
-)
+@check(points=1, group="step_2", depends=("starts",), doc=contract.SCAN_DOC)
+@hint("scan comes best-effort: qos_profile_sensor_data.")
+@hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 def test_sees(system: System) -> None:
     """Step 2: sensor_processor says how near things are ahead, on the left and on the right, and when it is blind."""
     shown = scan(Part(-5.0, 5.0, 1.0), Part(80.0, 90.0, 1.5), Part(-90.0, -80.0, 2.0), fill=3.0)
@@ -67,17 +51,9 @@ def test_sees(system: System) -> None:
     expect(bool(blind) and not blind[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("sees",),
-    hints=(
-        "No clearance, one that is not valid, one whose stamp is old: publish Twist() as it is.",
-        "Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.",
-    ),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="step_2", depends=("sees",), doc=contract.NODES_DOC)
+@hint("No clearance, one that is not valid, one whose stamp is old: publish Twist() as it is.")
+@hint("Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.")
 def test_moves(system: System) -> None:
     """Step 2: navigation_controller drives, turns away, and stands still when it sees nothing."""
     expect_still(system.first.commands, "Before the first scan")
@@ -90,17 +66,9 @@ def test_moves(system: System) -> None:
     expect_still(system.said(began + 1.0).commands, "A second after the last scan")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    visibility=SEEN,
-    depends=("sees",),
-    hints=(
-        "FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.",
-        "Remember when each topic was last heard; only a timer can hear the silence.",
-    ),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="step_2", depends=("sees",), doc=contract.NODES_DOC)
+@hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
+@hint("Remember when each topic was last heard; only a timer can hear the silence.")
 def test_watches(system: System) -> None:
     """Step 2: status_monitor says OK, DEGRADED when the lidar is blocked, and FAILED within 2 s when it is dead."""
     for what, seen, wanted in (
@@ -114,14 +82,8 @@ def test_watches(system: System) -> None:
         expect(level == wanted, f"{what}, health was {said} instead of {LEVELS[wanted]}.")
 
 
-@check(
-    points=1,
-    group="step_5",
-    visibility=SEEN,
-    depends=("starts",),
-    hints=("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...') in __init__, and so on.",),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=1, group="step_5", depends=("starts",), doc=contract.PARAMETERS_DOC)
+@hint("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...') in __init__, and so on.")
 def test_parameters(system: System) -> None:
     """Step 5: each node declares its parameters with their defaults and ranges."""
     for node, wanted in PARAMETERS.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences, load_messages
@@ -14,19 +14,10 @@ from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
 
-SEEN = Visibility.VISIBLE
 
-
-@check(
-    points=1,
-    group="step_1",
-    visibility=SEEN,
-    hints=(
-        "The tags stand in this order: name, version, description, maintainer, license, dependencies, export.",
-        "setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, group="step_1", doc=contract.PACKAGES_DOC)
+@hint("The tags stand in this order: name, version, description, maintainer, license, dependencies, export.")
+@hint("setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)")
 def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 1: robot_navigation_tutorial builds, installs three executables, and declares what it imports."""
     found = manifest.read(source_of(workspace, PACKAGE))
@@ -40,16 +31,8 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(not missing["exec"], f"{imports.say(missing['exec'])}: package.xml does not declare it.")
 
 
-@check(
-    points=1,
-    group="step_3",
-    visibility=SEEN,
-    hints=(
-        "Compare with the tables of step 3, letter by letter.",
-        "float32 front, bool valid, std_msgs/Header header.",
-    ),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=1, group="step_3", doc=contract.INTERFACES_DOC)
+@hint("Compare with the tables of step 3, letter by letter.", "float32 front, bool valid, std_msgs/Header header.")
 def test_definitions(workspace: Workspace) -> None:
     """Step 3: both messages have the fields and constants of the contract."""
     module = load_messages(workspace)
@@ -57,16 +40,9 @@ def test_definitions(workspace: Workspace) -> None:
     expect(not wrong, " ".join(wrong[:3]))
 
 
-@check(
-    points=1,
-    group="step_3",
-    visibility=SEEN,
-    hints=(
-        'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)',
-        "find_package for ament_cmake, rosidl_default_generators and std_msgs before, ament_package() at the end.",
-    ),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=1, group="step_3", doc=contract.INTERFACES_DOC)
+@hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
+@hint("find_package for ament_cmake, rosidl_default_generators and std_msgs before, ament_package() at the end.")
 def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 3: colcon builds the package of the messages."""
     require_built(builds, INTERFACES)

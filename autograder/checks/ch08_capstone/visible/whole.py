@@ -7,7 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import CONFIG, LAUNCH_FILE, PACKAGE, PARAMETERS, PROGRAMS, name_of
 from autograder.checks.ch08_capstone.support.sources import source_of
@@ -18,7 +18,6 @@ from autograder.probes.installed import look
 from autograder.probes.parameters import for_node, read_file
 from autograder.probes.test_reports import Report, TestRun
 
-SEEN = Visibility.VISIBLE
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 Reports = Mapping[tuple[str, ...], Report]
 
@@ -36,17 +35,9 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
         yield beside.submit(run)
 
 
-@check(
-    points=1,
-    group="step_4",
-    visibility=SEEN,
-    depends=("starts",),
-    hints=(
-        "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
-        "DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=1, group="step_4", depends=("starts",), doc=contract.LAUNCH_DOC)
+@hint("Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])")
+@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch(workspace: Workspace) -> None:
     """Step 4: navigation.launch.py starts the three nodes, use_sim_time reaches them, and Ctrl-C ends them."""
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"use_sim_time": "true"}) as harness:
@@ -56,14 +47,8 @@ def test_launch(workspace: Workspace) -> None:
         launch_probe.expect_clean_stop(harness)
 
 
-@check(
-    points=1,
-    group="step_5",
-    visibility=SEEN,
-    depends=("package",),
-    hints=("A node's name, then ros__parameters, then name and value, each level indented by two blanks.",),
-    doc=contract.PARAMETERS_DOC,
-)
+@check(points=1, group="step_5", depends=("package",), doc=contract.PARAMETERS_DOC)
+@hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
 def test_config_file(workspace: Workspace) -> None:
     """Step 5: the installed configuration holds every parameter of every node."""
     file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
@@ -73,17 +58,9 @@ def test_config_file(workspace: Workspace) -> None:
         expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
 
 
-@check(
-    points=1,
-    group="step_6",
-    visibility=SEEN,
-    depends=("package",),
-    hints=(
-        "Run pytest on test/test_sectors.py in a terminal, and read its last lines.",
-        "Whether your tests find errors is seen after the hand-in: break nearest by hand, and see that one fails.",
-    ),
-    doc=contract.TESTING_DOC,
-)
+@check(points=1, group="step_6", depends=("package",), doc=contract.TESTING_DOC)
+@hint("Run pytest on test/test_sectors.py in a terminal, and read its last lines.")
+@hint("Whether your tests find errors is seen after the hand-in: break nearest by hand, and see that one fails.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
@@ -94,17 +71,9 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
 
 
-@check(
-    points=1,
-    group="step_7",
-    visibility=SEEN,
-    depends=("package",),
-    hints=(
-        "The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.",
-        "extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.",
-    ),
-    doc=contract.TESTING_DOC,
-)
+@check(points=1, group="step_7", depends=("package",), doc=contract.TESTING_DOC)
+@hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
+@hint("extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
     extras = look(workspace.install, PACKAGE).extras

@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
-from autograder.checks import check, expect
+from autograder.checks import Row, each, expect, group
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS, Question
 from autograder.checks.ch09_assessment.visible.sheet import answers, expect_letter
 from autograder.harness import Workspace
 
 
-def _check(name: str, question: Question) -> Callable[[Workspace], None]:
-    def test(workspace: Workspace) -> None:
-        letter = expect_letter(answers(workspace), name)
-        expect(letter == question.right, f"You chose {letter}. {question.wrong.get(letter, '')}")
+@dataclass(frozen=True, kw_only=True)
+class Choice(Row):
+    """The check of one question."""
 
-    test.__name__ = f"test_{name}"
-    test.__doc__ = f"Question 1.{name[1:]}: {question.title}"
-    return check(points=1, group="choices", hints=question.hints, doc=question.doc)(test)
+    question: Question
 
 
-globals().update({f"test_{name}": _check(name, question) for name, question in QUESTIONS.items()})
+CHOICES = [
+    Choice(
+        id=name,
+        title=f"Question 1.{name[1:]}: {asked.title}",
+        points=1,
+        hints=asked.hints,
+        doc=asked.doc,
+        question=asked,
+    )
+    for name, asked in QUESTIONS.items()
+]
+
+
+@each(group("choices"), CHOICES)
+def letter_is_right(choice: Choice, workspace: Workspace) -> None:
+    """Compare the letter that was given with the right one."""
+    letter = expect_letter(answers(workspace), choice.id)
+    expect(letter == choice.question.right, f"You chose {letter}. {choice.question.wrong.get(letter, '')}")

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.robot import Types
@@ -16,7 +16,7 @@ from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 from autograder.probes.installed import look
 
-GROUP = "launch"
+check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)
 FIRST_SECONDS = 20.0  # real time for the first decision; it takes one period
 
@@ -38,16 +38,9 @@ def hot(seed: int) -> int:
     return Random(f"{seed}:hot").randint(52, 58)
 
 
-@check(
-    points=3,
-    group=GROUP,
-    depends=("installs",),
-    hints=(
-        "Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.",
-        "ros2 topic echo /decision shows whether the three talk to each other.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=3, depends=("installs",))
+@hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
+@hint("ros2 topic echo /decision shows whether the three talk to each other.")
 def test_launches(launched: LaunchHarness) -> None:
     """The launch file is installed, starts the three nodes under their names, and decisions come out."""
     launch_probe.expect_nodes(launched, NODES)
@@ -55,32 +48,18 @@ def test_launches(launched: LaunchHarness) -> None:
     expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("launches",),
-    hints=(
-        "DeclareLaunchArgument('hot', default_value='60.0', description='...')",
-        "ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=2, depends=("launches",))
+@hint("DeclareLaunchArgument('hot', default_value='60.0', description='...')")
+@hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> None:
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     launch_probe.expect_parameters(launched, f"/{GUARD}", {"hot": float(hot)})
     launch_probe.expect_argument(launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE), "hot", "60.0")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("launches",),
-    hints=(
-        "Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.",
-        "A node that never ends by itself has to be killed: look at loops of your own.",
-    ),
-    doc=contract.LAUNCH_DOC,
-)
+@check(points=1, depends=("launches",))
+@hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
+@hint("A node that never ends by itself has to be killed: look at loops of your own.")
 def test_stops(launched: LaunchHarness) -> None:
     """Ctrl-C ends the launch and all of its nodes, cleanly."""
     launch_probe.expect_clean_stop(launched)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import check, expect
+from autograder.checks import expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
@@ -14,30 +14,19 @@ from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
 
-GROUP = "packages"
+check = group("packages")
 
 
-@check(
-    points=2,
-    group=GROUP,
-    hints=("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too."),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=2, doc=contract.INTERFACES_DOC)
+@hint("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too.")
 def test_definitions(workspace: Workspace) -> None:
     """Both messages have the fields of the contract."""
     expect_definitions(workspace)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("definitions",),
-    hints=(
-        'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Decision.msg" "msg/Temperature.msg" DEPENDENCIES ...)',
-        "find_package for what you use; in package.xml a buildtool_depend on the generators, and member_of_group.",
-    ),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=2, depends=("definitions",), doc=contract.INTERFACES_DOC)
+@hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Decision.msg" "msg/Temperature.msg" DEPENDENCIES ...)')
+@hint("find_package for what you use; in package.xml a buildtool_depend on the generators, and member_of_group.")
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard_interfaces, with both messages."""
     require_built(builds, INTERFACES)
@@ -46,12 +35,8 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
 
-@check(
-    points=1,
-    group=GROUP,
-    hints=("Which tool installs what the generated code needs when it runs?", "Two tags, besides the generators'."),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=1, doc=contract.INTERFACES_DOC)
+@hint("Which tool installs what the generated code needs when it runs?", "Two tags, besides the generators'.")
 def test_interface_manifest(workspace: Workspace) -> None:
     """package.xml of motor_guard_interfaces says that it holds messages, and what these need when they run."""
     found = manifest.read(source_of(workspace, INTERFACES))
@@ -61,16 +46,9 @@ def test_interface_manifest(workspace: Workspace) -> None:
     expect(not lacks, "package.xml has no exec_depend on rosidl_default_runtime.", fraction=0.5)
 
 
-@check(
-    points=2,
-    group=GROUP,
-    depends=("messages_are_generated",),
-    hints=(
-        "entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}",
-        "install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=2, depends=("messages_are_generated",), doc=contract.PACKAGES_DOC)
+@hint("entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}")
+@hint("install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.")
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard, and installs three programs where ros2 finds them."""
     require_built(builds, PACKAGE)
@@ -78,16 +56,9 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
     expect_executables(found.executables, found.misplaced, PROGRAMS)
 
 
-@check(
-    points=1,
-    group=GROUP,
-    depends=("installs",),
-    hints=(
-        "rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.",
-        "depend for what the nodes import, exec_depend for what the launch file imports.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, depends=("installs",), doc=contract.PACKAGES_DOC)
+@hint("rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.")
+@hint("depend for what the nodes import, exec_depend for what the launch file imports.")
 def test_dependencies(workspace: Workspace) -> None:
     """package.xml of motor_guard declares whatever its nodes and its launch file import."""
     source = source_of(workspace, PACKAGE)

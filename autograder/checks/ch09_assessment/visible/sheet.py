@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from autograder.checks import CheckFailed, Visibility, check, expect
+from autograder.checks import CheckFailed, check, expect, hint
 from autograder.checks.ch09_assessment.support.contract import LETTERS, QUESTIONS, SHEET
 from autograder.harness import Workspace
 
@@ -46,15 +46,8 @@ def expect_letter(given: dict[str, str], question: str) -> str:
     return letter
 
 
-@check(
-    points=1,
-    group="choices",
-    visibility=Visibility.VISIBLE,
-    hints=(
-        "A line is `q1: a`: the question, a colon, a space, one letter.",
-        "A guess costs nothing; a gap earns nothing.",
-    ),
-)
+@check(points=1, group="choices")
+@hint("A line is `q1: a`: the question, a colon, a space, one letter.", "A guess costs nothing; a gap earns nothing.")
 def test_answered(workspace: Workspace) -> None:
     """Question 1: each question has an answer, one of four letters; whether it is right is not looked at."""
     given = answers(workspace)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import Visibility, check, expect
+from autograder.checks import check, expect, hint
 from autograder.checks.ch09_assessment.conftest import Start
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
@@ -21,32 +21,17 @@ from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import look
 
-SEEN = Visibility.VISIBLE
 
-
-@check(
-    points=1,
-    group="packages",
-    visibility=SEEN,
-    hints=("Two files in msg/, a field a line: type, space, name.", "builtin_interfaces/Time stamp stands first."),
-    doc=contract.INTERFACES_DOC,
-)
+@check(points=1, group="packages", doc=contract.INTERFACES_DOC)
+@hint("Two files in msg/, a field a line: type, space, name.", "builtin_interfaces/Time stamp stands first.")
 def test_definitions(workspace: Workspace) -> None:
     """Question 3: both messages have the fields of the contract."""
     expect_definitions(workspace)
 
 
-@check(
-    points=1,
-    group="packages",
-    visibility=SEEN,
-    depends=("definitions",),
-    hints=(
-        "rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.",
-        "console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.",
-    ),
-    doc=contract.PACKAGES_DOC,
-)
+@check(points=1, group="packages", depends=("definitions",), doc=contract.PACKAGES_DOC)
+@hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.")
+@hint("console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.")
 def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Question 3: colcon builds both packages, and installs three programs and the launch file."""
     require_built(builds, INTERFACES)
@@ -56,14 +41,8 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
 
 
-@check(
-    points=1,
-    group="nodes",
-    visibility=SEEN,
-    depends=("builds",),
-    hints=("super().__init__('thermometer'), a publisher and a timer.", "The first reading has the number 0."),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="nodes", depends=("builds",), doc=contract.NODES_DOC)
+@hint("super().__init__('thermometer'), a publisher and a timer.", "The first reading has the number 0.")
 def test_measures(start: Start) -> None:
     """Question 3: thermometer publishes its readings."""
     with start(THERMOMETER) as harness:
@@ -71,14 +50,8 @@ def test_measures(start: Start) -> None:
         harness.expect_readings(3)
 
 
-@check(
-    points=1,
-    group="nodes",
-    visibility=SEEN,
-    depends=("builds",),
-    hints=("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading."),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="nodes", depends=("builds",), doc=contract.NODES_DOC)
+@hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading.")
 def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the average of the newest readings."""
     with start(SMOOTHER) as harness:
@@ -87,14 +60,8 @@ def test_smooths(start: Start) -> None:
     expect(seen == [40.0, 45.0, 50.0], f"40, 50, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
 
 
-@check(
-    points=1,
-    group="nodes",
-    visibility=SEEN,
-    depends=("builds",),
-    hints=("Remember the last decision in self.", "Between the two thresholds nothing changes."),
-    doc=contract.NODES_DOC,
-)
+@check(points=1, group="nodes", depends=("builds",), doc=contract.NODES_DOC)
+@hint("Remember the last decision in self.", "Between the two thresholds nothing changes.")
 def test_decides(start: Start) -> None:
     """Question 3: guard switches the fan on when it is hot and off when it is cool."""
     with start(GUARD) as harness:
