@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from autograder.diagnosis import Diagnosis, Kind
@@ -15,6 +15,7 @@ from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
 from autograder.sandbox.spec import INTERPRETER
+from autograder.time_record import TimeRecord
 
 _SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
@@ -30,6 +31,7 @@ class Workspace:
         underlays: install folders of workspaces below this one, such as given message packages.
         domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
         memory: where the proof keeps what it has found; None where anybody gets marks.
+        time_record: what harnesses find out about time; copies of a workspace share it.
     """
 
     root: Path
@@ -38,6 +40,7 @@ class Workspace:
     underlays: tuple[Path, ...] = ()
     domain: int = 0
     memory: Path | None = None
+    time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
 
     @property
     def install(self) -> Path:

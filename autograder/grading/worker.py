@@ -32,6 +32,8 @@ from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import heed_interrupts
 from autograder.sandbox.tiers import Tier
+from autograder.time_record import REAL
+from autograder.workspace import Workspace
 
 _NO_DIGEST = "0" * 64
 
@@ -40,9 +42,6 @@ class Grading:
     """One submission on its way from what was handed in to a result."""
 
     def __init__(self, job: Job, suite: Suite) -> None:
-        # Imported here, once ROS is switched on: these reach rclpy and the message packages.
-        from autograder.workspace import Workspace
-
         self._job, self._suite = job, suite
         self._folder = job.scratch / "assignment"
         home = job.scratch / "home"
@@ -58,8 +57,6 @@ class Grading:
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
-        from autograder.harness import auto, cpu_starvation
-
         began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
         try:
@@ -70,7 +67,7 @@ class Grading:
             diagnosis = error.diagnosis
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
-        sentence, note = f"not checked: {diagnosis.sentence}", auto.explain()
+        sentence, times = f"not checked: {diagnosis.sentence}", self._workspace.time_record
         return Result(
             assignment=self._job.assignment,
             student=self._job.student,
@@ -89,9 +86,9 @@ class Grading:
             build=self._build,
             artifacts=tuple(self._gallery.artifacts),
             phases=self._phases,
-            time=auto.REAL if note else auto.LOCKSTEP,
-            time_note=note,
-            held_up=round(cpu_starvation.longest(), 6) if note else 0.0,
+            time=times.time,
+            time_note=times.explain(),
+            held_up=round(times.longest_wait, 6) if times.time == REAL else 0.0,
         )
 
     def _prepare(self) -> Diagnosis:

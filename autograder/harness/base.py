@@ -58,9 +58,13 @@ class Harness(ABC):
     Attributes:
         node: the grader's node; its graph functions tell what the student's programs really offer.
         tick_ns: the step of ROS time that suits the programs' timers.
+        optional: executables that may fail: the others run on without them.
+        discovery_seconds: for how long the nodes were seen before the grader got their messages; 0 in lockstep.
     """
 
     tick_ns = 100_000_000
+    optional: frozenset[str] = frozenset()
+    discovery_seconds = 0.0
 
     def __init__(
         self,
@@ -92,6 +96,11 @@ class Harness(ABC):
     @abstractmethod
     def processes(self) -> tuple[Process, ...]:
         """The sandboxed programs."""
+
+    @property
+    @abstractmethod
+    def running(self) -> frozenset[str]:
+        """The executables that the harness has not lost."""
 
     @property
     @abstractmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -11,7 +12,7 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.harness.base import Harness, Stamped
+from autograder.harness.base import Stamped
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
@@ -20,8 +21,27 @@ LISTENS = {"/cmd_vel": Twist}
 PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
 SCAN_NS = 100_000_000
 
-Tamper = Callable[[Scan, float], Scan | None]
+ScanFilter = Callable[[Scan, float], Scan | None]
 """Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
+
+
+class Steppable(Protocol):
+    """What driving needs of a harness: `Harness` and `AutoHarness` have it."""
+
+    @property
+    def tick_ns(self) -> int: ...
+
+    @property
+    def now_ns(self) -> int: ...
+
+    @property
+    def output(self) -> str: ...
+
+    def publish(self, topic: str, message: Any) -> None: ...
+
+    def messages(self, topic: str) -> list[Stamped]: ...
+
+    def step(self, dt_ns: int) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -34,11 +54,11 @@ class Drive:
 
 
 def drive(
-    harness: Harness,
+    harness: Steppable,
     simulation: Simulation,
     seconds: float,
     *,
-    tamper: Tamper | None = None,
+    alter_scan: ScanFilter | None = None,
     until: Callable[[State], bool] = lambda state: False,
 ) -> Drive:
     """Let the program in `harness` steer the simulation's one robot, for `seconds` of ROS time or until a state.
@@ -55,7 +75,7 @@ def drive(
         target = min(state.time_ns + harness.tick_ns, end)
         state = _move(simulation, state, command, target, recorder)
         if target % SCAN_NS == 0:
-            _sense(harness, simulation, state, origin, recorder, tamper)
+            _sense(harness, simulation, state, origin, recorder, alter_scan)
         before = len(harness.messages("/cmd_vel"))
         harness.step(target - (harness.now_ns - origin))
         fresh = harness.messages("/cmd_vel")[before:]
@@ -82,11 +102,16 @@ def _move(simulation: Simulation, state: State, command: Command | None, target_
 
 
 def _sense(
-    harness: Harness, simulation: Simulation, state: State, origin: int, recorder: Recorder, tamper: Tamper | None
+    harness: Steppable,
+    simulation: Simulation,
+    state: State,
+    origin: int,
+    recorder: Recorder,
+    alter_scan: ScanFilter | None,
 ) -> None:
     scan = observe(simulation, state)
-    if scan is not None and tamper is not None:
-        scan = tamper(scan, state.time_ns / 1e9)
+    if scan is not None and alter_scan is not None:
+        scan = alter_scan(scan, state.time_ns / 1e9)
     recorder.scan(scan)
     if scan is not None:
         message = scan_to_msg(scan)

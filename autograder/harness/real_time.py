@@ -26,15 +26,8 @@ SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the no
 
 
 class RealTimeHarness(Harness):
-    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes.
+    """Programs in real time, for what cannot be stepped: signals, own threads, whole processes."""
 
-    Attributes:
-        spared: executables that may fail: the others live on without them.
-        deaf_seconds: for how long the nodes were seen before the grader could hear them.
-    """
-
-    spared: frozenset[str] = frozenset()
-    deaf_seconds = 0.0
     _running: Sequence[tuple[Program, Process]] = ()
 
     def _start(self) -> None:
@@ -43,7 +36,7 @@ class RealTimeHarness(Harness):
             command = [sys.executable, str(path), *program.words(self._folder)]
             self._running = [*self._running, (program, launch(command, self._sandbox))]
         up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
-        if not up and len(self.nodes()) < len(self.running - self.spared):
+        if not up and len(self.nodes()) < len(self.running - self.optional):
             raise StudentError(stuck(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
     def __exit__(
@@ -59,7 +52,6 @@ class RealTimeHarness(Harness):
 
     @property
     def running(self) -> frozenset[str]:
-        """The executables that the harness has not lost."""
         return frozenset(program.executable for program, _ in self._running)
 
     @property
@@ -75,7 +67,8 @@ class RealTimeHarness(Harness):
         if dt_ns <= 0:
             return
         end = time.monotonic() + dt_ns / 1e9
-        with cpu_starvation.watch((process.innermost() for process in self.processes), dt_ns / 1e9):
+        pids = (process.innermost() for process in self.processes)
+        with cpu_starvation.watch(pids, dt_ns / 1e9, self._workspace.time_record.add_wait):
             while (left := end - time.monotonic()) > 0:
                 self._alive()
                 self._spin(min(left, 0.05))
@@ -101,7 +94,7 @@ class RealTimeHarness(Harness):
         for program, process in self._running:
             if process.ending is None:
                 continue
-            if program.executable not in self.spared:
+            if program.executable not in self.optional:
                 error = StudentError(diagnose_output(process) or diagnose_ending(process))
                 raise error_of(program, error, len(self._running))
             process.__exit__(None, None, None)
@@ -111,7 +104,7 @@ class RealTimeHarness(Harness):
     def _meet(self) -> None:
         began = self.seconds
         super()._meet()
-        self.deaf_seconds = max(self.deaf_seconds, self.seconds - began)
+        self.discovery_seconds = max(self.discovery_seconds, self.seconds - began)
         self.step(GRACE_NS)
 
     def _topics(self) -> tuple[set[str], set[str]]:

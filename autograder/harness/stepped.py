@@ -60,10 +60,8 @@ class SteppedHarness(Harness):
 
     Attributes:
         notes: by executable, why steps are not all that moves a program, if so: thread, clock or sleep.
-        spared: executables that may fail: the others live on without them.
     """
 
-    spared: frozenset[str] = frozenset()
     _stepped: Sequence[SteppedProgram] = ()
 
     def _start(self) -> None:
@@ -91,7 +89,6 @@ class SteppedHarness(Harness):
 
     @property
     def running(self) -> frozenset[str]:
-        """The executables that the harness has not lost."""
         return frozenset(stepped.program.executable for stepped in self._stepped)
 
     @property
@@ -283,11 +280,11 @@ class SteppedHarness(Harness):
         """Go on without a program that failed and may; of others say which of several it was."""
         try:
             yield
-        except UnsteppableError as error:  # not spared: no fault of the program's
+        except UnsteppableError as error:  # even of an optional program: no fault of the program's
             self.notes[stepped.program.executable] = error.reason
             raise
         except StudentError as error:
-            if stepped.program.executable in self.spared:
+            if stepped.program.executable in self.optional:
                 self._stepped = [other for other in self._stepped if other is not stepped]
                 stepped.stepper.__exit__(None, None, None)
                 raise _Spared from None

@@ -95,22 +95,22 @@ def stuck(kind: Kind, waited: str, output: str) -> Diagnosis:
     return Diagnosis(kind, sentence, tail(output))
 
 
-_UNSTEPPABLE = {
+_UNSTEPPABLE = {  # by each of the protocol's `REASONS`
     "thread": "it uses rclpy in threads of its own",
     "clock": "it has a timer on a clock that is not the ROS clock",
     "sleep": "it sleeps in a loop instead of spinning",
 }
 
 
-def say_unsteppable(reason: str) -> str:
-    """Say in half a sentence why a program cannot be stepped."""
+def unsteppable_reason(reason: str) -> str:
+    """Return as a clause why a program cannot be stepped; `reason` is one of the protocol's `REASONS`."""
     return _UNSTEPPABLE[reason]
 
 
 def unsteppable(reason: str, output: str) -> Diagnosis:
     """Name a program whose time cannot be stepped."""
     sentence = (
-        f"Your node's time cannot be stepped: {say_unsteppable(reason)}. Let a timer of the node do the work, and "
+        f"Your node's time cannot be stepped: {unsteppable_reason(reason)}. Let a timer of the node do the work, and "
         "rclpy.spin(node) run it."
     )
     return Diagnosis(Kind.NEVER_STARTED, sentence, tail(output))

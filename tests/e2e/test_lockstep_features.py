@@ -410,12 +410,12 @@ def sparing(scratch: Path, text: str) -> Any:
 
     def run() -> Any:
         harness = open_lab(workspace, "server", "spared", "map")
-        harness.spared = frozenset({"spared"})
+        harness.optional = frozenset({"spared"})
         with harness:
             harness.run(0.5)
             answer = harness.call(Trigger, "/ask", Trigger.Request()).message
             running = sorted(harness.running)
-            harness.spared = frozenset()
+            harness.optional = frozenset()
             try:
                 harness.run(0.5)
             except StudentError as error:
@@ -469,7 +469,7 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
 
     workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
     harness = open_lab(workspace, "server", "spared", "map", real=True)
-    harness.spared = frozenset({"spared"})
+    harness.optional = frozenset({"spared"})
     with harness:
         harness.until(lambda: "spared" not in harness.running, 10.0)
         answer, running = harness.call(Trigger, "/ask", Trigger.Request()).message, sorted(harness.running)

@@ -152,7 +152,7 @@ def met(scratch: Path, text: str) -> Any:
     """Open a harness on a program twice; return how it was met, what it said, and the sentence about it."""
     from std_msgs.msg import String
 
-    from autograder.harness import AutoHarness, auto
+    from autograder.harness import AutoHarness
 
     workspace = workspace_of(scratch, text)
     ways = []
@@ -161,7 +161,7 @@ def met(scratch: Path, text: str) -> Any:
             began = harness.seconds
             harness.run(1.0)
             ways.append([harness.time, 8 <= len(harness.messages("/said", since=began)) <= 12])
-    return ways, auto.explain()
+    return ways, workspace.time_record.explain()
 
 
 @pytest.mark.parametrize(

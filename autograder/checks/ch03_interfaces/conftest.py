@@ -13,9 +13,9 @@ import pytest
 from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types, load_types
-from autograder.harness import Harness, Workspace
+from autograder.harness import AutoHarness, Workspace
 
-AnyHarness = TypeVar("AnyHarness", bound=Harness)
+AnyHarness = TypeVar("AnyHarness", bound=AutoHarness)
 
 
 class Shared(Generic[AnyHarness]):

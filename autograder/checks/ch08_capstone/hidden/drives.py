@@ -61,7 +61,7 @@ class Drives:
         draw = random.Random(f"{self._seed}:faulty")
         start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
         hall = World.from_segments(box(13.0, 5.0).tolist(), name="an empty hall", starts=[start])
-        return self._drive(hall, FAULTY_SECONDS, draw, tamper=_tamper)
+        return self._drive(hall, FAULTY_SECONDS, draw, alter_scan=_alter)
 
     def share_of_corridor(self, recording: Recording) -> float:
         """Return how much of the way to the end of the corridor the robot has made, at most 1."""
@@ -120,7 +120,7 @@ def draw_bend(draw: random.Random) -> Bend:
     return Bend(first, second, side, world)
 
 
-def _tamper(scan: Scan, seconds: float) -> Scan | None:
+def _alter(scan: Scan, seconds: float) -> Scan | None:
     if DARK.covers(seconds):
         return None
     if BLOCKED.covers(seconds):

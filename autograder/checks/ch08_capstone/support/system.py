@@ -70,7 +70,7 @@ class System:
 
     def need(self, needed: Collection[str]) -> None:
         """Say without which programs it is of no use from now on."""
-        self.harness.spared = frozenset(PROGRAMS) - frozenset(needed)
+        self.harness.optional = frozenset(PROGRAMS) - frozenset(needed)
 
     def serves(self, needed: Collection[str]) -> bool:
         """Return whether these programs are there, and none of all has ended."""

@@ -22,9 +22,9 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
-from autograder.harness.auto import LOCKSTEP
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
+from autograder.time_record import LOCKSTEP
 
 STEP = 0.1  # s between two messages
 HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
@@ -93,7 +93,7 @@ class NodeHarness(AutoHarness):
 
     def _missed(self, seen: list[float], period: float, shape: tuple[float, ...]) -> int:
         """Return how many readings were over before the grader listened: in lockstep none."""
-        most = 0 if self.time == LOCKSTEP else int((2 * self.deaf_seconds + HEAD_START) / period)
+        most = 0 if self.time == LOCKSTEP else int((2 * self.discovery_seconds + HEAD_START) / period)
         fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
         return next(fits, 0)
 

@@ -1,0 +1,23 @@
+"""A harness that chooses its time has what harnesses have, and says so when it is used too early."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.harness import AutoHarness, Harness, Workspace
+from autograder.ros import environment
+
+
+def test_it_has_all_that_a_harness_has() -> None:
+    names = {name for name in vars(Harness) if not name.startswith("_")}
+    assert names - set(vars(AutoHarness)) == set()
+
+
+def test_use_before_it_is_entered_is_an_error(tmp_path: Path) -> None:
+    harness = AutoHarness(Workspace(tmp_path, environment.find(), tmp_path), "package", "program")
+    harness.optional = frozenset({"program"})
+    assert harness.optional == {"program"}
+    with pytest.raises(RuntimeError, match="AutoHarness is used before it is entered"):
+        harness.run(1.0)

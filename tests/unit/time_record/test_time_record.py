@@ -1,0 +1,56 @@
+"""What a grading learns about time, and how the result says it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.ros import environment
+from autograder.time_record import LOCKSTEP, REAL, TimeRecord
+from autograder.workspace import Workspace
+
+MET = "was met in real time:"
+
+
+@pytest.mark.parametrize(
+    ("reasons", "sentence"),
+    [
+        (
+            {"a": "thread"},
+            "a was met in real time: it uses rclpy in threads of its own. So was what runs beside it: b.",
+        ),
+        (
+            {"a": REAL, "b": REAL},
+            "a was met in real time: that was asked for. b was met in real time: that was asked for.",
+        ),
+    ],
+    ids=["one cannot be stepped", "asked for"],
+)
+def test_programs_in_real_time_are_named_with_the_reason(reasons: dict[str, str], sentence: str) -> None:
+    record = TimeRecord()
+    assert (record.time, record.explain()) == (LOCKSTEP, "")
+    record.add_real_time(["a", "b"], reasons)
+    assert (record.time, record.explain()) == (REAL, sentence)
+
+
+def test_a_reason_stays_when_the_program_runs_beside_another_one_later() -> None:
+    record = TimeRecord()
+    record.add_real_time(["a"], {"a": "sleep"})
+    record.add_real_time(["a", "b"], {"b": "clock"})
+    assert record.real_time == {"a": "sleep", "b": "clock"}
+
+
+def test_the_longest_wait_is_kept() -> None:
+    record = TimeRecord()
+    for seconds in (-0.1, 0.2, 0.5, 0.3):
+        record.add_wait(seconds)
+    assert record.longest_wait == 0.5
+
+
+def test_copies_of_a_workspace_share_the_record_and_two_workspaces_do_not(tmp_path: Path) -> None:
+    first, second = (Workspace(tmp_path, environment.find(), tmp_path) for _ in range(2))
+    assert replace(first, domain=7).time_record is first.time_record
+    assert first.time_record is not second.time_record
+    assert first == second
