@@ -10,11 +10,15 @@ from autograder import export as exporters
 from autograder.cli.options import json_option
 from autograder.result import write_json
 
+_FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)
+
 
 @click.command()
 @click.argument("results", type=click.Path(path_type=Path))
-@click.option("--format", "name", required=True, type=click.Choice(sorted(exporters.FORMATS)), help="The format.")
-@click.option("--out", required=True, type=click.Path(path_type=Path), help="The file (or, for html, folder) to write.")
+@click.option("--format", "name", required=True, type=click.Choice(list(exporters.FORMATS)), help="The format.")
+@click.option(
+    "--out", required=True, type=click.Path(path_type=Path), help=f"The file to write; for {_FOLDERS}, the folder."
+)
 @json_option
 def export(results: Path, name: str, out: Path, json_file: Path | None) -> None:
     """Write stored RESULTS (a folder or a JSON file) as marks for other programs."""

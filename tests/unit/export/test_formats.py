@@ -15,7 +15,7 @@ from nbconvert.filters.markdown import markdown2html
 from autograder.checks import Check, Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.export import FORMATS, Stored, write
+from autograder.export import FORMATS, Stored, formats, write
 from autograder.result import Artifact, CheckResult, Result
 
 MakeResult = Callable[..., Result]
@@ -143,21 +143,27 @@ def test_markdown_shows_a_students_text_as_text(hostile: Class, tmp_path: Path) 
     assert "&lt;script&gt;`x`[a](b)" in html
 
 
+def test_a_module_of_the_folder_is_a_format() -> None:
+    assert {"csv", "gradescope", "html", "junit", "markdown"} <= set(FORMATS)
+    folder = Path(formats.__file__).parent
+    assert sorted(FORMATS) == sorted(path.stem for path in folder.glob("*.py") if path.stem != "__init__")
+
+
 def test_a_format_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="no format 'pdf'; the formats are csv, gradescope, html, junit, markdown"):
+    with pytest.raises(UsageError, match=f"no format 'pdf'; the formats are {', '.join(FORMATS)}"):
         write([], "pdf", tmp_path / "x")
 
 
-@pytest.mark.parametrize("format", sorted(FORMATS))
+@pytest.mark.parametrize("format", FORMATS)
 def test_a_file_and_a_folder_are_not_mixed_up(format: str, tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
-    wrong, kind = (file, "folder") if format in ("html", "gradescope") else (tmp_path, "file")
+    wrong, kind = (file, "folder") if FORMATS[format].FOLDER else (tmp_path, "file")
     with pytest.raises(UsageError, match=f"{format} is written to a {kind}, and this is none"):
         write([], format, wrong)
 
 
-@pytest.mark.parametrize("format", ["html", "gradescope"])
+@pytest.mark.parametrize("format", [name for name, format in FORMATS.items() if format.FOLDER])
 def test_two_results_of_one_student_do_not_overwrite_each_other(
     format: str, make_result: MakeResult, tmp_path: Path
 ) -> None:

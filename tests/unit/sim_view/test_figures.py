@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import io
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -14,10 +13,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from PIL import Image
 
 from sim import Recording, Simulation, World, box, start
-from sim.maps import load
 from sim.view import DARK, LIGHT, plot, show
 from sim.view.artists import outlines
 from sim.view.stage import HEIGHT, WIDTH
@@ -59,17 +56,6 @@ def test_the_same_drawing_gives_the_same_bytes(world: World, recording: Recordin
     assert show(world).png() == show(world).png()
     assert show(world).svg() == show(world).svg()
     assert plot(recording, mark=3.0).svg() == plot(recording, mark=3.0).svg()
-
-
-def test_the_worlds_figures_in_the_repository_are_those_of_the_worlds() -> None:
-    worlds = sorted(path.stem for path in (ROOT / "assets" / "worlds").glob("*.yaml"))
-    assert sorted(path.stem for path in (ROOT / "assets" / "figures" / "worlds").glob("*.png")) == worlds
-    for name in worlds:
-        drawn = show(load(ROOT / "assets" / "worlds" / f"{name}.yaml")).png()
-        kept = (ROOT / "assets" / "figures" / "worlds" / f"{name}.png").read_bytes()
-        fresh, old = (np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=int) for data in (drawn, kept))
-        assert fresh.shape == old.shape, f"{name}: run python assets/figures/make_worlds.py"
-        assert np.abs(fresh - old).mean() < 0.5, f"{name}: run python assets/figures/make_worlds.py"
 
 
 def test_robots_and_what_they_see_are_drawn_with_a_state(world: World) -> None:

@@ -10,6 +10,8 @@ from autograder.export.stored import Stored
 from autograder.feedback.text import one_line
 from autograder.result import Result, Status
 
+FOLDER = False
+
 COLUMNS = (
     "assignment",
     "student",

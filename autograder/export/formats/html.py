@@ -9,6 +9,8 @@ from autograder import feedback
 from autograder.export.folders import per_student
 from autograder.export.stored import Stored
 
+FOLDER = True
+
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
     """Write `out/<student>/feedback.html` for each submission and `out/index.html`; return the latter."""

@@ -11,6 +11,8 @@ from autograder.export.stored import Stored
 from autograder.feedback.text import clean, number, one_line
 from autograder.result import CheckResult, Result, Status
 
+FOLDER = False
+
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
     """Write the report. Failed is a failure, not checked is skipped, not graded is an error."""

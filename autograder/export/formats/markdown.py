@@ -12,6 +12,8 @@ from autograder.export.stored import Stored
 from autograder.feedback.text import number, one_line
 from autograder.result import CheckResult, Result, Status
 
+FOLDER = False
+
 MARKS = {Outcome.PASSED: "✓", Outcome.FAILED: "✗", Outcome.NOT_CHECKED: "-"}
 
 

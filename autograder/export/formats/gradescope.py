@@ -16,6 +16,8 @@ from autograder.export.stored import Stored
 from autograder.feedback.text import clean
 from autograder.result import CheckResult, Result, Status, write_json
 
+FOLDER = True
+
 # A hidden check cannot be tried by the student, but its verdict is part of the feedback: so, once marks are published.
 VISIBILITY = {
     Visibility.VISIBLE: "visible",
