@@ -15,8 +15,6 @@ from sim.view.artists import movers_at
 WORLDS = Path(__file__).resolve().parents[3] / "assets" / "worlds"
 NAMES = sorted(path.stem for path in WORLDS.glob("*.yaml"))
 TRACED = {name for name in NAMES if "image:" in (WORLDS / f"{name}.yaml").read_text()}  # maps: walls without names
-    name for name in NAMES if "image:" in (WORLDS / f"{name}.yaml").read_text()
-}  # maps; their walls have no names
 CELL = 0.1
 ROOM_TO_SPARE = 0.05  # metres between the robot and the walls on its way
 
