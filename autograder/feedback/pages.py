@@ -15,7 +15,7 @@ from autograder import layout
 from autograder.checks import Outcome, Visibility
 from autograder.feedback.model import view
 from autograder.feedback.pictures import from_folder
-from autograder.feedback.text import clean, number
+from autograder.feedback.text import NOT_GRADED, clean, number
 from autograder.result import Result, Status
 
 TEMPLATES = layout.ROOT / "assets" / "templates"
@@ -39,6 +39,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     found.filters["number"] = number
+    found.globals["not_graded"] = NOT_GRADED
     found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return found
 
@@ -92,7 +93,7 @@ def _reason(result: Result, after_due: bool) -> str:
     if not page.good:
         return result.diagnosis.sentence
     if not page.graded:
-        return "The grader itself failed. This is not a zero."
+        return NOT_GRADED
     return (page.first.message or page.first.title) if page.first else ""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+NOT_GRADED = "The grader itself failed. This is not a zero."
 # Colours and cursor moves of a terminal: ECMA-48 control sequences, and operating system commands (window titles).
 _TERMINAL = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?")
 # Characters that XML 1.0 and HTML forbid, half surrogate pairs, and the bidirectional overrides that reorder a line.

@@ -13,7 +13,7 @@ from autograder.checks import Outcome, Visibility
 from autograder.diagnosis import Kind
 from autograder.export.folders import per_student
 from autograder.export.stored import Stored
-from autograder.feedback.text import clean
+from autograder.feedback.text import NOT_GRADED, clean
 from autograder.result import CheckResult, Result, Status, write_json
 
 FOLDER = True
@@ -39,7 +39,7 @@ def report(result: Result) -> dict[str, Any]:
     One that was not graded has neither score nor tests: Gradescope then reports a failed autograder, not a zero.
     """
     if result.status is Status.NOT_GRADED:
-        return {"output": "Not graded: the grader itself failed. This is not a zero."}
+        return {"output": f"Not graded. {NOT_GRADED}"}
     return {
         "score": result.score,
         "execution_time": round(result.seconds),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from autograder.checks import Outcome
 from autograder.export.stored import Stored
-from autograder.feedback.text import clean, number, one_line
+from autograder.feedback.text import NOT_GRADED, clean, number, one_line
 from autograder.result import CheckResult, Result, Status
 
 FOLDER = False
@@ -29,7 +29,7 @@ def _suite(result: Result) -> ET.Element:
     cases = [_case(check, result) for check in result.checks]
     if result.status is Status.NOT_GRADED:
         case = ET.Element("testcase", {"classname": one_line(result.assignment), "name": "graded", "time": "0"})
-        ET.SubElement(case, "error", {"message": "not graded: the grader itself failed; this is not a zero"})
+        ET.SubElement(case, "error", {"message": f"Not graded. {NOT_GRADED}"})
         cases = [case]
     suite = ET.Element("testsuite", {"name": one_line(f"{result.assignment}: {result.student}")})
     suite.attrib |= {

@@ -9,7 +9,7 @@ from pathlib import Path
 from autograder.checks import Outcome
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored
-from autograder.feedback.text import number, one_line
+from autograder.feedback.text import NOT_GRADED, number, one_line
 from autograder.result import CheckResult, Result, Status
 
 FOLDER = False
@@ -54,7 +54,7 @@ def _score(result: Result) -> str:
 
 def _diagnosis(result: Result) -> str:
     if result.status is Status.NOT_GRADED:
-        return "The grader itself failed. This is not a zero."
+        return NOT_GRADED
     return "" if result.diagnosis.kind is Kind.OK else result.diagnosis.sentence
 
 

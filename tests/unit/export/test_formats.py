@@ -16,6 +16,7 @@ from autograder.checks import Check, Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.export import FORMATS, Stored, formats, write
+from autograder.feedback.text import NOT_GRADED
 from autograder.result import Artifact, CheckResult, Result
 
 MakeResult = Callable[..., Result]
@@ -68,7 +69,7 @@ def test_junit_counts_and_names_what_happened(a_class: Class, tmp_path: Path) ->
     assert alice.find("testcase[@name='starts']/*") is None
     error = carol.find("testcase/error")
     assert error is not None
-    assert "not a zero" in error.get("message", "")
+    assert NOT_GRADED in error.get("message", "")
 
 
 def test_junit_stays_well_formed_whatever_a_student_wrote(hostile: Class, tmp_path: Path) -> None:
@@ -110,7 +111,7 @@ def test_gradescope_shows_hidden_checks_with_the_marks_and_late_ones_after_the_d
 def test_gradescope_is_not_told_a_zero_for_what_was_not_graded(a_class: Class, tmp_path: Path) -> None:
     carol = gradescope(a_class, tmp_path / "out")[2]
     assert set(carol) == {"output"}
-    assert "not a zero" in carol["output"]
+    assert NOT_GRADED in carol["output"]
 
 
 def test_html_is_a_page_each_and_a_table_with_the_pictures_inside(

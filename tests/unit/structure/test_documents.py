@@ -1,0 +1,87 @@
+"""Every path, command and make target that the documents name is there."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import click
+import pytest
+
+from autograder.cli import group
+
+ROOT = Path(__file__).parents[3]
+DOCUMENTS = (
+    "README.md",
+    "CONTRIBUTING.md",
+    "SECURITY.md",
+    "CHANGELOG.md",
+    *(f"docs/{p.name}" for p in ROOT.glob("docs/*.md")),
+)
+FOLDERS = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
+MADE = (".build/", ".venv")  # what a command makes
+IN_A_CHAPTER = ("ws/src", "support/contract.py", "hidden/conftest.py")  # paths in a chapter's folder
+
+
+def spans(document: str) -> list[str]:
+    """Return what a document sets in code: spans in a line, and each line of a block."""
+    text = (ROOT / document).read_text(encoding="utf-8")
+    blocks = re.findall(r"```\w*\n(.*?)```", text, flags=re.DOTALL)
+    inline = re.sub(r"```\w*\n.*?```", "", text, flags=re.DOTALL)
+    lines = [line.split("  #")[0].removeprefix("$ ") for block in blocks for line in block.splitlines()]
+    return [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", inline)] + lines
+
+
+def paths(document: str) -> set[str]:
+    """Return the paths that a document names: relative links, and words of code with a slash or a file's ending."""
+    text = (ROOT / document).read_text(encoding="utf-8")
+    links = {link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in link}
+    words = {word.rstrip("/") for span in spans(document) for word in span.split() if _is_path(word)}
+    return {link for link in links if link} | words
+
+
+def _is_path(word: str) -> bool:
+    first = word.split("/")[0]
+    return ("/" in word and first in FOLDERS) or bool(re.fullmatch(r"[\w.-]+\.(md|toml|lock)", word))
+
+
+def commands(document: str) -> list[list[str]]:
+    """Return the words of each call of `autograder` after its name."""
+    found = [re.match(r"(?:eval \"\$\()?(?:\.venv/bin/)?autograder ([^`)]*)", span) for span in spans(document)]
+    return [match[1].split() for match in found if match]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_each_path_that_a_document_names_is_there(document: str) -> None:
+    named = {path for path in paths(document) if not path.startswith(MADE) and path not in IN_A_CHAPTER}
+    beside = (ROOT, (ROOT / document).parent)
+    missing = {path for path in named if not any((folder / path).exists() for folder in beside)}
+    assert missing <= {"package.xml", "setup.py"}
+
+
+def test_the_documents_name_paths_at_all() -> None:
+    assert len(paths("CONTRIBUTING.md")) > 40
+    assert len(commands("README.md")) > 4
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_each_command_that_a_document_names_is_there(document: str) -> None:
+    for words in commands(document):
+        command: click.Command = group
+        context = click.Context(group)
+        while words and isinstance(command, click.Group) and not words[0].startswith("-"):
+            found = command.get_command(context, words[0])
+            assert found is not None, f"{document}: autograder {' '.join(words)}"
+            command, words = found, words[1:]
+        options = {name for parameter in command.params for name in parameter.opts} | {"--version", "--help"}
+        given = {word for word in words if re.fullmatch(r"--?[a-z]+", word)} if command.name != "ros" else set()
+        assert given <= options, f"{document}: {command.name} has no {given - options}"
+
+
+def test_each_make_target_that_a_document_names_is_there() -> None:
+    listed = subprocess.run(["make", "-s", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    targets = {*re.findall(r"make ([a-z-]+)", listed), "lint"}
+    for document in DOCUMENTS:
+        named = {match[1] for span in spans(document) if (match := re.match(r"make (?:\w+=\S+ )?([a-z-]+)", span))}
+        assert named <= targets, document
