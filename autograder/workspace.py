@@ -94,7 +94,7 @@ class Workspace:
         }
 
     def sandbox(self, limits: Limits = NODE) -> Sandbox:
-        """Describe the sandbox of a node of this workspace: it reads the install space and meets peers over DDS."""
+        """Describe the sandbox of a node of this workspace: it reads the install space and reaches peers over DDS."""
         spaces = tuple(Mount(space) for space in (self.install, *self.underlays) if space.is_dir())
         system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
         return Sandbox(

@@ -10,8 +10,6 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -21,10 +19,10 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import Cache
 from autograder.interfaces.build import identity
+from autograder.packages import MANIFEST, read_texts
 from autograder.workspace import Workspace
 
 GROUP = "rosidl_interface_packages"
-DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buildtool_depend")
 VERSION = 1  # of the way in which a bundle is built and kept
 NOTE = "bundle.json"
 HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
@@ -103,17 +101,9 @@ def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:
         name = pending.pop()
         if name not in seen:
             seen.add(name)
-            pending += [other for other in _dependencies(found[name]) if other in found]
+            pending += [other for other in read_texts(found[name] / MANIFEST).depends if other in found]
     return seen
 
 
-def _dependencies(folder: Path) -> Iterator[str]:
-    manifest = ET.fromstring((folder / "package.xml").read_bytes())
-    for tag in DEPENDS:
-        yield from (element.text.strip() for element in manifest.iter(tag) if element.text)
-
-
 def _is_interface(folder: Path) -> bool:
-    manifest = ET.fromstring((folder / "package.xml").read_bytes())
-    groups = {(element.text or "").strip() for element in manifest.iter("member_of_group")}
-    return GROUP in groups and (folder / "CMakeLists.txt").is_file()
+    return GROUP in read_texts(folder / MANIFEST).groups and (folder / "CMakeLists.txt").is_file()

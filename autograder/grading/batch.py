@@ -10,7 +10,7 @@ from pathlib import Path
 from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
-from autograder.grading.parallel import together
+from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import RESULT, grade_submission
 from autograder.result import Result, Status, from_json
 from autograder.sandbox import Tier
@@ -92,7 +92,7 @@ def grade_all(
         )
         return graded.result
 
-    return together(one, entries, jobs=jobs, on_done=on_result)
+    return map_parallel(one, entries, jobs=jobs, on_done=on_result)
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:

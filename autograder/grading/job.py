@@ -1,4 +1,4 @@
-"""What the grader asks of a worker: one submission's grading, as data that crosses a process boundary."""
+"""A job for a worker: one submission to grade, as data that crosses a process boundary."""
 
 from __future__ import annotations
 

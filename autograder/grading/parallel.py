@@ -1,4 +1,4 @@
-"""Doing one thing for many submissions at once; when it is broken off, what has not begun is left alone."""
+"""A parallel map for what waits for worker processes; an interrupt lets no further call begin."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def together(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
+def map_parallel(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
     """Call `do` with each item, in `jobs` threads: enough for what only waits for a worker process.
 
     The first exception, or Ctrl-C, comes out once what has begun is done; nothing more is begun.

@@ -1,7 +1,8 @@
-"""Grading one submission: a worker in a cell, one retry when the grader itself failed, and never a made-up zero.
+"""Grading one submission: a worker in a cell, and one retry when the grader itself failed.
 
-What cannot be stepped lives in real time, and on a busy machine may lose a point that it deserves. Where the machine
-was seen to hold it up, and it lost one, the submission is graded once more while this process grades nothing else.
+A program that cannot be stepped runs in real time and may lose a point that it deserves on a busy machine. Where the
+machine was seen to hold it up and it lost a point, the submission is graded once more while this process grades nothing
+else.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from autograder.checks import Outcome, suites
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
-from autograder.grading.machine import Machine
+from autograder.grading.machine_lock import MachineLock
 from autograder.result import CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
@@ -33,7 +34,7 @@ NOTEBOOK = "notebook.ipynb"
 TRIES = 2
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
-_machine = Machine()
+_machine = MachineLock()
 
 RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
 
@@ -75,8 +76,8 @@ def grade_submission(
         run_job: runs the job in a cell.
 
     Returns:
-        The result. `status` is `not_graded` when the grader failed twice; that is no zero. It is `in_doubt` when the
-        machine held up, twice, what was met in real time.
+        The result. Its `status` is `not_graded` when the grader failed twice; that is no zero. It is in doubt when the
+        machine held up, twice, what ran in real time.
 
     Raises:
         UsageError: there is no such path or assignment.
@@ -93,10 +94,10 @@ def grade_submission(
     def grade() -> Graded | None:
         return _grade(lambda: run_job(job_in, isolation), out)
 
-    with _machine.beside():
+    with _machine.shared():
         graded = grade()
     if graded is not None and graded.result.in_doubt:
-        with _machine.alone():
+        with _machine.exclusive():
             graded = grade()
     if graded is None:
         graded = Graded(_not_graded(suite, student, seed, isolation), None)
@@ -105,7 +106,7 @@ def grade_submission(
 
 
 def _grade(run: Callable[[], CellReport], out: Path) -> Graded | None:
-    """Return what a worker made of a submission; None if it failed twice, of which `out` has the log then."""
+    """Return a worker's result and the notebook; None if it failed twice, and then `out` has its log."""
     out.mkdir(parents=True, exist_ok=True)
     for stale in (RESULT, NOTEBOOK, LOG):
         (out / stale).unlink(missing_ok=True)

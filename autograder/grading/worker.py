@@ -2,8 +2,8 @@
 
     python -m autograder.grading.worker JOB
 
-It imports no student code; that runs in sandboxes below it. It writes `result.json`, or ends with a traceback, which
-the pipeline takes for what it is: a failure of the grader.
+It imports no student code; that runs in sandboxes below it. It writes `result.json`, or ends with a traceback, which is
+a failure of the grader.
 """
 
 from __future__ import annotations
@@ -106,17 +106,17 @@ class Grading:
 
                 write_tree(submission.extra, self._folder)
                 write_tree(packages, self._folder / "ws" / "src")
-                self._give(self._folder / "ws" / "src")
+                self._add_given(self._folder / "ws" / "src")
                 original = layout.source_notebook(self._job.assignment)
                 extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
-                # The notebook could write to all of this, links and devices too. Only plain files of it go on.
+                # The notebook could write links and devices to all of this. Only plain files of it are taken.
                 packages = intake.take_source(self._folder / "ws")
                 self._clear()
         source = self._workspace.root / "src"
         write_tree(packages, source)
         with self._phase("build"):
             seen = observed.build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
-            # A set-up script could write to the sources, links and devices too. Checks read what was handed in.
+            # A set-up script could write to the sources as well. Checks read what was handed in.
             subprocess.run(["rm", "-rf", "--", source], check=True)
             write_tree(packages, source)
         self._build, self._builds = seen.build, seen.diagnoses
@@ -127,8 +127,8 @@ class Grading:
         subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
         self._workspace.scratch.mkdir()
 
-    def _give(self, source: Path) -> None:
-        """Lay down the packages that the chapter gives and the submission does not bring."""
+    def _add_given(self, source: Path) -> None:
+        """Copy the packages that the chapter gives and the submission lacks."""
         given = layout.chapter(self._job.assignment) / "ws" / "src"
         for package in sorted(given.iterdir()) if given.is_dir() else ():
             if not (source / package.name).exists():
@@ -157,7 +157,7 @@ class Grading:
 
 
 def prepare() -> None:
-    """Make this process a worker's: interrupts reach it, and ROS is there to be imported."""
+    """Prepare this process for grading: interrupts reach it, and ROS can be imported."""
     heed_interrupts()
     activate()
 

@@ -1,14 +1,15 @@
-"""The laboratory: the trusted side of grading, where a student's node meets the grader as another robot would.
+"""Test harnesses: the trusted process runs a student's nodes in sandboxes and talks with them over DDS.
 
-A `Harness` starts programs in sandboxes and talks with them over DDS. `SteppedHarness` steps their time.
-`RealTimeHarness` lets them run, and can send them signals. `AutoHarness` steps them where that is possible.
-`LaunchHarness` runs `ros2 launch`. `drive` puts the programs' robot into the simulator, in any of them.
+A `Harness` starts programs and talks with them. `SteppedHarness` steps their time. `RealTimeHarness` runs them in real
+time and can send them signals. `AutoHarness` steps programs where that is possible. `launch.LaunchHarness` runs `ros2
+launch`. `drive` lets the programs steer the simulated robot, in any harness but the last.
 """
 
 from autograder.harness.auto import AutoHarness
-from autograder.harness.base import Harness, Program, Stamped
+from autograder.harness.base import Harness
 from autograder.harness.drive import Drive, drive
-from autograder.harness.goals import Goal
+from autograder.harness.goals import Goal, Stamped
+from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
 from autograder.workspace import Workspace

@@ -1,4 +1,4 @@
-"""A harness in lockstep where that can be, and in real time where it cannot: the same checks, the same verdicts.
+"""A harness in lockstep where that is possible, and in real time where it is not: checks need not know.
 
 Whether a program can be stepped is found once in a grading. A program whose package names nothing that could forbid it
 is taken for steppable; any other is stepped for a second that no check looks at.
@@ -17,9 +17,10 @@ from typing import Any, TypeVar
 from rclpy.node import Node
 
 from autograder.exceptions import StudentError
-from autograder.harness.base import Harness, Program, Stamped
-from autograder.harness.goals import Goal
+from autograder.harness.base import Harness
+from autograder.harness.goals import Goal, Stamped
 from autograder.harness.grader_node import Handler
+from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
 from autograder.sandbox import Process
@@ -102,7 +103,7 @@ class AutoHarness:
         if self.time == REAL:
             self.until(condition, seconds)
 
-    # What it can be told before it is entered.
+    # What can be set before it is entered.
 
     @property
     def optional(self) -> frozenset[str]:

@@ -1,4 +1,4 @@
-"""What both kinds of harness share: programs of a student's, and the grader's node that meets them over DDS."""
+"""What both kinds of harness share: a student's programs, and the grader's node that talks with them over DDS."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from operator import attrgetter
 from types import TracebackType
 from typing import Any, TypeVar
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness.goals import Actions, Goal, Stamped
-from autograder.harness.grader_node import DEPTH, NAME, GraderNode, Handler, Receiver
+from autograder.harness.grader_node import NAME, GraderNode, Handler, OnMessage
 from autograder.harness.programs import Program, write_files
-from autograder.lockstep.lockstep_host.channels import type_name
+from autograder.harness.steps import TICK_NS
 from autograder.ros.domains import Domain
 from autograder.sandbox import Process
 from autograder.workspace import Workspace
 
-__all__ = ["DEPTH", "MEETING_SECONDS", "NAME", "Harness", "Program", "Stamped"]
+MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
 
-MEETING_SECONDS = 30.0  # real time for the two sides to find each other
-
-_LABS = itertools.count()
+_NUMBERS = itertools.count()
+_SECONDS = attrgetter("seconds")
 
 AnyHarness = TypeVar("AnyHarness", bound="Harness")
 
 
 class Harness(ABC):
-    """A student's programs and the grader's node that they meet over DDS; a context manager.
+    """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
     Name what the grader publishes and listens to, then enter:
 
@@ -43,26 +43,26 @@ class Harness(ABC):
             harness.run(0.1)
             harness.messages("/cmd_vel")
 
-    `StudentError` comes out of every method when a program crashes, hangs or goes over a limit.
+    Every method raises `StudentError` when a program crashes, hangs or goes over a limit.
 
     Args:
         workspace: the student's built workspace.
         package: of the one program; or
         executable: its name in the package.
-        programs: several programs, which meet each other as well.
+        programs: several programs, which talk with each other as well.
         offers: topics that the grader publishes, with their types.
-        listens: topics that it hears, with their types.
-        arguments: of the one program; "{files}" in them stands for the folder of `files`.
+        listens: topics that the grader subscribes to, with their types.
+        arguments: of the one program; "{files}" in them is replaced by the folder of `files`.
         files: texts by name, which the programs can read.
 
     Attributes:
-        node: the grader's node; its graph functions tell what the student's programs really offer.
+        node: the grader's node; its graph functions show what the student's programs really offer.
         tick_ns: the step of ROS time that suits the programs' timers.
         optional: executables that may fail: the others run on without them.
         discovery_seconds: for how long the nodes were seen before the grader got their messages; 0 in lockstep.
     """
 
-    tick_ns = 100_000_000
+    tick_ns = TICK_NS
     optional: frozenset[str] = frozenset()
     discovery_seconds = 0.0
 
@@ -81,7 +81,7 @@ class Harness(ABC):
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
         # Two harnesses may be open at once, with programs of the same names: each has a ROS domain of its own.
-        self._domain = Domain(workspace.domain + next(_LABS))
+        self._domain = Domain(workspace.domain + next(_NUMBERS))
         self._workspace = replace(workspace, domain=self._domain.number)
         self._sandbox = self._workspace.sandbox()
         self._offers, self._listens = dict(offers or {}), dict(listens or {})
@@ -90,7 +90,7 @@ class Harness(ABC):
         self._files, self._folder = dict(files or {}), ""
         self._inside = False
 
-    # What a kind of harness has to know.
+    # What each kind of harness defines.
 
     @property
     @abstractmethod
@@ -114,11 +114,11 @@ class Harness(ABC):
 
     @abstractmethod
     def step(self, dt_ns: int) -> None:
-        """Let the programs live through the next `dt_ns` nanoseconds of ROS time."""
+        """Let the programs run for the next `dt_ns` nanoseconds of ROS time."""
 
     @abstractmethod
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Let the programs live until `condition` holds, at most `seconds` of ROS time; return whether it does."""
+        """Let the programs run until `condition` holds, at most `seconds` of ROS time; return whether it does."""
 
     @abstractmethod
     def _start(self) -> None:
@@ -126,17 +126,17 @@ class Harness(ABC):
 
     @abstractmethod
     def _topics(self) -> tuple[set[str], set[str]]:
-        """Return which topics the programs subscribe to, and which they publish, as far as this harness names them."""
+        """Return which topics of `offers` the programs subscribe to, and which topics of `listens` they publish."""
 
     @abstractmethod
     def _connected(self) -> bool:
-        """Return whether all endpoints see each other."""
+        """Return whether all endpoints are matched."""
 
     # What they share.
 
     def __enter__(self: AnyHarness) -> AnyHarness:
         self._grader_node = GraderNode(self._domain.number)
-        self._actions = Actions(self._grader_node, self._when)
+        self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
         self._inside = True
         try:
@@ -144,7 +144,7 @@ class Harness(ABC):
             for name, (kind, handler) in self._services.items():
                 self._grader_node.serve(kind, name, handler)
             self._start()
-            self._meet()
+            self._match()
         except BaseException:
             self.__exit__(None, None, None)
             raise
@@ -178,24 +178,36 @@ class Harness(ABC):
             self._grader_node.publish(topic, message)
 
     def run(self, seconds: float) -> None:
-        """Let the programs live through `seconds` of ROS time, tick by tick."""
+        """Let the programs run for `seconds` of ROS time, tick by tick."""
         left = round(seconds * 1e9)
         while left > 0:
             self.step(min(self.tick_ns, left))
             left -= self.tick_ns
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
-        """Return what was published on `topic` after `since` and up to `until`, in seconds of ROS time."""
+        """Return what was published on a topic of `listens`.
+
+        Args:
+            topic: its name.
+            since: only messages after it, in seconds of ROS time since the start.
+            until: only messages up to it, likewise.
+        """
         received = self._received[topic]
-        first = bisect_right(received, since, key=_seconds)
-        return received[first : bisect_right(received, until, first, key=_seconds)]
+        first = bisect_right(received, since, key=_SECONDS)
+        return received[first : bisect_right(received, until, first, key=_SECONDS)]
 
     def rate(self, topic: str, since: float) -> float:
         """Return how many messages a second came on `topic` after `since`, in ROS time, until now."""
         return len(self.messages(topic, since=since)) / (self.seconds - since)
 
     def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
-        """Call a service of the student's; the programs live on, at most `seconds` of ROS time.
+        """Call a service of the student's programs, which run on meanwhile.
+
+        Args:
+            service_type: its class.
+            name: the service.
+            request: of that class.
+            seconds: of ROS time until the answer.
 
         Returns:
             The response; None if there is no such service of that type, or it does not answer in time.
@@ -211,93 +223,77 @@ class Harness(ABC):
     def serve(self, service_type: Any, name: str, handler: Handler) -> None:
         """Offer a service to the student's programs; before the harness is entered, it is there when they start.
 
-        `handler` gets a request and returns a response, or None for a service that never answers.
+        Args:
+            service_type: its class.
+            name: the service.
+            handler: gets a request and returns a response, or None for a service that never answers.
         """
         self._services[name] = service_type, handler
         if self._inside:
             self._grader_node.serve(service_type, name, handler)
-            self._meet()
+            self._match()
 
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
-        """Send a goal to an action server of the student's; it goes on while the programs live on.
+        """Send a goal to an action server of the student's; it advances while the programs run on.
 
-        `seconds` of ROS time are given to a server that is not there yet; if it does not come, `accepted` stays None.
+        Args:
+            action_type: its class.
+            name: the action.
+            goal: of that class.
+            seconds: of ROS time for a server that is not there yet.
+
+        Returns:
+            The goal; its `accepted` stays None if no server comes.
         """
-        clients = self._actions.prepare(action_type, name, self._writers)
+        clients = self._actions.prepare(action_type, name)
         if not all(client is not None and self._reach(client, seconds) for client in clients):
             return Goal()
         return self._actions.send(action_type, name, goal)
 
     def wait(self, goal: Goal, seconds: float) -> bool:
-        """Let the programs live until a goal is over, at most `seconds` of ROS time; return whether it is."""
+        """Let the programs run until a goal is over, at most `seconds` of ROS time; return whether it is."""
         return self.until(lambda: goal.over, seconds)
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Listen until `condition` holds, at most `seconds` of real time; return whether it does."""
+        """Take messages until `condition` holds, at most `seconds` of real time; return whether it does."""
         deadline = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > deadline:
                 return False
-            self._spin(0.005)
+            self._grader_node.spin(0.005)
         return True
 
     def nodes(self) -> list[str]:
         """Return the fully qualified names of the student's nodes that are seen now."""
-        found = self.node.get_node_names_and_namespaces()
-        return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != NAME)
+        return self._grader_node.other_nodes()
 
     @abstractmethod
     def _reach(self, client: Any, seconds: float) -> bool:
-        """Let a new client of the grader's meet its server, at most `seconds` of ROS time; return whether it has."""
+        """Match a new client of the grader's with its server, within `seconds` of ROS time; return whether it is."""
 
-    def _meet(self) -> None:
-        """Make endpoints that match the programs' own, and wait until all see each other."""
+    def _match(self) -> None:
+        """Make the grader's endpoints for the programs' own, and wait until all are matched."""
         subscribed, published = self._topics()
-        for topic in sorted(subscribed & set(self._offers) - set(self._grader_node.publishers)):
-            if self._same_type(self._offers[topic], peers := self._readers(topic)):
-                self._grader_node.offer(topic, self._offers[topic], peers)
-        for topic in sorted(published & set(self._listens) - self._heard()):
-            if self._same_type(self._listens[topic], peers := self._writers(topic)):
-                self._grader_node.listen(topic, self._listens[topic], peers, self._receiver(topic))
+        for topic in sorted(subscribed):
+            self._grader_node.offer(topic, self._offers[topic])
+        for topic in sorted(published):
+            self._grader_node.listen(topic, self._listens[topic], self._receiver(topic))
         self._await(self._connected)
 
-    def _heard(self) -> set[str]:
-        return {ear.entity.topic_name for ear in self._grader_node.ears if ear.kind == "subscription"}
-
-    def _readers(self, topic: str) -> list[Any]:
-        return [peer for peer in self.node.get_subscriptions_info_by_topic(topic) if peer.node_name != NAME]
-
-    def _writers(self, topic: str) -> list[Any]:
-        return [peer for peer in self.node.get_publishers_info_by_topic(topic) if peer.node_name != NAME]
-
-    def _same_type(self, message: type, peers: list[Any]) -> bool:
-        return all(peer.topic_type == type_name(message) for peer in peers)
-
-    def _receiver(self, topic: str) -> Receiver:
+    def _receiver(self, topic: str) -> OnMessage:
         received = self._received[topic]
-        return lambda message, arrived_ns: received.append(Stamped(self._when(arrived_ns), message))
+        return lambda message, arrived_ns: received.append(Stamped(self._arrival_seconds(arrived_ns), message))
 
-    def _when(self, arrived_ns: int) -> float:
-        """Return the seconds of ROS time at which a message arrived that is taken now."""
+    def _arrival_seconds(self, arrived_ns: int) -> float:
+        """Return the ROS time, in seconds since the start, of an arrival at `arrived_ns` since the epoch."""
         return self.seconds
 
     def _await(self, condition: Callable[[], bool]) -> None:
-        met = self.wait_for(lambda: self._is_impersonated() or condition(), MEETING_SECONDS)
-        if self._is_impersonated():
+        matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
+        if self._grader_node.is_impersonated():
             sentence = (
                 f"Your node is called {NAME}, which is the grader's own name: give it the name that is asked for."
             )
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
-        if not met:
-            raise GraderError(f"the grader and the student's node did not meet within {MEETING_SECONDS:.0f} s")
-
-    def _is_impersonated(self) -> bool:
-        return bool(self.node.get_node_names().count(NAME) > 1)
-
-    def _spin(self, timeout: float) -> None:
-        """Take what has arrived; wait for something at most `timeout` seconds."""
-        self._grader_node.spin(timeout)
-
-
-def _seconds(stamped: Stamped) -> float:
-    return stamped.seconds
+        if not matched:
+            raise GraderError(f"the grader and the student's node did not meet within {MATCH_SECONDS:.0f} s")

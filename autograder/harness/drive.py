@@ -1,4 +1,4 @@
-"""Driving: a student's program steers the simulated robot, through real ROS messages."""
+"""Driving: a student's program steers the simulated robot by ROS messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.harness.base import Stamped
+from autograder.harness.goals import Stamped
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
@@ -46,7 +46,13 @@ class Steppable(Protocol):
 
 @dataclass(frozen=True)
 class Drive:
-    """What happened: the robot's whole run, and what its program said."""
+    """A drive.
+
+    Attributes:
+        recording: the robot's run.
+        commands: the program's messages on /cmd_vel.
+        output: what the program printed and logged.
+    """
 
     recording: Recording
     commands: tuple[Stamped, ...]
@@ -61,10 +67,20 @@ def drive(
     alter_scan: ScanFilter | None = None,
     until: Callable[[State], bool] = lambda state: False,
 ) -> Drive:
-    """Let the program in `harness` steer the simulation's one robot, for `seconds` of ROS time or until a state.
+    """Let the program in a harness steer the simulation's one robot.
 
-    The harness must offer `OFFERS` and listen to `LISTENS`. Scans come at 10 Hz, as from an LDS-01; odometry with them.
-    Simulated time starts with the program: a scan's stamp is the program's own ROS time.
+    Scans come at 10 Hz, odometry with them. Simulated time starts with the program: a scan's stamp is the program's own
+    ROS time.
+
+    Args:
+        harness: must have been given `OFFERS` and `LISTENS`.
+        simulation: its world and its robot.
+        seconds: of ROS time, at most.
+        alter_scan: changes scans before they are sent.
+        until: the drive ends in a state for which it returns True.
+
+    Raises:
+        StudentError: the program published a command that no robot can obey.
     """
     state = start(simulation)
     recorder = Recorder(simulation, state)
@@ -92,7 +108,7 @@ def _command(stamped: Stamped) -> Command:
 
 
 def _move(simulation: Simulation, state: State, command: Command | None, target_ns: int, recorder: Recorder) -> State:
-    """Step the physics to `target_ns`; a command is given once, the robot's own watchdog keeps or drops it."""
+    """Step the physics to `target_ns`. A command is given once; the robot's own watchdog keeps or drops it."""
     while state.time_ns < target_ns:
         dt_ns = min(PHYSICS_NS, target_ns - state.time_ns)
         state = step(simulation, state, command, dt_ns / 1e9)

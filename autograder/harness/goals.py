@@ -1,4 +1,4 @@
-"""Goals: what the grader sends to a student's action server, and what becomes of it."""
+"""Goals that the grader sends to a student's action server."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Goal:
 
     Attributes:
         id: its UUID.
-        accepted: whether the server took it; None while it has not answered.
-        feedback: what it has said on the way.
-        status: of `action_msgs/GoalStatus`, as last heard.
+        accepted: whether the server accepted it; None while it has not answered.
+        feedback: its feedback messages so far.
+        status: of `action_msgs/GoalStatus`, as last received.
         result: the result message once the goal has ended, None before.
         cancelled: whether the server agreed to cancel it; None while it was not asked or has not answered.
     """
@@ -51,7 +51,7 @@ class Goal:
         return self.accepted is False or self.result is not None
 
     def cancel(self) -> None:
-        """Ask the server to cancel the goal; `cancelled` is its answer, once the program has lived on."""
+        """Ask the server to cancel the goal; `cancelled` is its answer, once the program has run on."""
         self._cancel()
 
 
@@ -60,23 +60,30 @@ class Actions:
 
     def __init__(self, grader_node: Any, when: Callable[[int], float]) -> None:
         self._grader_node = grader_node
-        self._when = when
+        self._arrival_seconds = when
         self._goals: dict[bytes, Goal] = {}
         self._names: set[str] = set()
         self._numbers = itertools.count(1)
 
-    def prepare(self, kind: Any, name: str, peers: Callable[[str], list[Any]]) -> list[Any]:
-        """Make what is needed to talk to an action server; return the clients that have to see it."""
+    def prepare(self, kind: Any, name: str) -> list[Any]:
+        """Make the subscriptions and clients for an action server; return the clients, which have to be matched."""
         if name not in self._names:
             self._names.add(name)
             feedback, status = f"{name}/_action/feedback", f"{name}/_action/status"
-            self._grader_node.listen(feedback, kind.Impl.FeedbackMessage, peers(feedback), self._hear_feedback)
-            self._grader_node.listen(status, kind.Impl.GoalStatusMessage, [], self._hear_status)
+            peers = self._grader_node.publishers_of(feedback)
+            self._grader_node.subscribe(feedback, kind.Impl.FeedbackMessage, self._on_feedback, peers)
+            self._grader_node.subscribe(status, kind.Impl.GoalStatusMessage, self._on_status, [])
         return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in _services(kind).items()]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
-        """Send a goal, and ask for its result once it is accepted."""
-        sent = Goal(_number(next(self._numbers)))
+        """Send a goal, and ask for its result once it is accepted.
+
+        Args:
+            kind: the action class.
+            name: the action, which was prepared.
+            goal: of that class.
+        """
+        sent = Goal(_goal_id(next(self._numbers)))
         self._goals[bytes(sent.id.uuid)] = sent
         request = kind.Impl.SendGoalService.Request(goal_id=sent.id, goal=goal)
 
@@ -102,12 +109,12 @@ class Actions:
         self._grader_node.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, answered)
         return sent
 
-    def _hear_feedback(self, message: Any, arrived_ns: int) -> None:
+    def _on_feedback(self, message: Any, arrived_ns: int) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
-            goal.feedback.append(Stamped(self._when(arrived_ns), message.feedback))
+            goal.feedback.append(Stamped(self._arrival_seconds(arrived_ns), message.feedback))
 
-    def _hear_status(self, message: Any, arrived_ns: int) -> None:
+    def _on_status(self, message: Any, arrived_ns: int) -> None:
         for status in message.status_list:
             goal = self._goals.get(bytes(status.goal_info.goal_id.uuid))
             if goal is not None and goal.result is None:
@@ -122,8 +129,8 @@ def _services(kind: Any) -> dict[str, Any]:
     }
 
 
-def _number(number: int) -> Any:
-    """Return a goal's id, which is not drawn at random, so that every run is the same."""
+def _goal_id(number: int) -> Any:
+    """Return a goal's id. It is counted and not drawn at random, so every run is the same."""
     info = GoalInfo()
     info.goal_id.uuid = list(number.to_bytes(16, "big"))
     return info.goal_id

@@ -1,7 +1,7 @@
-"""The grader's own end of every conversation: one node, what it publishes, hears, asks and answers.
+"""The grader's node: its publishers, subscriptions, clients and services.
 
 It counts by channel what it has sent and what it has taken, as the programs do (see `lockstep_host`). So a harness
-in lockstep knows when it has heard all that was said.
+in lockstep knows when it has taken all that was sent to it.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ DEPTH = 1000
 NAME = "grader"
 
 Handler = Callable[[Any], Any]
-Receiver = Callable[[Any, int], None]
-"""Gets a message, and when it arrived, in nanoseconds since the epoch."""
+OnMessage = Callable[[Any, int], None]
+"""Called with a message and the time at which it arrived, in ns since the epoch."""
 
 
 @dataclass(eq=False)
-class Ear:
-    """Something that takes messages.
+class Reader:
+    """A subscription, client or service of the grader's: something that takes messages.
 
     Attributes:
         kind: subscription, client or service.
         channels: what it takes.
         entity: rclpy's object.
-        take: takes one message and deals with it; False when there is none.
+        take: takes one message and handles it; False when there is none.
         count: how many it has taken.
         expected: how many were sent to it, as far as is known.
-        latched: whether it takes what publishers keep for those who come late.
-        new: whether it is still to be told what they keep.
+        latched: whether it gets what publishers hold for late subscriptions.
+        new: whether that is still to be counted.
     """
 
     kind: str
@@ -60,7 +60,14 @@ class Ear:
 
 
 class GraderNode:
-    """The grader's node in one DDS domain."""
+    """The grader's node in one DDS domain.
+
+    Attributes:
+        publishers: by topic.
+        written: the publishers' channels, by topic.
+        readers: all that takes messages.
+        sent: messages by channel, since the programs were last told.
+    """
 
     def __init__(self, domain: int) -> None:
         self.context = Context()
@@ -68,12 +75,12 @@ class GraderNode:
             rclpy.init(args=[], context=self.context, domain_id=domain)
             self.node = Node(NAME, context=self.context, enable_rosout=False, start_parameter_services=False)
         self.publishers: dict[str, Any] = {}
-        self.written: dict[str, str] = {}  # channels of the publishers, by topic
-        self.ears: list[Ear] = []
-        self.sent: Counter[str] = Counter()  # by channel, since the programs were last told
+        self.written: dict[str, str] = {}
+        self.readers: list[Reader] = []
+        self.sent: Counter[str] = Counter()
         self._clients: dict[tuple[str, str], Any] = {}
         self._waiting: dict[tuple[int, int], Callable[[Any], None]] = {}  # by client and sequence number
-        self._bell = GuardCondition(callback=None, callback_group=None, context=self.context)
+        self._unused_guard = GuardCondition(callback=None, callback_group=None, context=self.context)
         self._prefix = ""
 
     def close(self) -> None:
@@ -81,14 +88,41 @@ class GraderNode:
         self.node.destroy_node()
         self.context.try_shutdown()
 
-    def offer(self, topic: str, kind: Any, peers: list[Any]) -> None:
-        """Make a publisher that serves every one of the subscriptions `peers`, however much it asks for."""
+    def offer(self, topic: str, kind: Any) -> None:
+        """Make a publisher that is compatible with each subscription that is seen, unless one has another type.
+
+        Args:
+            topic: its name; nothing happens if this node publishes on it.
+            kind: the message class.
+        """
+        peers = self.subscriptions_of(topic)
+        if topic in self.publishers or not _have_type(kind, peers):
+            return
         qos = offered_qos(peers)
         self.publishers[topic] = self.node.create_publisher(kind, topic, qos)
         self.written[topic] = channels.written(topic, kind, qos)
 
-    def listen(self, topic: str, kind: Any, peers: list[Any], receive: Receiver) -> None:
-        """Make a subscription that each of the publishers `peers` can serve, however little it offers."""
+    def listen(self, topic: str, kind: Any, receive: OnMessage) -> None:
+        """Make a subscription that is compatible with each publisher that is seen, unless one has another type.
+
+        Args:
+            topic: its name; nothing happens if this node subscribes to it.
+            kind: the message class.
+            receive: called with each message.
+        """
+        peers = self.publishers_of(topic)
+        if topic not in self.subscribed() and _have_type(kind, peers):
+            self.subscribe(topic, kind, receive, peers)
+
+    def subscribe(self, topic: str, kind: Any, receive: OnMessage, peers: list[Any]) -> None:
+        """Make a subscription.
+
+        Args:
+            topic: its name.
+            kind: the message class.
+            receive: called with each message.
+            peers: the publishers that it is compatible with, as `publishers_of` returns them.
+        """
         qos = requested_qos(peers)
         subscription = self.node.create_subscription(kind, topic, receive, qos)
 
@@ -99,10 +133,12 @@ class GraderNode:
             return taken is not None
 
         latched = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        self.ears.append(Ear("subscription", channels.read(topic, kind, qos), subscription, take, latched=latched))
+        self.readers.append(
+            Reader("subscription", channels.read(topic, kind, qos), subscription, take, latched=latched)
+        )
 
     def publish(self, topic: str, message: Any) -> None:
-        """Publish on a topic that is offered."""
+        """Publish a message on a topic that is offered."""
         self.publishers[topic].publish(message)
         self.sent[self.written[topic]] += 1
 
@@ -128,18 +164,31 @@ class GraderNode:
                 return True
 
             answers = channels.response(name, kind, self.prefix())
-            self.ears.append(Ear("client", (answers,), client, take))
+            self.readers.append(Reader("client", (answers,), client, take))
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Send a request; `then` gets the response."""
+        """Send a request to a service.
+
+        Args:
+            kind: its class.
+            name: the service, to which there is a client.
+            request: of that class.
+            then: called with the response.
+        """
         client = self.client(kind, name)
         sequence = client.handle.send_request(request)
         self._waiting[(id(client), sequence)] = then
         self.sent[channels.request(name, kind)] += 1
 
     def serve(self, kind: Any, name: str, handler: Handler) -> None:
-        """Answer the requests to a service; where `handler` returns None, never."""
+        """Offer a service.
+
+        Args:
+            kind: its class.
+            name: the service.
+            handler: gets a request and returns the response, or None to leave it unanswered.
+        """
         service = self.node.create_service(kind, name, lambda request, response: response)
 
         def take() -> bool:
@@ -152,7 +201,7 @@ class GraderNode:
                 self.sent[channels.response(name, kind, channels.client_prefix(header.request_id))] += 1
             return True
 
-        self.ears.append(Ear("service", (channels.request(name, kind),), service, take))
+        self.readers.append(Reader("service", (channels.request(name, kind),), service, take))
 
     def clients(self) -> list[tuple[str, Any]]:
         """Return each client with the channel of its requests."""
@@ -163,39 +212,64 @@ class GraderNode:
         self._prefix = self._prefix or channels.own_prefix(self.node)
         return self._prefix
 
-    def hear(self) -> bool:
-        """Take what has arrived where something is expected; return whether all of that has come."""
-        for ear in self.ears:
-            if ear.count < ear.expected:
-                ear.empty()
-        return all(ear.count >= ear.expected for ear in self.ears)
+    def take_expected(self) -> bool:
+        """Take what has arrived where something is expected; return whether all that is expected has come."""
+        for reader in self.readers:
+            if reader.count < reader.expected:
+                reader.empty()
+        return all(reader.count >= reader.expected for reader in self.readers)
+
+    def subscribed(self) -> set[str]:
+        """Return the topics that this node subscribes to."""
+        return {reader.entity.topic_name for reader in self.readers if reader.kind == "subscription"}
+
+    def subscriptions_of(self, topic: str) -> list[Any]:
+        """Return the other nodes' subscriptions to a topic, as rclpy's graph functions describe them."""
+        return [peer for peer in self.node.get_subscriptions_info_by_topic(topic) if peer.node_name != NAME]
+
+    def publishers_of(self, topic: str) -> list[Any]:
+        """Return the other nodes' publishers of a topic, as rclpy's graph functions describe them."""
+        return [peer for peer in self.node.get_publishers_info_by_topic(topic) if peer.node_name != NAME]
+
+    def other_nodes(self) -> list[str]:
+        """Return the fully qualified names of the other nodes that are seen now."""
+        found = self.node.get_node_names_and_namespaces()
+        return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != NAME)
+
+    def is_impersonated(self) -> bool:
+        """Return whether another node has this node's name."""
+        return bool(self.node.get_node_names().count(NAME) > 1)
 
     def spin(self, timeout: float) -> None:
         """Take what has arrived; wait for something at most `timeout` seconds.
 
         rclpy's executors do the same, at several times the cost.
         """
-        ears = list(self.ears)
-        numbers = Counter(ear.kind for ear in ears)
+        readers = list(self.readers)
+        numbers = Counter(reader.kind for reader in readers)
         wait_set = rclpy_implementation.WaitSet(
             numbers["subscription"], 1, 0, numbers["client"], numbers["service"], 0, self.context.handle
         )
         wait_set.clear_entities()
-        wait_set.add_guard_condition(self._bell.handle)  # never rung: a wait set must not be empty
+        wait_set.add_guard_condition(self._unused_guard.handle)  # a wait set must not be empty
         add = {
             "subscription": wait_set.add_subscription,
             "client": wait_set.add_client,
             "service": wait_set.add_service,
         }
-        for ear in ears:
-            add[ear.kind](ear.entity.handle)
+        for reader in readers:
+            add[reader.kind](reader.entity.handle)
         wait_set.wait(int(timeout * 1e9))
-        for ear in ears:
-            ear.empty()
+        for reader in readers:
+            reader.empty()
+
+
+def _have_type(kind: Any, peers: list[Any]) -> bool:
+    return all(peer.topic_type == channels.type_name(kind) for peer in peers)
 
 
 def offered_qos(peers: list[Any]) -> QoSProfile:
-    """Return a publisher's profile that serves every subscription, however much it asks for."""
+    """Return a publisher's profile that is compatible with every subscription, whatever it requests."""
     durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST,
@@ -206,7 +280,7 @@ def offered_qos(peers: list[Any]) -> QoSProfile:
 
 
 def requested_qos(peers: list[Any]) -> QoSProfile:
-    """Return a subscription's profile that each publisher can serve, however little it offers."""
+    """Return a subscription's profile that is compatible with each publisher, however little it offers."""
     reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
     durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
     return QoSProfile(

@@ -1,4 +1,4 @@
-"""A harness for launch files: `ros2 launch` runs in the sandbox, in real time, and is looked at from outside."""
+"""A harness for launch files: `ros2 launch` runs in the sandbox, in real time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 import autograder
 from autograder.exceptions import StudentError
-from autograder.harness.base import DEPTH, NAME
+from autograder.harness.grader_node import DEPTH, NAME
 from autograder.lockstep.failures import diagnose_ending
 from autograder.ros.discovery import announcing_often
 from autograder.ros.domains import Domain
@@ -39,9 +39,9 @@ from autograder.workspace import Workspace
 HOST = Path(__file__).with_name("launch_host")
 PRELOAD = HOST / "preload.py"
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
-_STEP = 0.05  # s between two looks at a condition while nothing arrives
+_POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
-_LABS = itertools.count()
+_NUMBERS = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Pro
     Args:
         words: the arguments.
         spec: from `sandbox`.
-        status: a descriptor that gets the exit status, as a line; what is started then outlives `ros2`.
+        status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
     """
     command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
     return launch(command, spec, pass_fds=() if status is None else (status,), preload=PRELOAD)
@@ -87,7 +87,7 @@ def sandbox(workspace: Workspace) -> Sandbox:
 
 
 class LaunchHarness:
-    """A running `ros2 launch` and the grader's node, which meets what it started over DDS; a context manager.
+    """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS; a context manager.
 
         with LaunchHarness(workspace, "my_robot_bringup", "robot.launch.py", {"speed": "0.3"},
                        listens={"/cmd_vel": Twist}) as harness:
@@ -103,7 +103,7 @@ class LaunchHarness:
         package: the package with the launch file.
         file: its name.
         arguments: launch arguments by name.
-        listens: topics that are listened to from the start, with their types.
+        listens: topics that the grader subscribes to from the start, with their types.
     """
 
     def __init__(
@@ -115,15 +115,15 @@ class LaunchHarness:
         *,
         listens: Mapping[str, type] | None = None,
     ) -> None:
-        self._anew = partial(LaunchHarness, workspace, package, file, arguments, listens=listens)
-        self._domain = Domain(workspace.domain + next(_LABS))
+        self._make_again = partial(LaunchHarness, workspace, package, file, arguments, listens=listens)
+        self._domain = Domain(workspace.domain + next(_NUMBERS))
         self._sandbox = sandbox(replace(workspace, domain=self._domain.number))
         words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
         self._words = ("launch", "--noninteractive", package, file, *words)
         self._listens = dict(listens or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._listens}
-        self._said = b""
+        self._status_text = b""
 
     def __enter__(self) -> LaunchHarness:
         self._context = Context()
@@ -154,20 +154,20 @@ class LaunchHarness:
 
     @property
     def output(self) -> str:
-        """What the launch and its processes have written so far."""
+        """What the launch and its processes have printed so far."""
         return self.process.output
 
     @property
     def status(self) -> int | None:
         """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
         with contextlib.suppress(BlockingIOError):
-            self._said += os.read(self._pipe, 64)
-        return int(self._said) if self._said.endswith(b"\n") else None
+            self._status_text += os.read(self._pipe, 64)
+        return int(self._status_text) if self._status_text.endswith(b"\n") else None
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Listen until `condition` holds, at most `seconds` of real time; return whether it does.
+        """Take messages until `condition` holds, at most `seconds` of real time; return whether it does.
 
-        A launch that has ended is not waited for.
+        It does not wait for a launch that has ended.
 
         Raises:
             StudentError: the launch went over a limit of its sandbox.
@@ -175,7 +175,7 @@ class LaunchHarness:
         deadline = time.monotonic() + seconds
         while True:
             over = time.monotonic() > deadline or self.status is not None
-            self._executor.spin_once(timeout_sec=0.0 if over else _STEP)
+            self._executor.spin_once(timeout_sec=0.0 if over else _POLL_SECONDS)
             if condition():
                 return True
             if self.process.ending is not None:
@@ -184,11 +184,11 @@ class LaunchHarness:
                 return False
 
     def run(self, seconds: float) -> None:
-        """Listen for `seconds` of real time, or until the launch has ended."""
+        """Take messages for `seconds` of real time, or until the launch has ended."""
         self.wait_for(lambda: False, seconds)
 
     def nodes(self) -> list[str]:
-        """Return the full names of the nodes that are seen now, those of one name as often as there are."""
+        """Return the full names of the nodes that are seen now; a name that several nodes have comes as often."""
         found = self.node.get_node_names_and_namespaces()
         return sorted(_full(name, space) for name, space in found if (name, space) != (NAME, "/") and name[0] != "_")
 
@@ -218,7 +218,7 @@ class LaunchHarness:
         values = self._ask(node, names, seconds)
         if values is None or len(values) == len(names):
             return values
-        # A node that lacks one of them answers with none at all.
+        # A node that lacks one of the parameters answers with no value at all.
         return {name: (self._ask(node, (name,), seconds) or {}).get(name) for name in names}
 
     def programs(self) -> list[Program]:
@@ -248,8 +248,8 @@ class LaunchHarness:
         return Stop(self.status, self.left())
 
     def another(self) -> LaunchHarness:
-        """Return a harness of the same launch, yet to be started."""
-        return self._anew()
+        """Return a new harness for the same launch, not yet entered."""
+        return self._make_again()
 
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""

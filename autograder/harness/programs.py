@@ -1,4 +1,4 @@
-"""The programs of a harness, the files that the grader gives them, and which of them an error is of."""
+"""The programs of a harness, the files that the grader gives them, and errors that name their program."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.sandbox import Mount, Sandbox
 from autograder.workspace import Workspace
 
-FILES = "{files}"  # stands in arguments for the folder of the harness's files
+FILES = "{files}"  # replaced in arguments by the folder of the harness's files
 _PROFILES = ".profiles.xml"
 
 
@@ -25,17 +25,22 @@ class Program:
     arguments: tuple[str, ...] = ()
 
     def words(self, folder: str) -> tuple[str, ...]:
-        """Return the arguments with the folder of the harness's files put in."""
+        """Return the arguments, `FILES` replaced by the folder of the harness's files."""
         return tuple(argument.replace(FILES, folder) for argument in self.arguments)
 
 
 def write_files(files: Mapping[str, str], workspace: Workspace, sandbox: Sandbox) -> tuple[Sandbox, str]:
-    """Write files where programs in a sandbox can read them and nobody but the grader can write.
+    """Write files where programs in a sandbox can read them and only the grader can write.
 
-    One is of the grader's own: with it, programs that start together find each other at once.
+    The grader adds a file of its own: with it, programs that start together find each other at once.
+
+    Args:
+        files: texts by name.
+        workspace: whose root gets the folder.
+        sandbox: of the programs.
 
     Returns:
-        The sandbox that sees them, and their folder.
+        The sandbox with the folder mounted, and the folder.
     """
     folder = Path(tempfile.mkdtemp(prefix=".harness-", dir=workspace.root))
     for name, text in {**files, _PROFILES: PROFILES}.items():
@@ -45,7 +50,13 @@ def write_files(files: Mapping[str, str], workspace: Workspace, sandbox: Sandbox
 
 
 def error_of(program: Program, error: StudentError, count: int) -> StudentError:
-    """Return a program's error; where there are several programs, it says which one it is of."""
+    """Return a program's error, which names the program where there are several.
+
+    Args:
+        program: which failed.
+        error: what it raised.
+        count: how many programs there are.
+    """
     if count == 1:
         return error
     return StudentError(replace(error.diagnosis, sentence=f"{program.executable}: {error.diagnosis.sentence}"))

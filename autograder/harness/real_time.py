@@ -1,4 +1,4 @@
-"""A harness in real time: the programs run as `ros2 run` would start them, and can be sent signals."""
+"""A harness in real time: the programs run as `ros2 run` would start them, and can get signals."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from autograder.exceptions import StudentError
 from autograder.harness import cpu_starvation
 from autograder.harness.base import Harness
 from autograder.harness.programs import Program, error_of
-from autograder.lockstep.failures import diagnose_ending, diagnose_output, stuck
+from autograder.lockstep.failures import diagnose_ending, diagnose_no_answer, diagnose_output
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 
 START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
-GRACE_NS = 300_000_000  # real time for the programs to see the grader's endpoints, too: they cannot be asked
+GRACE_NS = 300_000_000  # real time for the programs to match the grader's endpoints; they cannot be asked
 SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
 
 
@@ -37,7 +37,7 @@ class RealTimeHarness(Harness):
             self._running = [*self._running, (program, launch(command, self._sandbox))]
         up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
         if not up and len(self.nodes()) < len(self.running - self.optional):
-            raise StudentError(stuck(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
+            raise StudentError(diagnose_no_answer(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -63,7 +63,7 @@ class RealTimeHarness(Harness):
         return time.monotonic() - self._began
 
     def step(self, dt_ns: int) -> None:
-        """Listen for `dt_ns` nanoseconds of real time; not at all if there are none, as for who is late already."""
+        """Take messages for `dt_ns` nanoseconds of real time; none of them if the caller is late already."""
         if dt_ns <= 0:
             return
         end = time.monotonic() + dt_ns / 1e9
@@ -71,7 +71,7 @@ class RealTimeHarness(Harness):
         with cpu_starvation.watch(pids, dt_ns / 1e9, self._workspace.time_record.add_wait):
             while (left := end - time.monotonic()) > 0:
                 self._alive()
-                self._spin(min(left, 0.05))
+                self._grader_node.spin(min(left, 0.05))
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         return self.wait_for(lambda: self._alive() and condition(), seconds)
@@ -85,12 +85,16 @@ class RealTimeHarness(Harness):
             process.signal(number)
         return self.process.returncode if self.process.wait(seconds) else None
 
-    def _when(self, arrived_ns: int) -> float:
-        # It may have lain there while nobody listened, to two harnesses at once, say.
+    def _arrival_seconds(self, arrived_ns: int) -> float:
+        # It may have waited here while the grader was busy with another harness.
         return self.seconds - (time.time_ns() - arrived_ns) / 1e9
 
     def _alive(self) -> bool:
-        """Go on without a program that has ended and may; of others say how they did."""
+        """Drop an optional program that has ended; return True.
+
+        Raises:
+            StudentError: another program has ended; it says how.
+        """
         for program, process in self._running:
             if process.ending is None:
                 continue
@@ -101,26 +105,28 @@ class RealTimeHarness(Harness):
             self._running = [other for other in self._running if other[1] is not process]
         return True
 
-    def _meet(self) -> None:
+    def _match(self) -> None:
         began = self.seconds
-        super()._meet()
+        super()._match()
         self.discovery_seconds = max(self.discovery_seconds, self.seconds - began)
         self.step(GRACE_NS)
 
     def _topics(self) -> tuple[set[str], set[str]]:
         def complete() -> bool:
-            return all(map(self._readers, self._offers)) and all(map(self._writers, self._listens))
+            return all(map(self._grader_node.subscriptions_of, self._offers)) and all(
+                map(self._grader_node.publishers_of, self._listens)
+            )
 
         self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
-        return {topic for topic in self._offers if self._readers(topic)}, {
-            topic for topic in self._listens if self._writers(topic)
+        return {topic for topic in self._offers if self._grader_node.subscriptions_of(topic)}, {
+            topic for topic in self._listens if self._grader_node.publishers_of(topic)
         }
 
     def _connected(self) -> bool:
-        # The programs' own view cannot be asked for; the grader's endpoints are matched once they see a peer.
-        ears = [ear.entity for ear in self._grader_node.ears if ear.kind == "subscription"]
+        # The programs cannot be asked. The grader's endpoints are matched once they see a peer.
+        readers = [reader.entity for reader in self._grader_node.readers if reader.kind == "subscription"]
         return all(publisher.get_subscription_count() for publisher in self._grader_node.publishers.values()) and all(
-            self.node.count_publishers(ear.topic_name) for ear in ears
+            self.node.count_publishers(reader.topic_name) for reader in readers
         )
 
     def _reach(self, client: Any, seconds: float) -> bool:
@@ -128,10 +134,15 @@ class RealTimeHarness(Harness):
 
 
 def usual_rate(instants: Sequence[float], seconds: float) -> float:
-    """Return how many times a second something usually happens that happened at `instants`, in `seconds` in all.
+    """Return how many times a second something usually happens.
 
-    A busy machine holds a program up now and then, and what it holds up never comes: a count would blame the program.
-    The median interval does not. Where less than half of what it promises came, the count is right.
+    A busy machine keeps a program from running now and then, and what it would have done then never happens. A count
+    would blame the program; the median interval does not. Where less than half as much happened as the median interval
+    promises, the count is right.
+
+    Args:
+        instants: when it happened, in s, ascending.
+        seconds: the whole time.
     """
     count = len(instants) / seconds
     if len(instants) < 3:

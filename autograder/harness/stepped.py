@@ -1,8 +1,7 @@
-"""A harness in lockstep: the programs' ROS time goes on only when the grader says so."""
+"""A harness in lockstep: ROS time advances only when the grader steps it."""
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 from collections import Counter
@@ -16,27 +15,32 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.harness.base import Harness
 from autograder.harness.matching import connected
 from autograder.harness.programs import Program, error_of
+from autograder.harness.steps import next_instant, tick_of
 from autograder.lockstep import Description, Stepper, UnsteppableError
 from autograder.lockstep.lockstep_host import channels
-from autograder.lockstep.protocol import START
+from autograder.lockstep.protocol import START_NS
 from autograder.sandbox import Process
 
 DELIVERY_SECONDS = 15.0  # real time, over a whole run, for messages that were announced and have not come yet
 SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be seen
-FINEST_TICK_NS = 10_000_000
-SLACK_NS = 1_000_000  # what wants to wake so shortly before the end of a step wakes at its end
-ROUNDS = 1000  # in one step; programs that still answer each other then will go on for ever
+ROUNDS = 1000  # in one step; programs that still answer each other then will never stop
 
 
 class SteppedProgram:
-    """One program of a harness in lockstep, and the mail that it has not been told of."""
+    """One program of a harness in lockstep.
+
+    Attributes:
+        description, reads: of its nodes, and the channels that they read, as last asked.
+        pending: messages that were sent to it and that it has not been told of, by channel.
+        wake, idle: as in `Reply`.
+    """
 
     def __init__(self, program: Program, stepper: Stepper) -> None:
         self.program = program
         self.stepper = stepper
         self.description = Description()
         self.reads: frozenset[str] = frozenset()
-        self.mail: Counter[str] = Counter()
+        self.pending: Counter[str] = Counter()
         self.wake: int | None = None
         self.idle: int | None = None
 
@@ -47,33 +51,33 @@ class SteppedProgram:
         return self.description
 
 
-class _Spared(Exception):
-    """A program that may fail has failed, and the harness no longer has it."""
+class _OptionalProgramLost(Exception):
+    """An optional program failed, and the harness has dropped it."""
 
 
 class SteppedHarness(Harness):
     """Programs that are stepped through ROS time: faster than real time, and the same every time.
 
-    They start at ROS time `START`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. A step is
-    lived in rounds, the programs always in the order in which they were named: first all take what was sent before,
-    then their timers fire, then they take what they sent each other, until nobody has anything left to take.
+    They start at ROS time `START_NS`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. A step has
+    rounds, in which the programs run in the order in which they were named. First all take what was sent before. Then
+    their timers fire. Then they take what they sent each other, until no message is left.
 
     Attributes:
-        notes: by executable, why steps are not all that moves a program, if so: thread, clock or sleep.
+        notes: by executable, one of the protocol's `REASONS` why steps are not all that moves a program, if so.
     """
 
     _stepped: Sequence[SteppedProgram] = ()
 
     def _start(self) -> None:
-        self._now_ns = START
+        self._now_ns = START_NS
         self.notes: dict[str, str] = {}
-        self._patience = DELIVERY_SECONDS
+        self._delivery_seconds_left = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
             arguments = program.words(self._folder)
             stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
             self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
         for stepped in self._stepped:
-            with suppress(_Spared), self._attributing(stepped):
+            with suppress(_OptionalProgramLost), self._attributing(stepped):
                 stepped.stepper.wait_ready()
 
     def __exit__(
@@ -97,7 +101,7 @@ class SteppedHarness(Harness):
 
     @property
     def seconds(self) -> float:
-        return (self._now_ns - START) / 1e9
+        return (self._now_ns - START_NS) / 1e9
 
     def step(self, dt_ns: int) -> None:
         """Let the programs take what was published, then run the timers that are due.
@@ -107,15 +111,9 @@ class SteppedHarness(Harness):
         """
         end = self._now_ns + dt_ns
         while True:
-            self._advance(self._next_wake(end) - self._now_ns)
+            self._advance(next_instant(self._now_ns, end, (stepped.wake for stepped in self._stepped)) - self._now_ns)
             if self._now_ns >= end:
                 return
-
-    def _next_wake(self, end: int) -> int:
-        """Return the instant before `end` at which the first program wants to go on, or `end`."""
-        earliest = self._now_ns + FINEST_TICK_NS
-        wakes = [max(stepped.wake, earliest) for stepped in self._stepped if stepped.wake is not None]
-        return min((wake for wake in wakes if wake < end - SLACK_NS), default=end)
 
     def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
@@ -144,14 +142,14 @@ class SteppedHarness(Harness):
     # Rounds.
 
     def _settle(self, instant: int) -> None:
-        """Go round, at one instant, until nobody has mail."""
+        """Run rounds at one instant until no program has pending messages."""
         for _ in range(ROUNDS):
-            self._post(self._grader_node.sent)
-            if not any(stepped.mail for stepped in self._stepped):
+            self._add_pending(self._grader_node.sent)
+            if not any(stepped.pending for stepped in self._stepped):
                 return
             for stepped in self._stepped:
-                if stepped.mail:
-                    self._turn(stepped, [instant])
+                if stepped.pending:
+                    self._step_program(stepped, [instant])
         sentence = (
             f"Your nodes answered each other {ROUNDS} times without any time going by, and would go on for ever: a "
             "callback must not publish what makes it run again."
@@ -159,97 +157,104 @@ class SteppedHarness(Harness):
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
     def _let_run(self, stepped: SteppedProgram, instants: list[int]) -> None:
-        """Let one program live through instants, if it has anything to do then."""
-        self._post(self._grader_node.sent)
-        if stepped.mail or stepped.idle is None or stepped.idle <= instants[-1]:
-            self._turn(stepped, instants)
+        """Run one program at instants, if it has anything to do then."""
+        self._add_pending(self._grader_node.sent)
+        if stepped.pending or stepped.idle is None or stepped.idle <= instants[-1]:
+            self._step_program(stepped, instants)
 
-    def _turn(self, stepped: SteppedProgram, instants: list[int]) -> None:
-        """Let one program live through instants, and deliver what it sends."""
+    def _step_program(self, stepped: SteppedProgram, instants: list[int]) -> None:
+        """Run one program at instants, and deliver what it sends."""
         if stepped not in self._stepped:
             return
-        self._post(self._grader_node.sent)
-        mail, stepped.mail = stepped.mail, Counter()
+        self._add_pending(self._grader_node.sent)
+        pending, stepped.pending = stepped.pending, Counter()
         try:
             with self._attributing(stepped):
-                reply = stepped.stepper.step(instants, mail)
-        except _Spared:
+                reply = stepped.stepper.step(instants, pending)
+        except _OptionalProgramLost:
             return
         stepped.wake, stepped.idle = reply.wake, reply.idle
         for reason in reply.notes:
             self.notes.setdefault(stepped.program.executable, reason)
-        for channel in reply.late:
+        for channel in reply.lost:
             # What others of the student's programs claim to have sent may be forged; what the grader sent is not.
-            if mail[channel] and channel in self._grader_node.written.values():
+            if pending[channel] and channel in self._grader_node.written.values():
                 raise GraderError(f"messages that were sent to the student's node did not arrive: {channel}")
-        self._post(reply.sent, but=stepped)
+        self._add_pending(reply.sent, but=stepped)
         self._expect(reply.sent)
         self._collect()
         if reply.changed:
-            self._meet()
+            self._match()
 
-    def _post(self, sent: dict[str, int], but: SteppedProgram | None = None) -> None:
-        """Put into every program's mail what was sent to it."""
+    def _add_pending(self, sent: dict[str, int], but: SteppedProgram | None = None) -> None:
+        """Add sent messages to the pending ones of every program but `but` that reads their channels."""
         for channel, count in sent.items():
             for stepped in self._stepped:
                 if stepped is not but and channel in stepped.reads:
-                    stepped.mail[channel] += count
+                    stepped.pending[channel] += count
         if sent is self._grader_node.sent:
             self._grader_node.sent.clear()
 
     def _expect(self, sent: dict[str, int]) -> None:
         for channel, count in sent.items():
-            for ear in self._grader_node.ears:
-                if channel in ear.channels:
-                    ear.expected += count
+            for reader in self._grader_node.readers:
+                if channel in reader.channels:
+                    reader.expected += count
 
     def _collect(self) -> None:
-        """Hear all that was said to the grader.
+        """Take all that was sent to the grader.
 
         A count that is never reached is forged, or the student's own QoS dropped a message. Only what arrived counts,
-        and all waiting in vain has one bound.
+        and the waits for what does not arrive share one bound.
         """
-        while not self._grader_node.hear() and self._patience > 0.0:
+        while not self._grader_node.take_expected() and self._delivery_seconds_left > 0.0:
             began = time.monotonic()
-            self._spin(0.05)
-            if not self._grader_node.hear():
-                self._patience -= time.monotonic() - began
-        for ear in self._grader_node.ears:
-            ear.expected = ear.count
+            self._grader_node.spin(0.05)
+            if not self._grader_node.take_expected():
+                self._delivery_seconds_left -= time.monotonic() - began
+        for reader in self._grader_node.readers:
+            reader.expected = reader.count
 
-    # Meeting.
+    # Matching.
 
-    def _meet(self) -> None:
+    def _match(self) -> None:
         while True:
-            with suppress(_Spared):
-                return self._meet_all()
+            with suppress(_OptionalProgramLost):
+                return self._match_all()
 
-    def _meet_all(self) -> None:
-        super()._meet()
+    def _match_all(self) -> None:
+        super()._match()
         descriptions = [stepped.description for stepped in self._stepped]
         for stepped in self._stepped:
             others = [description for description in descriptions if description is not stepped.description]
             early = _sum(description.early for description in others)
             with self._attributing(stepped):
-                stepped.stepper.meet(
+                stepped.stepper.match(
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
-            stepped.idle = None  # there may be something for it to take
-        for ear in self._grader_node.ears:
-            if ear.new:
-                ear.new = False
-                source = [d.early if ear.kind == "service" else d.kept if ear.latched else {} for d in descriptions]
-                ear.expected += sum(_sum(source)[channel] for channel in ear.channels)
+            stepped.idle = None  # there may be messages for it
+        for reader in self._grader_node.readers:
+            if reader.new:
+                reader.new = False
+                source = [
+                    d.early if reader.kind == "service" else d.kept if reader.latched else {} for d in descriptions
+                ]
+                reader.expected += sum(_sum(source)[channel] for channel in reader.channels)
         self._collect()
 
     def _topics(self) -> tuple[set[str], set[str]]:
         descriptions = self._describe()
-        self.tick_ns = max(FINEST_TICK_NS, math.gcd(self.tick_ns, *(p for d in descriptions for p in d.timers)))
+        self.tick_ns = tick_of(self.tick_ns, (period for description in descriptions for period in description.timers))
         subscribed = {channels.topic_of(name[0]) for d in descriptions for name, _ in d.readers if name}
         published = {channels.topic_of(name) for d in descriptions for name, _ in d.writers}
         subscribed, published = subscribed & set(self._offers), published & set(self._listens)
-        self._await(lambda: all(map(self._readers, subscribed)) and all(map(self._writers, published)))
+        self._await(
+            lambda: (
+                all(map(self._grader_node.subscriptions_of, subscribed))
+                and all(map(self._grader_node.publishers_of, published))
+            )
+        )
         names = {name for description in descriptions for name in description.nodes}
         self.wait_for(lambda: names <= set(self.nodes()), SETTLE_SECONDS)
         return subscribed, published
@@ -277,17 +282,17 @@ class SteppedHarness(Harness):
 
     @contextmanager
     def _attributing(self, stepped: SteppedProgram) -> Iterator[None]:
-        """Go on without a program that failed and may; of others say which of several it was."""
+        """Drop an optional program that failed; where another one of several failed, name it in the error."""
         try:
             yield
-        except UnsteppableError as error:  # even of an optional program: no fault of the program's
+        except UnsteppableError as error:  # of an optional program too: it is no fault of the program
             self.notes[stepped.program.executable] = error.reason
             raise
         except StudentError as error:
             if stepped.program.executable in self.optional:
                 self._stepped = [other for other in self._stepped if other is not stepped]
                 stepped.stepper.__exit__(None, None, None)
-                raise _Spared from None
+                raise _OptionalProgramLost from None
             raise error_of(stepped.program, error, len(self._stepped)) from None
 
 

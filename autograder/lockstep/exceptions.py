@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from autograder.exceptions import StudentError
-from autograder.lockstep.failures import unsteppable
+from autograder.lockstep.failures import diagnose_unsteppable
 
 
 class UnsteppableError(StudentError):
-    """A program's time cannot be stepped; it has to be met in real time.
+    """A program's time cannot be stepped; it has to run in real time.
 
     Attributes:
-        reason: why: thread, clock or sleep.
+        reason: why, one of the protocol's `REASONS`.
     """
 
     def __init__(self, reason: str, output: str = "") -> None:
-        super().__init__(unsteppable(reason, output))
+        super().__init__(diagnose_unsteppable(reason, output))
         self.reason = reason

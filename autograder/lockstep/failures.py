@@ -1,4 +1,4 @@
-"""Why a student's program came to an end or to a stop, in a sentence that the student can act on."""
+"""Why a student's program ended or stopped, in a sentence that the student can act on."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _LIMITS = {
 
 
 def diagnose_crash(crash: Crash) -> Diagnosis:
-    """Name a reported exception. Syntax errors and unwritten parts of an exercise are told apart."""
+    """Return the diagnosis of a reported exception; syntax errors and unwritten exercises have their own."""
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,
@@ -58,7 +58,7 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
 
 
 def diagnose_ending(process: Process) -> Diagnosis:
-    """Name the end of a program that reported no exception."""
+    """Return the diagnosis of a program that ended, or stopped to answer, and reported no exception."""
     detail = tail(process.output)
     if process.ending in _LIMITS:
         kind, sentence = _LIMITS[process.ending]
@@ -80,8 +80,14 @@ def diagnose_ending(process: Process) -> Diagnosis:
     )
 
 
-def stuck(kind: Kind, waited: str, output: str) -> Diagnosis:
-    """Name a program that did not come back within what was waited, such as "60 s"."""
+def diagnose_no_answer(kind: Kind, waited: str, output: str) -> Diagnosis:
+    """Return the diagnosis of a program that did not answer in time.
+
+    Args:
+        kind: `NEVER_STARTED` or `STUCK`.
+        waited: how long the wait was, in words, such as "60 s".
+        output: what the program printed.
+    """
     if kind is Kind.NEVER_STARTED:
         sentence = (
             f"Your node did not start to spin within {waited}: look for a loop, an input() or a sleep in "
@@ -107,8 +113,8 @@ def unsteppable_reason(reason: str) -> str:
     return _UNSTEPPABLE[reason]
 
 
-def unsteppable(reason: str, output: str) -> Diagnosis:
-    """Name a program whose time cannot be stepped."""
+def diagnose_unsteppable(reason: str, output: str) -> Diagnosis:
+    """Return the diagnosis of a program whose time cannot be stepped."""
     sentence = (
         f"Your node's time cannot be stepped: {unsteppable_reason(reason)}. Let a timer of the node do the work, and "
         "rclpy.spin(node) run it."
@@ -127,7 +133,7 @@ _DEADLOCKS = {
 
 
 def diagnose_deadlock(deadlock: Deadlock, output: str) -> Diagnosis:
-    """Name a call that will never return."""
+    """Return the diagnosis of a call that will never return."""
     asked = f" for an answer of {deadlock.name}" if deadlock.name else ""
     it = "what takes the answer" if deadlock.name else "the callback that would end the wait"
     why = _DEADLOCKS[deadlock.reason].format(it=it)
@@ -141,7 +147,7 @@ def tail(text: str, lines: int = _LINES) -> str:
 
 
 def diagnose_output(process: Process) -> Diagnosis | None:
-    """Name a crash by the traceback that a program in real time printed, or None if it printed none."""
+    """Return the diagnosis of a crash from the traceback that a program in real time printed; None without one."""
     if "Traceback (most recent call last)" not in process.output:
         return None
     trace = process.output.rpartition("Traceback (most recent call last)")[2]

@@ -1,23 +1,23 @@
-"""What the stepper and the host tell each other: a JSON object a line, over two inherited pipes.
+"""The messages between stepper and host: a JSON object a line, over two inherited pipes.
 
     stepper -> host   {"op": "describe"}
-                      {"op": "meet", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
-                      {"op": "step", "instants": [NANOSECONDS, ...], "mail": {CHANNEL: NEW MESSAGES}}
+                      {"op": "match", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
+                      {"op": "step", "instants": [NANOSECONDS, ...], "pending": {CHANNEL: NEW MESSAGES}}
                       {"op": "quit"}
     host -> stepper   {"event": "ready"}                  once, when the node first waits for work
                       {"event": "description", ...}
-                      {"event": "met"}
-                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "late": [CHANNEL, ...], "changed": BOOL,
+                      {"event": "matched"}
+                      {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "lost": [CHANNEL, ...], "changed": BOOL,
                        "wake": NANOSECONDS, "idle": NANOSECONDS, "notes": [REASON, ...]}
                       {"event": "unsteppable", "reason": ...}
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
 
-Channels are named in `lockstep_host/channels.py`. "mail" is what the grader and other programs have sent on the
-channels that the program reads.
+`lockstep_host/channels.py` names channels. "pending" counts what the grader and other programs have sent on the
+channels that the program reads. The stepper starts the host with the ROS time at which the program starts.
 
-The host shares a process with the student's code, which may forge any of it. So whatever comes from the host is
-bounded in size, parsed into these records and used only to wait less, or to explain; no point depends on it.
+The host shares a process with the student's code, which may forge any event. So the stepper bounds every event in size
+and parses it into these records. They serve only to wait less and to explain; no point depends on them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
-START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "time is not known yet"
+START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
 MAX_LINE = 64 * 1024
 MAX_TEXT = 8 * 1024
 MAX_TOPICS = 256
@@ -75,15 +75,15 @@ class Reply:
 
     Attributes:
         sent: how many messages the nodes have sent in it, by channel.
-        late: channels on which the nodes gave up waiting for messages that they were told of.
+        lost: channels on which messages that were announced did not arrive in time.
         changed: whether there are endpoints or timers that the last description did not name.
-        wake: the next instant at which something in the program wants to go on, besides its timers.
-        idle: the instant before which the program does nothing unless it is sent something; None if it cannot tell.
-        notes: why steps are not all that moves the program; see `Unsteppable`.
+        wake: the next instant at which something in the program continues, besides its timers.
+        idle: the instant before which the program does nothing unless a message comes; None if that cannot be told.
+        notes: why steps are not all that moves the program; one of `REASONS`.
     """
 
     sent: dict[str, int] = field(default_factory=dict)
-    late: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
     changed: bool = False
     wake: int | None = None
     idle: int | None = None
@@ -162,7 +162,7 @@ def reply(data: dict[str, Any]) -> Reply:
     wake, idle = data.get("wake"), data.get("idle")
     return Reply(
         sent=_counts(data.get("sent")),
-        late=tuple(_texts(data.get("late"))),
+        lost=tuple(_texts(data.get("lost"))),
         changed=data.get("changed") is True,
         wake=wake if type(wake) is int else None,
         idle=idle if type(idle) is int else None,

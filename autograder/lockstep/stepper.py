@@ -1,4 +1,4 @@
-"""The trusted end of a host's pipes: starts it, steps it, and says in the student's words how it failed."""
+"""The trusted end of a host's pipes: it starts the host, steps it, and tells the student how the program failed."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import protocol
 from autograder.lockstep.exceptions import UnsteppableError
-from autograder.lockstep.failures import diagnose_crash, diagnose_deadlock, diagnose_ending, stuck
-from autograder.lockstep.protocol import Description, ProtocolError, Reply
+from autograder.lockstep.failures import diagnose_crash, diagnose_deadlock, diagnose_ending, diagnose_no_answer
+from autograder.lockstep.protocol import START_NS, Description, ProtocolError, Reply
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.spec import Sandbox
@@ -29,24 +29,26 @@ _TICK = 0.5  # s between two looks at how much a silent program has computed
 
 
 @dataclass(frozen=True)
-class Patience:
-    """How long a program may be silent.
+class Timeout:
+    """How long a program may take for an answer.
 
     Attributes:
         seconds: of real time, generous for a machine that is busy.
-        computing: of processor time, which no machine's load makes longer: a loop without end is found by it.
+        cpu_seconds: of processor time, which does not depend on the machine's load: it finds an endless loop.
     """
 
     seconds: float
-    computing: float
+    cpu_seconds: float
 
 
-START = Patience(60.0, 15.0)  # from start to the first wait for work, which takes half a second of computing
-STEP = Patience(30.0, 10.0)
+START_TIMEOUT = Timeout(
+    60.0, 15.0
+)  # from the start to the first wait for work, which takes half a second of processor time
+STEP_TIMEOUT = Timeout(30.0, 10.0)
 
 
-class _Silence(Exception):
-    """A program's answer does not come; says in words how long it was waited for."""
+class _NoAnswer(Exception):
+    """A program did not answer in time; the message says how long the wait was."""
 
 
 class Stepper:
@@ -54,12 +56,18 @@ class Stepper:
 
     Every method raises `StudentError` when the program crashes, ends, hangs or goes over a limit, and
     `UnsteppableError` when it turns out that it cannot be stepped.
+
+    Args:
+        spec: the sandbox, which shows the program and the host.
+        executable: the program's path.
+        python: the interpreter's path.
+        arguments: the program's.
     """
 
     def __init__(self, spec: Sandbox, executable: Path, *, python: str, arguments: tuple[str, ...] = ()) -> None:
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
-        command = [python, str(HOST), str(their_read), str(their_write), str(executable), *arguments]
+        command = [python, str(HOST), str(their_read), str(their_write), str(START_NS), str(executable), *arguments]
         try:
             self.process: Process = launch(command, spec, pass_fds=(their_read, their_write), preload=PRELOAD)
         finally:
@@ -74,22 +82,32 @@ class Stepper:
 
     def wait_ready(self) -> None:
         """Wait until the program waits for work for the first time."""
-        self._expect("ready", START, Kind.NEVER_STARTED)
+        self._expect("ready", START_TIMEOUT, Kind.NEVER_STARTED)
 
     def describe(self) -> Description:
         """Ask what the program's nodes look like."""
         self._send({"op": "describe"})
-        return protocol.description(self._expect("description", STEP, Kind.STUCK))
+        return protocol.description(self._expect("description", STEP_TIMEOUT, Kind.STUCK))
 
-    def meet(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
-        """Tell the program that its endpoints see their peers, and what these had sent before."""
-        self._send({"op": "meet", "kept": dict(kept), "early": dict(early)})
-        self._expect("met", STEP, Kind.STUCK)
+    def match(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
+        """Tell the program that its endpoints are matched, and what their peers sent before.
 
-    def step(self, instants: Sequence[int], mail: Mapping[str, int]) -> Reply:
-        """Let the program live through instants of ROS time; `mail` is what was sent to it since the last step."""
-        self._send({"op": "step", "instants": list(instants), "mail": dict(mail)})
-        return protocol.reply(self._expect("done", STEP, Kind.STUCK))
+        Args:
+            kept: messages that latched writers of others hold, by channel.
+            early: requests and responses that others sent before the first step, by channel.
+        """
+        self._send({"op": "match", "kept": dict(kept), "early": dict(early)})
+        self._expect("matched", STEP_TIMEOUT, Kind.STUCK)
+
+    def step(self, instants: Sequence[int], pending: Mapping[str, int]) -> Reply:
+        """Run the program at instants of ROS time.
+
+        Args:
+            instants: in ns, ascending; at least one.
+            pending: messages that were sent to the program since the last step, by channel.
+        """
+        self._send({"op": "step", "instants": list(instants), "pending": dict(pending)})
+        return protocol.reply(self._expect("done", STEP_TIMEOUT, Kind.STUCK))
 
     def quit(self) -> int | None:
         """Interrupt the program as Ctrl-C does; return its exit status, or None if it had to be killed."""
@@ -107,17 +125,17 @@ class Stepper:
         os.close(self._read_fd)
         os.close(self._write_fd)
 
-    def _send(self, order: dict[str, Any]) -> None:
+    def _send(self, command: dict[str, Any]) -> None:
         try:
-            os.write(self._write_fd, json.dumps(order).encode() + b"\n")
+            os.write(self._write_fd, json.dumps(command).encode() + b"\n")
         except (BrokenPipeError, BlockingIOError):
             raise StudentError(self._ending()) from None
 
-    def _expect(self, event: str, patience: Patience, on_timeout: Kind) -> dict[str, Any]:
+    def _expect(self, event: str, timeout: Timeout, on_timeout: Kind) -> dict[str, Any]:
         try:
-            data = protocol.parse(self._read_line(patience))
-        except _Silence as silence:
-            raise StudentError(stuck(on_timeout, str(silence), self.process.output)) from None
+            data = protocol.parse(self._read_line(timeout))
+        except _NoAnswer as missing:
+            raise StudentError(diagnose_no_answer(on_timeout, str(missing), self.process.output)) from None
         except ProtocolError:
             raise StudentError(self._ending()) from None
         if data["event"] == "crash":
@@ -131,24 +149,24 @@ class Stepper:
             raise StudentError(self._ending())
         return data
 
-    def _read_line(self, patience: Patience) -> bytes:
+    def _read_line(self, timeout: Timeout) -> bytes:
         """Return one line, or b'' at the end of the stream.
 
         Raises:
-            _Silence: the patience is over.
+            _NoAnswer: the program did not answer in time.
         """
-        deadline, before = time.monotonic() + patience.seconds, None
+        deadline, before = time.monotonic() + timeout.seconds, None
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 return bytes(self._buffer)
             left = deadline - time.monotonic()
             if not self._selector.select(max(0.0, min(_TICK, left))):
                 if left <= 0.0:
-                    raise _Silence(f"{patience.seconds:.0f} s")
+                    raise _NoAnswer(f"{timeout.seconds:.0f} s")
                 now = self.process.cpu_seconds()
                 before = now if before is None else before
-                if now - before > patience.computing:
-                    raise _Silence(f"{patience.computing:.0f} s of computing")
+                if now - before > timeout.cpu_seconds:
+                    raise _NoAnswer(f"{timeout.cpu_seconds:.0f} s of computing")
                 continue
             chunk = os.read(self._read_fd, 65536)
             if not chunk:

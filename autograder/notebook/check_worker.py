@@ -1,6 +1,6 @@
-"""The worker behind a notebook: builds the workspace and drives or checks, the way grading does.
+"""The trusted process behind a notebook: it builds the workspace and drives or checks, as grading does.
 
-python -m autograder.notebook.check_worker ERRAND
+python -m autograder.notebook.check_worker REQUEST
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from autograder.workspace import Workspace
 
     Run = Callable[[Workspace, Observed, Path], dict[str, Any]]
-    Request = tuple[tuple[str, ...], bool, Run]  # the packages, whether their build may fail, what to do then
+    Plan = tuple[tuple[str, ...], bool, Run]  # the packages, whether their build may fail, what to do then
 
 SEED = 1  # of the visible checks' inputs
 
@@ -60,7 +60,7 @@ def main() -> None:
     write_json(out / ANSWER, answer)
 
 
-def _for_drive(arguments: dict[str, Any]) -> Request:
+def _for_drive(arguments: dict[str, Any]) -> Plan:
     def run(workspace: Workspace, _: Observed, out: Path) -> dict[str, Any]:
         from autograder.harness import SteppedHarness, drive
         from autograder.harness.drive import LISTENS, OFFERS
@@ -78,7 +78,7 @@ def _for_drive(arguments: dict[str, Any]) -> Request:
 
 
 def _options(scratch: Path, name: str | None, parameters: list[str]) -> tuple[str, ...]:
-    """Return ROS arguments for a name and the texts of parameter files, which are laid where the sandbox sees them."""
+    """Return ROS arguments for a name and the texts of parameter files, written where the sandbox sees them."""
     options = ["--ros-args"] if name or parameters else []
     options += ["-r", f"__node:={name}"] if name else []
     for number, text in enumerate(parameters):
@@ -88,7 +88,7 @@ def _options(scratch: Path, name: str | None, parameters: list[str]) -> tuple[st
     return tuple(options)
 
 
-def _for_check(arguments: dict[str, Any]) -> Request:
+def _for_check(arguments: dict[str, Any]) -> Plan:
     suite = _visible(arguments)
 
     def run(workspace: Workspace, observed: Observed, out: Path) -> dict[str, Any]:

@@ -153,7 +153,7 @@ def _faults(faults: str | Faults | None) -> Faults:
 
 
 def _parameter_files(parameters: Parameters | Sequence[Parameters], name: str | None) -> list[str]:
-    """Return the texts of parameter files that say the same.
+    """Return the texts of parameter files with these values.
 
     A value given by hand is the node's own where its name is known: it wins over `/**` in a file.
     """

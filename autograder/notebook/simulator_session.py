@@ -1,4 +1,4 @@
-"""`simulator`: the simulated robot lives in the kernel, in real time, while other programs talk to it over ROS."""
+"""`simulator`: simulates the robot in the kernel, in real time, while other programs talk to it over ROS."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class _Libraries(MetaPathFinder):
         return None
 
     def is_stale(self, prefix: Path) -> bool:
-        """Say whether this process has loaded other interfaces of a package than are installed now."""
+        """Return whether this process has loaded other interfaces of a package than are installed now."""
         return self._loaded.get(prefix.name, fingerprint := _fingerprint(prefix)) != fingerprint
 
     def _load(self, library: Path, wanted_by: tuple[str, ...] = ()) -> None:

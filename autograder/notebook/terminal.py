@@ -25,7 +25,7 @@ _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 
 
 def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws") -> None:
-    """Run a command to its end and print what it says.
+    """Run a command to its end and print its output.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
@@ -45,7 +45,7 @@ def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws")
 
 @contextmanager
 def running(command: str, *, until: str = "", seconds: float = 30.0, workspace: str | Path = "ws") -> Iterator[None]:
-    """Let a command run while the block does; print what it says, and press Ctrl-C in the end.
+    """Run a command while the block runs; print its output, and press Ctrl-C in the end.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
@@ -129,7 +129,7 @@ class _Terminal:
             print(f"[exit status {status}]")
 
     def _signal(self, number: signal.Signals) -> None:
-        """Signal the whole session, as a terminal does; what has ended is not there to be told."""
+        """Signal the whole session, as a terminal does, if it has not ended."""
         try:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:

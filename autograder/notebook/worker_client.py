@@ -1,4 +1,4 @@
-"""The way from a notebook's kernel to a trusted worker and back: a job goes out as JSON, files come back."""
+"""The client of a trusted worker, for a notebook's kernel: a request goes out as JSON, files come back."""
 
 from __future__ import annotations
 
@@ -43,7 +43,12 @@ class Request:
 
 @contextmanager
 def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Run an request; yields the worker's answer and the folder with the files that it left.
+    """Run a request; yields the worker's answer and the folder with the files that it wrote.
+
+    Args:
+        verb: `drive` or `check`.
+        workspace: the colcon workspace.
+        arguments: what the verb needs.
 
     Raises:
         UsageError: there is no workspace at `workspace`.

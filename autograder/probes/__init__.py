@@ -1,4 +1,4 @@
-"""What checks are made of: one probe an idea, each a way to learn something of a package without importing its code."""
+"""Probes: each finds out one thing about a package without importing its code. Checks are made of them."""
 
 from pathlib import Path
 

@@ -1,11 +1,11 @@
-"""Calls of a student's own functions: in the sandbox, JSON in and JSON out, bounded, compared by exact type.
+"""Calls of a student's functions in the sandbox: JSON in and JSON out, bounded in size, compared by exact type.
 
     outcomes = calls(workspace, "my_robot_package.utils.data_processing",
                      call("mask_invalid", [1.0, nan], 0.1, 3.5),
                      make("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1), look("history", on=1))
 
-Values are what JSON holds: bool, int, float (nan and infinities too), str, list, dict and None; a tuple comes back as a
-list. Anything else comes back as the name of its type. Each step has an outcome, in order.
+Values are what JSON holds: bool, int, float (nan and infinities too), str, list, dict and None. A tuple comes back as a
+list. Of any other value the name of its type comes back. Each step has an outcome, in order.
 """
 
 from __future__ import annotations
@@ -81,27 +81,48 @@ class Outcome:
 
 
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
-    """Call a function of a module, or a method of what step `on` made."""
+    """Return the step that calls a function.
+
+    Args:
+        name: of the function or method.
+        args: positional arguments, JSON or `made(N)`.
+        on: the number of the step whose object has the method; None for a function.
+        module: another module that has the function; None for the student's.
+        kwargs: keyword arguments.
+    """
     return Step(name, args, tuple(kwargs.items()), on, module)
 
 
 def make(name: str, *args: Any, module: str | None = None, **kwargs: Any) -> Step:
-    """Make an object of a class of a module, for later steps."""
+    """Return the step that makes an object for later steps.
+
+    Args:
+        name: of the class.
+        args: positional arguments, JSON or `made(N)`.
+        module: another module that has the class; None for the student's.
+        kwargs: keyword arguments.
+    """
     return Step(name, args, tuple(kwargs.items()), module=module, keep=True)
 
 
 def made(number: int) -> dict[str, int]:
-    """Stand for what step `number` made, as an argument."""
+    """Return the argument that stands for what step `number` made."""
     return {REFERENCE: number}
 
 
 def look(name: str, *, on: int | None = None) -> Step:
-    """Read an attribute of the module, or of what step `on` made."""
+    """Return the step that reads an attribute of the module, or of what step `on` made."""
     return Step(name, on=on, called=False)
 
 
 def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[Outcome]:
-    """Carry the steps out in one sandboxed process; `network` is for steps that need ROS.
+    """Carry out steps in one sandboxed process; return their outcomes.
+
+    Args:
+        workspace: where the module is installed.
+        module: the student's, by its dotted name.
+        steps: what to do, in order.
+        network: whether the process may use DDS, which ROS needs.
 
     Raises:
         StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
@@ -163,7 +184,7 @@ def _plain(step: Step) -> dict[str, Any]:
 
 
 def _write(fd: int, text: str) -> None:
-    """Write the whole order; a process that has ended reads none of it."""
+    """Write a text and close the pipe; a process that has ended reads none of it."""
     with os.fdopen(fd, "w", encoding="utf-8") as stream:
         try:
             stream.write(text)

@@ -1,4 +1,4 @@
-"""`colcon test` on a student's package, in the sandbox: does it run the tests that are there?"""
+"""Runs `colcon test` on a student's package in the sandbox."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
 
     Returns:
         What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
-        be stopped, that of a second time, as `testing.run` has it.
+        be stopped, that of a second run, as in `test_runs.run`.
     """
     first = _colcon_test(workspace, package, arguments)
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
@@ -57,7 +57,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
 
 
 def _inside(path: Path, root: Path) -> bool:
-    """Say whether a path that the build has made leads nowhere else."""
+    """Return whether a path that the build has made stays below `root`."""
     try:
         return path.parent.resolve().is_relative_to(root.resolve())
     except (OSError, RuntimeError):

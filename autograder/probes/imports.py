@@ -1,8 +1,7 @@
-"""What a package's sources import, and whether package.xml declares it: by their text alone.
+"""The imports of a package's sources, and whether package.xml declares them. Sources are parsed and never run.
 
 rosdep installs what package.xml names before anything is built or run, so a module that is imported and not declared
-works on its author's machine and nowhere else. Sources are parsed and never run; files that are too large, too many
-or no Python are left out, as they would be by any reader.
+works on its author's machine and nowhere else. Files that are too large, too many or no Python are left out.
 """
 
 from __future__ import annotations
@@ -21,8 +20,7 @@ MAX_FILES = 300
 MAX_BYTES = 256 * 1024
 LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
-# The rosdep keys of modules that are no ROS packages, where people are likely to meet them. A ROS package's key is its
-# own name.
+# The rosdep keys of common modules that are no ROS packages. A ROS package's key is its own name.
 KEYS = {
     "PIL": "python3-pil",
     "cv2": "python3-opencv",

@@ -1,6 +1,6 @@
-"""What colcon installed of a Python package: the judge of setup.py and setup.cfg, whose text proves nothing.
+"""What colcon installed of a Python package. Checks judge setup.py and setup.cfg by it, not by their text.
 
-Only files are looked at, never followed out of the install space and never imported.
+Only plain files are read. No link is followed out of the install space, and nothing is imported.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Installed:
 
 
 def look(install: Path, package: str) -> Installed:
-    """Look at what was installed of a package; one that was not installed has nothing.
+    """Return what was installed of a package; a package that was not installed has nothing.
 
     Args:
         install: the workspace's install folder.

@@ -1,4 +1,4 @@
-"""What a pytest run says of itself in JUnit XML: read with bounds, and taken for a claim."""
+"""What a pytest run claims of itself in JUnit XML, read with bounds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
 
 
-class Verdict(str, Enum):
+class ClaimedOutcome(str, Enum):
     """What a run claims of one test."""
 
     PASSED = "passed"
@@ -32,7 +32,7 @@ class Claims:
         messages: the first line of what went wrong, by test.
     """
 
-    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+    verdicts: Mapping[str, ClaimedOutcome] = field(default_factory=dict)
     messages: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -57,13 +57,13 @@ def parse(data: bytes) -> Claims | None:
         root = ET.fromstring(data)
     except (ET.ParseError, ValueError, LookupError):
         return None
-    verdicts: dict[str, Verdict] = {}
+    verdicts: dict[str, ClaimedOutcome] = {}
     messages: dict[str, str] = {}
     for case in root.iter("testcase"):
         name = "::".join([*_place(case.get("classname", "")), case.get("name", "")])
         verdict, message = _verdict(case)
-        # A test whose clean-up fails is there twice; what is bad stays.
-        if verdicts.get(name, Verdict.PASSED) is Verdict.PASSED:
+        # A test whose clean-up fails is there twice: the failure counts.
+        if verdicts.get(name, ClaimedOutcome.PASSED) is ClaimedOutcome.PASSED:
             verdicts[name] = verdict
             messages[name] = message
     return Claims(verdicts, messages)
@@ -76,10 +76,14 @@ def _place(classname: str) -> list[str]:
     return parts[modules[-1] :] if modules else parts[-1:]
 
 
-def _verdict(case: ET.Element) -> tuple[Verdict, str]:
-    for tag, verdict in (("failure", Verdict.FAILED), ("error", Verdict.ERROR), ("skipped", Verdict.SKIPPED)):
+def _verdict(case: ET.Element) -> tuple[ClaimedOutcome, str]:
+    for tag, verdict in (
+        ("failure", ClaimedOutcome.FAILED),
+        ("error", ClaimedOutcome.ERROR),
+        ("skipped", ClaimedOutcome.SKIPPED),
+    ):
         found = case.find(tag)
         if found is not None:
             lines = (found.get("message") or "").splitlines()
             return verdict, (lines[0] if lines else "")[:MAX_MESSAGE]
-    return Verdict.PASSED, ""
+    return ClaimedOutcome.PASSED, ""

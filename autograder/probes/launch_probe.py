@@ -1,4 +1,4 @@
-"""Launch files as checks see them: which arguments they declare, what they start, and what went wrong."""
+"""Assertions about launch files: the arguments that they declare, what they start, and what goes wrong."""
 
 from __future__ import annotations
 
@@ -62,7 +62,12 @@ def parse_arguments(text: str) -> dict[str, Argument]:
 
 
 def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
-    """Ask `ros2 launch -s` which arguments a launch file declares.
+    """Ask `ros2 launch -s` which arguments a launch file declares; return them by name.
+
+    Args:
+        workspace: the built workspace.
+        package: the package with the launch file.
+        file: its name.
 
     Raises:
         CheckFailed: the file is not installed, or cannot be read.
@@ -77,6 +82,11 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
 
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str) -> None:
     """Fail the check unless an argument is declared with this default and any description.
+
+    Args:
+        arguments: from `shown_arguments`.
+        name: the argument.
+        default: the text of its default.
 
     Raises:
         CheckFailed: it is not; the message names what is declared instead.
@@ -98,6 +108,11 @@ def settle(harness: LaunchHarness, wanted: Collection[str], seconds: float = STA
 
     Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
     a node, and either these are the wanted ones or nothing has changed for a while.
+
+    Args:
+        harness: of the launch.
+        wanted: full names of the nodes; one that should be there twice comes twice.
+        seconds: of real time, at most.
     """
     state: tuple[object, ...] = ()
     since = time.monotonic()
@@ -138,6 +153,11 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
 
 def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, object]) -> None:
     """Fail the check unless a node has these parameters; numbers are compared to nine digits, types exactly.
+
+    Args:
+        harness: of the launch.
+        node: its full name.
+        wanted: values by name.
 
     Raises:
         CheckFailed: one differs, or the node does not answer.
@@ -195,17 +215,17 @@ def expect_stopped(stop: Stop, status: int | None = 0) -> None:
 
 
 def started(output: str) -> list[str]:
-    """Return the programs that a launch says it has started, in order, without their numbers."""
+    """Return the programs that a launch has started by its output, in order, without their numbers."""
     return [match["name"] for match in _STARTED.finditer(output)]
 
 
 def ended(output: str) -> list[str]:
-    """Return the programs that a launch says have ended, in order, without their numbers."""
+    """Return the programs that have ended by a launch's output, in order, without their numbers."""
     return [match["name"] for match in _ENDED.finditer(output)]
 
 
 def trouble(output: str) -> str:
-    """Return in a line what went wrong by the words of a launch; empty if it names nothing."""
+    """Return in a line what went wrong by a launch's output; empty if it names nothing."""
     if caught := _CAUGHT.search(output):
         return " ".join(caught["what"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]
@@ -217,7 +237,7 @@ def trouble(output: str) -> str:
 
 
 def require_written(output: str) -> None:
-    """See that a launch did not stumble over a part of the exercise that is still to be written.
+    """Require that a launch did not reach a part of the exercise that is still to be written.
 
     Raises:
         StudentError: it did.

@@ -23,7 +23,7 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, fraction: float = 0.0) -> None:
-    """Fail the check, for this fraction of its points, if a linter finds something that its test has not told.
+    """Fail the check, with this fraction of its points, if a linter finds what its own test has not reported.
 
     Raises:
         CheckFailed: the message names the linter's test, and the first that it should have found.

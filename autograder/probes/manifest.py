@@ -9,18 +9,17 @@ from pathlib import Path
 from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ignore[import-untyped]
 
 from autograder.checks import CheckFailed
+from autograder.packages import MANIFEST, MAX_MANIFEST
 
-MANIFEST = "package.xml"
-MAX_BYTES = 64 * 1024
 PLACEHOLDER = "TODO"
 
-# The tags that say of a dependency when it is needed; <depend> stands for the first four.
+# The kinds of dependency. A <depend> is a build, a build_export and an exec dependency.
 KINDS = ("build", "build_export", "buildtool", "exec", "test", "doc")
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a package.xml says.
+    """A parsed package.xml.
 
     Attributes:
         format: of the file, 1 to 3.
@@ -43,7 +42,7 @@ class Manifest:
     groups: frozenset[str]
 
     def needs(self, *kinds: str) -> frozenset[str]:
-        """Return what the package declares to need, for any of the kinds; for anything when none is given."""
+        """Return the names of the dependencies of the given kinds; of all kinds if none is given."""
         return frozenset().union(*(self.depends[kind] for kind in kinds or KINDS))
 
 
@@ -56,8 +55,8 @@ def read(package: Path) -> Manifest:
     path = package / MANIFEST
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(f"{package.name} has no {MANIFEST}.")
-    data = path.read_bytes()[: MAX_BYTES + 1]
-    if len(data) > MAX_BYTES:
+    data = path.read_bytes()[: MAX_MANIFEST + 1]
+    if len(data) > MAX_MANIFEST:
         raise CheckFailed(f"{package.name}/{MANIFEST} is far larger than a manifest.")
     try:
         text = data.decode()

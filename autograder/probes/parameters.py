@@ -1,10 +1,10 @@
-"""A node's parameters: asked for and changed over its own services, and judged in a student's words.
+"""A node's parameters: read and changed over its own services, and compared in sentences for the student.
 
     node = NodeParameters(harness, "/configured_node")
     node.values("safety_distance")                       # {"safety_distance": 0.5}
     node.change({"safety_distance": 9.0})                # Answer(accepted=False, reason="... out of range ...")
 
-What a node answers is the student's to forge: it is shown shortened, and believed only where behaviour agrees.
+A student can forge what a node answers. It is shown shortened, and checks believe it only where behaviour agrees.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class ServiceCaller(Protocol):
 
 @dataclass(frozen=True)
 class Answer:
-    """What a node says to a request to change parameters.
+    """A node's answer to a request to change parameters.
 
     Attributes:
         accepted: whether it carried it out.
@@ -141,7 +141,7 @@ def missing_sentence(wanted: Collection[str], found: Collection[str]) -> str:
 
 
 def same(value: Value, wanted: Value) -> bool:
-    """Say whether a parameter's value is the wanted one, of the same type; doubles may differ by rounding."""
+    """Return whether a parameter's value is the wanted one, of the same type; doubles may differ by rounding."""
     if type(value) is not type(wanted):
         return False
     if isinstance(value, float) and isinstance(wanted, float):
@@ -201,7 +201,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
-    """Return what a parameter file says for a node, by wildcards or by its name, whichever way that is written.
+    """Return a parameter file's values for a node, by wildcards or by its name in any form.
 
     Args:
         file: from `read_file`.

@@ -1,9 +1,9 @@
-"""Hears who joins a DDS domain, without being in it: announcements come to its sockets, whoever makes them.
+"""Receives the announcements of participants in a DDS domain, without being a participant.
 
-As soon as a participant is made, it announces itself to the multicast port of its domain, or, told to stay on this
-machine, to the first unicast ports. What was said then is in a socket, however busy the machine is and however soon
-the participant leaves. Another participant would be no such witness: measured with the wheels, one meeting in seven
-takes until the next announcement, up to 3 s, and a test is over sooner.
+A new participant announces itself at once to the multicast port of its domain or, if it is to stay on this machine, to
+the first unicast ports. The announcement stays in the sniffer's socket, however busy the machine is and however soon
+the participant leaves. A second participant would not do: measured with the wheels, one discovery in seven takes until
+the next announcement, up to 3 s, and a test is over sooner.
 
 Source of ports and address: DDS Interoperability Wire Protocol (RTPS) 2.5, section 9.6.2.3.
 """
@@ -16,14 +16,14 @@ from types import TracebackType
 
 from autograder.exceptions import GraderError
 
-# Above all that a program would choose, and the ports are above those that the system gives away.
+# No program would choose these, and their ports are above those that the system gives away.
 DOMAINS = range(215, 232)
 GROUP = "239.255.0.1"
 _MAGIC = b"RTPS"
 
 
-class Ear:
-    """Listens in a domain in which nobody is.
+class RtpsSniffer:
+    """Listens in a domain that has no participant.
 
     Attributes:
         domain: its `ROS_DOMAIN_ID`.
@@ -33,7 +33,7 @@ class Ear:
         """Find a free domain.
 
         Raises:
-            GraderError: there is somebody in each of them.
+            GraderError: each of `DOMAINS` has participants.
         """
         for domain in DOMAINS:
             base = 7400 + 250 * domain
@@ -48,11 +48,11 @@ class Ear:
             return
         raise GraderError(f"there are participants in all DDS domains from {DOMAINS[0]} to {DOMAINS[-1]}")
 
-    def heard(self) -> bool:
-        """Whether somebody has announced itself in the domain since the last time that this was asked."""
+    def take_announcements(self) -> bool:
+        """Return whether a participant has announced itself in the domain since the last call."""
         return sum(_take(each) for each in self._sockets) > 0
 
-    def __enter__(self) -> Ear:
+    def __enter__(self) -> RtpsSniffer:
         return self
 
     def __exit__(
@@ -63,7 +63,7 @@ class Ear:
 
 
 def _member(port: int) -> socket.socket:
-    """Return a socket to which all goes that is said to the group on this machine."""
+    """Return a socket that receives what is sent to the multicast group on this machine."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants bind the port, too
     made.bind((GROUP, port))

@@ -1,4 +1,4 @@
-"""Finds the sleeps in Python source, by reading it: nothing of it is run."""
+"""Finds calls of `sleep` in Python source, which is parsed and never run."""
 
 from __future__ import annotations
 

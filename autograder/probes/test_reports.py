@@ -1,4 +1,4 @@
-"""One run of a student's tests: of what, what was asked for, and what became of it."""
+"""Records of runs of a student's tests: the package, the run that is wanted, and its report."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from autograder.probes.junit import Claims, Verdict
+from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.versions import Version
 from autograder.sandbox import Ending
 
@@ -20,7 +20,7 @@ class TestRun:
         version: the package under test; None for the student's own, as it was built.
         backwards: whether the tests run in the opposite order.
         first_failure: whether the run ends with the first test that fails.
-        overheard: whether somebody listens in the default domain.
+        sniffed: whether an `RtpsSniffer` listens in the default domain.
         conftest: whether pytest reads the conftest.py that is there.
     """
 
@@ -28,14 +28,14 @@ class TestRun:
     version: Version | None = None
     backwards: bool = False
     first_failure: bool = False
-    overheard: bool = False
+    sniffed: bool = False
     conftest: bool = True
     __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
 
 
 @dataclass(frozen=True)
 class Report:
-    """What became of a run; all of it but `ending`, `left` and `heard` is the run's own claim.
+    """The report of a run; all of it but `ending`, `left` and `joined_domain` is the run's own claim.
 
     Attributes:
         ending: how its process ended; None when the grader ended it after pytest was done.
@@ -43,7 +43,7 @@ class Report:
         claims: what it says of its tests.
         left: UDP sockets that were still open after the last test: each ROS context that is not ended holds some.
         output: what it printed.
-        heard: whether it was overheard, and has joined the default domain.
+        joined_domain: whether a program joined the default domain, where the run was sniffed.
     """
 
     ending: Ending | None
@@ -51,7 +51,7 @@ class Report:
     claims: Claims
     left: int
     output: str
-    heard: bool = False
+    joined_domain: bool = False
 
     @property
     def passed(self) -> bool:
@@ -61,12 +61,12 @@ class Report:
     @property
     def executed(self) -> tuple[str, ...]:
         """The tests that ran and were not skipped."""
-        return tuple(name for name, verdict in self.claims.verdicts.items() if verdict is not Verdict.SKIPPED)
+        return tuple(name for name, verdict in self.claims.verdicts.items() if verdict is not ClaimedOutcome.SKIPPED)
 
     @property
     def failed(self) -> tuple[str, ...]:
         """The tests that failed, in themselves or in a fixture."""
-        bad = (Verdict.FAILED, Verdict.ERROR)
+        bad = (ClaimedOutcome.FAILED, ClaimedOutcome.ERROR)
         return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
 
     def objects(self, right: Report) -> bool:

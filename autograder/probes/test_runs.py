@@ -1,4 +1,4 @@
-"""Runs a student's tests against versions of the package under test: what do they say of each?
+"""Runs a student's tests against versions of the package under test, and reports what they say of each.
 
     source = take(workspace, "speed_guard")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
@@ -6,10 +6,10 @@
 Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
 "fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
 version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
-times and environment, and nothing that it can write to but a /tmp that dies with it. It sees its version and nothing of
-the others, the suites or earlier runs. See `versions` for how versions are kept alike. What remains is written there,
-too. Only a run that is overheard shares the grader's loopback, where nobody else is. It can tell itself from others by
-that, so what it is given has to be a right version.
+times and environment, and nothing that it can write to but a /tmp that ends with it. It sees its version and nothing of
+the others, the suites or earlier runs. `versions` says how versions are kept alike, and what remains. Only a run that
+is sniffed shares the grader's loopback, which no other program uses. The run can notice that, so it has to get a right
+version.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from autograder.intake import take_source
 from autograder.probes import PRELOAD, junit
 from autograder.probes.junit import Claims
 from autograder.probes.memory import Memory
-from autograder.probes.rtps_sniffer import Ear
+from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
@@ -46,7 +46,7 @@ from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("pytest_host.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
-LANES = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
+JOBS = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
 HEADER = 32  # bytes of an answer's first line, at most
 
@@ -68,11 +68,18 @@ def take(workspace: Workspace, package: str) -> Source:
     return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
 
 
-def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], lanes: int = LANES) -> list[Report]:
-    """Run the tests, some runs at a time; return a report for each run, in the given order.
+def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jobs: int = JOBS) -> list[Report]:
+    """Run tests; return a report for each run, in the given order.
 
-    A run that has to be stopped, where no other of the same files has to, gets a second one, which decides: rclpy can
-    miss the end of an executor that spins in a thread (`Executor.shutdown` destroys what it has just woken it with).
+    A run that had to be stopped is made again if it is the only stopped one of its files, and the second run counts.
+    rclpy can miss the end of an executor that spins in a thread: `Executor.shutdown` destroys the guard condition with
+    which it has just woken the executor.
+
+    Args:
+        workspace: the built workspace.
+        source: the package with the tests.
+        wanted_runs: what to run.
+        jobs: how many runs are made at a time.
 
     Raises:
         StudentError: there is no room left on the disk.
@@ -81,16 +88,16 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], la
     memory = Memory(workspace.memory)
     recalled = [memory.recall(source, wanted) for wanted in wanted_runs]
     new_runs = [wanted for wanted, report in zip(wanted_runs, recalled, strict=True) if report is None]
-    made = _carry_out(workspace, source, new_runs, lanes)
+    made = _carry_out(workspace, source, new_runs, jobs)
     for wanted, report in zip(new_runs, made, strict=True):
         memory.keep(source, wanted, report)
     new = iter(made)
     return [report or next(new) for report in recalled]
 
 
-def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], lanes: int) -> list[Report]:
+def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jobs: int) -> list[Report]:
     free: queue.SimpleQueue[int] = queue.SimpleQueue()
-    for lane in range(lanes):
+    for lane in range(jobs):
         free.put(lane)
 
     def carry_out(wanted: TestRun) -> Report:
@@ -105,10 +112,10 @@ def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestR
         finally:
             free.put(lane)
 
-    with ExitStack() as claims, ThreadPoolExecutor(lanes) as pool:
-        places = [workspace] * lanes
+    with ExitStack() as claims, ThreadPoolExecutor(jobs) as pool:
+        places = [workspace] * jobs
         if current_tier() is not Tier.BUBBLEWRAP:  # its runs are in one network
-            domains = [claims.enter_context(Domain()) for _ in range(lanes)]
+            domains = [claims.enter_context(Domain()) for _ in range(jobs)]
             places = [replace(workspace, domain=domain.number) for domain in domains]
         reports = list(pool.map(carry_out, wanted_runs))
         stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]
@@ -120,7 +127,14 @@ def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestR
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
-    """Describe the sandbox of a run: the workspace's, and what pytest needs beside it."""
+    """Return the sandbox of a run: the workspace's, and what pytest needs beside it.
+
+    Args:
+        workspace: the built workspace.
+        readable: more files and folders that the run may read.
+        limits: what the run may use.
+        network: whether it shares the grader's loopback.
+    """
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), Mount(zygote.HOST), *map(Mount, readable))
     plain = workspace.sandbox(limits)
     environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
@@ -140,18 +154,18 @@ def _run(workspace: Workspace, source: Source, wanted: TestRun, lane: int) -> Re
             (folder / name).write_bytes(data)
     launches = _launches(source, wanted)
     arguments = _arguments(source, folder, wanted, launches)
-    if not wanted.overheard:
+    if not wanted.sniffed:
         return _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
-    with Ear() as ear:
-        spec = _confined(replace(there, domain=ear.domain), folder, wanted, place / "home")
+    with RtpsSniffer() as sniffer:
+        spec = _confined(replace(there, domain=sniffer.domain), folder, wanted, place / "home")
         report = _host(spec, wanted, arguments, launches)
-        return replace(report, heard=ear.heard())
+        return replace(report, joined_domain=sniffer.take_announcements())
 
 
 def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
     """Describe the sandbox of one run: nothing in it can be written to but its own /tmp, where there is one."""
     if current_tier() is Tier.BUBBLEWRAP:
-        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=wanted.overheard)
+        spec = sandboxed(replace(workspace, scratch=HOME), folder, HOST, network=wanted.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
     home.mkdir(parents=True)
     return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
@@ -200,7 +214,7 @@ def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) 
 
 
 def _answer(descriptor: int, process: Process) -> tuple[int | None, bytes]:
-    """Return pytest's exit status and its report, as the run says them; no status when it ends without a whole word."""
+    """Return pytest's exit status and its report, as the run sends them; no status if the answer is not complete."""
     data = bytearray()
     try:
         with selectors.DefaultSelector() as selector:
@@ -221,7 +235,7 @@ def _answer(descriptor: int, process: Process) -> tuple[int | None, bytes]:
 
 
 def _whole(data: bytes) -> tuple[int, bytes] | None:
-    """Return status and report once an answer is there as a whole; its first line says how long it is."""
+    """Return status and report once the whole answer is there; its first line says how long the report is."""
     header, newline, text = data.partition(b"\n")
     words = header.split()
     if not newline or len(words) != 2 or not all(word.isdigit() for word in words) or len(header) > HEADER:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from autograder.grading.parallel import together
+from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
@@ -46,7 +46,7 @@ def prove(
             ).result
         return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
 
-    claims = together(judged, _mixed(proof), jobs=lanes.count, on_done=on_claim)
+    claims = map_parallel(judged, _mixed(proof), jobs=lanes.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}
     return tuple(found[case.assignment, case.name] for case in proof)
 

@@ -146,9 +146,9 @@ def turns(scratch: Path, program: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for way in ("all", "needed"):
         if way == "all":
-            sparing, SteppedHarness._let_live = SteppedHarness._let_live, SteppedHarness._turn  # type: ignore[method-assign]
+            sparing, SteppedHarness._let_run = SteppedHarness._let_run, SteppedHarness._step_program  # type: ignore[method-assign]
         else:
-            SteppedHarness._let_live = sparing  # type: ignore[method-assign]
+            SteppedHarness._let_run = sparing  # type: ignore[method-assign]
         took[0] = 0
         with SteppedHarness(workspace, "pkg", "node", offers={"/heard": String}, listens={"/said": String}) as harness:
             for number in range(STEPS):

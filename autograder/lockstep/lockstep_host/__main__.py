@@ -13,15 +13,16 @@ TEXT = 8000  # characters of an exception's texts that are reported
 
 def main() -> None:
     """Run the program."""
-    # A message's module imports the generator of messages, if it can: an eighth of the start, for nothing.
+    # A message's module imports the generator of messages, if it can: that is an eighth of the start, and never used.
     sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
     here = Path(__file__).resolve().parent
     sys.path.insert(0, str(here.parent))
     host_module, pipes_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "pipes"))
-    read_fd, write_fd, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
-    sys.argv = sys.argv[3:]
+    read_fd, write_fd, start_ns = map(int, sys.argv[1:4])
+    program = sys.argv[4]
+    sys.argv = sys.argv[4:]
     sys.path[:2] = [str(Path(program).parent)]  # as Python sets it for a program that is started by its path
-    host = host_module.Host(pipes_module.Pipes(read_fd, write_fd))
+    host = host_module.Host(pipes_module.Pipes(read_fd, write_fd), start_ns)
     host.install()
     try:
         runpy.run_path(program, run_name="__main__")

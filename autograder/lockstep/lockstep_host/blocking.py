@@ -1,8 +1,8 @@
-"""Blocking: what waits inside a callback waits in ROS time, and what would wait for ever says so.
+"""Blocking calls: they wait in ROS time, and one that would wait for ever is reported as a deadlock.
 
-`time.sleep` and `threading.Event.wait` are caught; the latter is what rclpy's own blocking calls are made of:
-`client.call()`, `rate.sleep()`, `action_client.send_goal()`. In a single-threaded executor nobody but the callback
-itself could run what it waits for, so without a time-out that is a deadlock, for certain.
+`time.sleep` and `threading.Event.wait` are replaced. rclpy's own blocking calls use the latter: `client.call()`,
+`rate.sleep()`, `action_client.send_goal()`. In a single-threaded executor only the waiting callback itself could run
+what it waits for, so a wait without a time-out is a deadlock.
 """
 
 from __future__ import annotations
@@ -20,36 +20,36 @@ from rclpy.timer import Rate
 from .callback_threads import Worker
 from .tasks import awaited
 
-# Who sleeps so often and so long between its first message and its first spin works in a loop, and never spins. Who has
-# sent nothing yet may just be slow to start.
+# A program that sleeps so often and so long between its first message and its first spin works in a loop and never
+# spins. A program that has sent nothing yet may just be slow to start.
 LOOPS, LOOPS_NS = 5, 10**9
 START_NS = 20 * 10**9
 _wait_for_event = threading.Event.wait
 
 
 class Blocking:
-    """The blocking calls of a host's program."""
+    """The blocking calls of the program of one `Host`."""
 
     def __init__(self, host: Any) -> None:
         self._host = host
         self._slept = self._looped = self._loops = 0
 
     def install(self) -> None:
-        """Catch events that are waited for by anything but Python's own library."""
+        """Replace `threading.Event.wait` for all callers but Python's own library."""
 
         def wait(event: threading.Event, timeout: float | None = None) -> bool:
             caller = sys._getframe(1)
             module = str(caller.f_globals.get("__name__")).partition(".")[0]
-            if event.is_set() or module in sys.stdlib_module_names - {"__main__"} or not self._host.ours():
+            if event.is_set() or module in sys.stdlib_module_names - {"__main__"} or not self._host.is_stepped_thread():
                 return _wait_for_event(event, timeout)
             return self._wait(event, timeout, caller)
 
         threading.Event.wait = wait  # type: ignore[assignment, method-assign]
 
     def sleep(self, nanoseconds: int) -> bool:
-        """Let ROS time go by; return False where the machine's own time has to."""
+        """Let ROS time pass; return False where the machine's own time has to pass instead."""
         host = self._host
-        if not host.ours():
+        if not host.is_stepped_thread():
             return False
         if host.phase == "spin":
             end = host.time + nanoseconds
@@ -57,15 +57,20 @@ class Blocking:
             return True
         if host.has_nodes():
             self._slept += nanoseconds
-            if host.has_spoken():
+            if host.has_sent():
                 self._looped, self._loops = self._looped + nanoseconds, self._loops + 1
             if (self._loops >= LOOPS and self._looped >= LOOPS_NS) or self._slept >= START_NS:
                 host.stop(event="unsteppable", reason="sleep")
         return False
 
     def check(self, executor: Executor, end: int | None) -> None:
-        """Tell the grader of a callback that waits for ever, for what its own callback group keeps from coming."""
-        for reader in self._host.counts.owing:
+        """Report a callback that waits for ever because its own callback group holds back what it waits for.
+
+        Args:
+            executor: which has found nothing to do.
+            end: the ROS time in ns at which its wait times out; None for never.
+        """
+        for reader in self._host.counts.behind:
             client = reader.entity
             if not isinstance(client, Client) or executor.can_execute(client):
                 continue
@@ -101,7 +106,7 @@ class Blocking:
             self._host.wakes.remove(end)
 
     def _expect_deadlock(self, caller: Any) -> None:
-        """Tell the grader if nobody is left who could bring what is waited for."""
+        """Report a deadlock if no other thread can bring what is waited for."""
         what, name, entity = _waiting_for(caller)
         if isinstance(threading.current_thread(), Worker):
             if entity is not None and not entity.callback_group.can_execute(entity):

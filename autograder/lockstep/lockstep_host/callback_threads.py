@@ -1,9 +1,8 @@
-"""Callback threads: callbacks that block, one at work at a time.
+"""Callback threads: callbacks that may block, of which one runs at a time.
 
-A callback may wait for what only another callback brings: `client.call()`, `rate.sleep()`, an event. Under rclpy's
-MultiThreadedExecutor that works if the callback groups allow it. Here, such an executor's callbacks have threads of
-their own as well, but they hand the work on to each other: one runs until it is done or waits, then the next, in the
-same order every time.
+A callback may wait for what only another callback brings: `client.call()`, `rate.sleep()`, an event. rclpy's
+MultiThreadedExecutor allows that if the callback groups do. Here each callback of such an executor has a thread as
+well, but one thread runs until it is done or waits, and then the next, in the same order every time.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ Condition = Callable[[], bool]
 
 
 class Worker(threading.Thread):
-    """A callback under way.
+    """The thread of a callback that has started.
 
     Attributes:
         ready: whether what it waits for has come; None while it runs.
@@ -32,7 +31,7 @@ class Worker(threading.Thread):
         self._back = back
 
     def run(self) -> None:
-        """Run the callback, when it is its turn."""
+        """Run the callback once `go_on` is called."""
         self._turn.acquire()
         try:
             self._handler()
@@ -41,20 +40,20 @@ class Worker(threading.Thread):
             self._back.release()
 
     def go_on(self) -> None:
-        """Let it work until it is done or waits; called by the main thread."""
+        """Let it run until it is done or waits; called by the main thread."""
         self.ready = None
         self._turn.release()
         self._back.acquire()
 
     def wait(self, ready: Condition) -> None:
-        """Wait for something, and let others work; called by its own thread."""
+        """Wait for a condition and let other callbacks run; called by its own thread."""
         self.ready = ready
         self._back.release()
         self._turn.acquire()
 
 
 class CallbackThreads:
-    """The callbacks of one executor that are under way."""
+    """The callbacks of one executor that have started and are not done."""
 
     def __init__(self, size: int | None) -> None:
         self.size = size
@@ -73,7 +72,7 @@ class CallbackThreads:
         self._go_on(worker, task)
 
     def resume(self) -> bool:
-        """Let the first go on that has what it waited for; return whether there was one. Raises what it raised."""
+        """Let the first one run whose condition holds; return whether there was one. Raises what it raised."""
         for number, (worker, task) in enumerate(self.waiting):
             if worker.ready is not None and worker.ready():
                 del self.waiting[number]

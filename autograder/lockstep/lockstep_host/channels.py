@@ -1,8 +1,8 @@
-"""Channels: names for the ways that messages take, the same in the host and in the grader.
+"""Channels: names for what connects writers and readers, the same in the host and in the grader.
 
-DDS joins a writer and a reader when names and types are equal and the writer offers the quality that the reader
-requests. A channel's name holds all of that, so counting by channel is counting what a reader will get. Responses
-go to one client only; their channel names its process, by the prefix that all GUIDs of a process share.
+DDS matches a writer with a reader when names and types are equal and the writer offers the quality of service that the
+reader requests. A channel's name holds all of that, so a count by channel is a count of what a reader will get. A
+response goes to one client only. Its channel names the client's process by the prefix that all its GUIDs share.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 RELIABLE, BEST_EFFORT = "reliable", "best-effort"
 LATCHED, VOLATILE = "latched", "volatile"
-OWN = "own"  # stands for the prefix of the process that a client is in, where that is not known yet
+OWN = "own"  # a placeholder for the prefix of the client's own process, which is not known at first
 PREFIX = 12  # bytes of a GUID that name the process
 _GUID = 16
 _VALUE = object.__basicsize__  # where a pybind11 object keeps the address of the C struct that it stands for
@@ -25,14 +25,26 @@ def type_name(kind: Any) -> str:
 
 
 def written(topic: str, kind: Any, qos: Any) -> str:
-    """Return the channel that a publisher writes."""
+    """Return the channel that a publisher writes.
+
+    Args:
+        topic: its resolved name.
+        kind: the message class.
+        qos: the publisher's profile.
+    """
     reliability = BEST_EFFORT if qos.reliability.name == "BEST_EFFORT" else RELIABLE
     durability = LATCHED if qos.durability.name == "TRANSIENT_LOCAL" else VOLATILE
     return _topic(topic, kind, reliability, durability)
 
 
 def read(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
-    """Return the channels that a subscription reads: all that offer at least what it requests."""
+    """Return the channels that a subscription reads: all that offer at least what it requests.
+
+    Args:
+        topic: its resolved name.
+        kind: the message class.
+        qos: the subscription's profile.
+    """
     reliabilities = (RELIABLE,) if qos.reliability.name == "RELIABLE" else (RELIABLE, BEST_EFFORT)
     durabilities = (LATCHED,) if qos.durability.name == "TRANSIENT_LOCAL" else (LATCHED, VOLATILE)
     return tuple(_topic(topic, kind, one, two) for one in reliabilities for two in durabilities)
@@ -59,12 +71,18 @@ def is_topic(channel: str) -> bool:
 
 
 def response(service: str, kind: Any, prefix: str) -> str:
-    """Return the channel of a service's responses to one process."""
+    """Return the channel of a service's responses to one process.
+
+    Args:
+        service: its resolved name.
+        kind: its class.
+        prefix: of the process's GUIDs.
+    """
     return f"{service} {type_name(kind)} response {prefix}"
 
 
 def of(names: tuple[str, ...], prefix: str) -> tuple[str, ...]:
-    """Return channels with the prefix of their own process put in."""
+    """Return channels, `OWN` replaced by the prefix of the process."""
     return tuple(f"{name[: -len(OWN)]}{prefix}" if name.endswith(f" response {OWN}") else name for name in names)
 
 

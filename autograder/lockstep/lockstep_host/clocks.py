@@ -1,8 +1,8 @@
-"""Clocks: every clock that the program reads shows ROS time.
+"""Clocks: every clock that the student's code reads shows ROS time.
 
-The student's own code gets ROS time from Python's `time` module, too. Each reading takes 10 µs of it, so that a loop
-which waits for time to go by comes to an end. Other code, such as rclpy's or Python's own, keeps the machine's clocks.
-Sleeping, by `time` or by a clock of rclpy's, lets ROS time go by.
+Python's `time` module shows it as well. Each reading takes 10 µs of ROS time, so a loop that waits for time to pass
+ends. Other code, such as rclpy's or Python's own, reads the machine's clocks. Sleeping, by `time` or by a clock of
+rclpy's, lets ROS time pass.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class Clocks:
     """The program's clocks.
 
     Args:
-        ros_time: tells ROS time in nanoseconds.
-        sleep: lets ROS time go by, for as many nanoseconds; returns False where only the machine's time can.
+        ros_time: returns ROS time in nanoseconds.
+        sleep: lets as many nanoseconds of ROS time pass; returns False where the machine's time has to pass instead.
         host: the host's own folder, whose code keeps the machine's clocks.
     """
 

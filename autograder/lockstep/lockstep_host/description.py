@@ -1,4 +1,4 @@
-"""Descriptions: what a program's nodes look like, for the grader to know when everyone has met everyone."""
+"""Descriptions of a program's nodes, from which the grader sees when all endpoints are matched."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rclpy.clock import ClockType
 from . import channels
 from .message_counts import NOT_COUNTED, is_alive
 
-_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # nobody in the harness need listen to them
+_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # no harness has to match these
 
 
 def describe(nodes: list[Any]) -> dict[str, Any]:

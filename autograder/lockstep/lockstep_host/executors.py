@@ -1,4 +1,4 @@
-"""Executors: what stands for rclpy's own in lockstep."""
+"""Executors that replace rclpy's own in lockstep."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from rclpy.executors import (
 from .callback_threads import CallbackThreads
 
 
-class CrewExecutor(SingleThreadedExecutor):
-    """Stands for MultiThreadedExecutor: callbacks can wait for each other, but one works at a time."""
+class CallbackThreadsExecutor(SingleThreadedExecutor):
+    """Replaces MultiThreadedExecutor: callbacks can wait for each other, but one runs at a time."""
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -38,7 +38,14 @@ class CrewExecutor(SingleThreadedExecutor):
 def spin_until_future_complete(
     executor: Executor, future: Any, timeout_sec: float | None, ros_time: Callable[[], int]
 ) -> None:
-    """Do what rclpy's function of this name does, with a time-out in ROS time."""
+    """Spin until a future is done, as rclpy's function of this name, with a time-out in ROS time.
+
+    Args:
+        executor: whose callbacks run.
+        future: what is waited for.
+        timeout_sec: in seconds of ROS time; None or a negative number for none.
+        ros_time: returns ROS time in ns.
+    """
     future.add_done_callback(lambda _: executor.wake())
     end = None if timeout_sec is None or timeout_sec < 0 else ros_time() + round(timeout_sec * 1e9)
     left = None if end is None else TimeoutObject(timeout_sec or 0.0)

@@ -1,6 +1,6 @@
-"""Hooks: where rclpy tells the counts what was made, what was sent and what was taken.
+"""Hooks into rclpy: they count what the program makes, sends and takes.
 
-Sending and taking are caught at rclpy's C objects, below services, actions and executors, so nothing goes past.
+Sending and taking are hooked at rclpy's C objects, below services, actions and executors, so no message is missed.
 """
 
 from __future__ import annotations
@@ -34,10 +34,14 @@ _FEEDBACK = QoSProfile(depth=10)
 
 
 class Hooks:
-    """The hooks of one counts.
+    """The hooks that keep one `MessageCounts`.
+
+    Args:
+        counts: gets all that is made, sent and taken.
+        note: gets the reason why steps are not all that moves the program.
 
     Attributes:
-        changed: True when there are endpoints or timers that the grader has not been told of.
+        changed: True when there are endpoints or timers that the grader does not know yet.
     """
 
     def __init__(self, counts: MessageCounts, note: Callable[[str], None]) -> None:
@@ -185,8 +189,8 @@ class Hooks:
         if taken is None:
             return None
         reader = self.counts.readers.get((handle.pointer, ""))
-        if reader is not None and reader.met and not reader.latched and taken[1]["source_timestamp"] < reader.met:
-            return None  # it was under way when the program met the grader; whether it comes is a matter of luck
+        if reader is not None and not reader.latched and taken[1]["source_timestamp"] < reader.matched_ns:
+            return None  # it was on its way when the reader was matched, so whether it comes is up to chance
         self.counts.took(handle, "")
         return taken
 
@@ -196,7 +200,7 @@ def _nothing(value: Any) -> Any:
 
 
 def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
-    """Take a goal's new status in passing: its queue holds one message, so how many come is a matter of luck."""
+    """Take a goal's new status at once. Its queue holds one message, so how many come is up to chance."""
     ready = bool(_is_ready(client, wait_set))
     answered = client._is_goal_response_ready or client._is_cancel_response_ready or client._is_result_response_ready
     if ready and not answered and not client._is_feedback_ready:
@@ -209,7 +213,7 @@ def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
 
 
 def _after(kind: Any, method: str, then: Callable[..., None]) -> None:
-    """Let `then` run after each call of a method, with the call's arguments."""
+    """Call `then` after each call of a method, with the call's arguments and, but for constructors, its result."""
     original = getattr(kind, method)
     if method == "__init__":
 

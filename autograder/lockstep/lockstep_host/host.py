@@ -1,8 +1,8 @@
 """The host: ROS time and its steps, as the program in this process sees them.
 
-It replaces the one function through which every kind of spin of rclpy goes, `Executor.wait_for_ready_callbacks`.
-When the program waits for work and there is none, the host waits for the grader's next order instead. An order to step
-names instants of ROS time: at each, the program takes all messages that it was sent and runs the timers that are due.
+The host replaces `Executor.wait_for_ready_callbacks`, which every kind of spin of rclpy calls. When the program waits
+for work and there is none, the host waits for the grader's next command instead. The command `step` names instants of
+ROS time. At each of them the program takes all messages that were sent to it and runs the timers that are due.
 """
 
 from __future__ import annotations
@@ -27,15 +27,14 @@ from .blocking import Blocking
 from .callback_threads import Worker
 from .clocks import Clocks
 from .description import describe
-from .executors import CrewExecutor, spin_until_future_complete
+from .executors import CallbackThreadsExecutor, spin_until_future_complete
 from .hooks import Hooks
 from .idleness import idle_until
 from .pipes import Pipes
-from .tasks import where
+from .tasks import TaskPositions
 
-START = 100 * 10**9  # ns of ROS time at which a program starts; 0 would mean "time is not known yet"
-PATIENCE = 5.0  # s of real time without any progress, after which messages that were announced count as lost
-OVERFLOW = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
+LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages that were announced count as lost
+OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
 
 _wait_for_work = Executor.wait_for_ready_callbacks
 _init = rclpy.init
@@ -45,15 +44,19 @@ _init_time_source = rclpy.time_source.TimeSource.__init__
 class Host:
     """One program in lockstep.
 
+    Args:
+        pipes: to the grader.
+        start_ns: the ROS time at which the program starts.
+
     Attributes:
         time: ROS time in nanoseconds.
         phase: how far the program has come: import, start or spin.
         wakes: instants at which something wants to go on; None for what waits without a time-out.
     """
 
-    def __init__(self, pipes: Pipes) -> None:
+    def __init__(self, pipes: Pipes, start_ns: int) -> None:
         self.pipes = pipes
-        self.time = START
+        self.time = start_ns
         self.phase = "import"
         self.counts = message_counts.MessageCounts()
         self.wakes: list[int | None] = []
@@ -64,13 +67,12 @@ class Host:
         self._clocks: weakref.WeakSet[Any] = weakref.WeakSet()  # time sources
         self._log_clock = ROSClock()  # rclpy throttles logs by the wall clock, which steps leave far behind
         self._log_clock._set_ros_time_is_active(True)
-        self._log_clock.set_ros_time_override(_ros_time(START))
+        self._log_clock.set_ros_time_override(_ros_time(start_ns))
         self._instants: list[int] = []  # of the present step, still to come
-        self._positions: dict[Any, int] = {}  # where coroutines stood when they were last resumed
-        self._seen: weakref.WeakSet[Any] = weakref.WeakSet()  # tasks that have been resumed
+        self._positions = TaskPositions()
         self._worked = self._stale = self._stepping = self._quit = False
         self._idle: int | None = None  # see `idle_until`; None while a callback waits
-        self._late: list[str] = []
+        self._lost: list[str] = []
         self._notes: list[str] = []
         self._main = threading.current_thread()
         self._progress = 0.0
@@ -88,7 +90,7 @@ class Host:
         Executor.spin_until_future_complete = lambda executor, future, timeout_sec=None: spin_until_future_complete(
             executor, future, timeout_sec, lambda: self.time
         )
-        rclpy.executors.MultiThreadedExecutor = CrewExecutor
+        rclpy.executors.MultiThreadedExecutor = CallbackThreadsExecutor
         Throttle.params["throttle_time_source_type"] = self._log_clock
 
     # What rclpy calls instead of its own functions.
@@ -109,10 +111,13 @@ class Host:
             source.attach_node(node)
 
     def wait(self, executor: Executor, timeout_sec: Any = None, nodes: Any = None, condition: Any = None) -> Any:
-        """Return the next callback to run; when there is none left in this step, wait for the next step."""
+        """Return the next callback to run; when there is none left in this step, wait for the next step.
+
+        The arguments and exceptions are those of `Executor.wait_for_ready_callbacks`, with time-outs in ROS time.
+        """
         condition = condition or (lambda: False)
         timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
-        if not self.ours():
+        if not self.is_stepped_thread():
             self.note("thread")
             self.stop(event="unsteppable", reason="thread") if self.phase != "spin" else threading.Event().wait()
         end = None if timeout is None or timeout < 0 else self.time + max(1, round(timeout * 1e9))
@@ -125,17 +130,17 @@ class Host:
                 self._positions.clear()
                 continue
             idle = threads is not None and threads.full
-            owing = self._owing(executor) if self.counts.owing and not idle else []
-            for reader, entity in owing:
-                # Callbacks run in the order of their creation once all that is owed is there; otherwise, they would
-                # run in the order in which messages happen to come in.
-                seconds = OVERFLOW if 0 < reader.depth < reader.owes else PATIENCE
+            behind = self._readers_behind(executor) if self.counts.behind and not idle else []
+            for reader, entity in behind:
+                # Callbacks run in the order of their creation once all messages are there. Otherwise they would run in
+                # the order in which messages happen to arrive.
+                seconds = OVERFLOW_SECONDS if 0 < reader.depth < reader.unread else LOSS_SECONDS
                 message_counts.wait_for(reader, entity, executor.context, self._progress + seconds - time.monotonic())
             work = None if idle else self._ready(executor, nodes, condition)
             if work is not None:
                 return work
-            if owing:
-                self._give_up(owing)
+            if behind:
+                self._drop_overdue(behind)
                 continue
             # Nothing is left to do now. A finite time-out is ROS time; one of 0 waits for the next step, too, since a
             # polling loop would never let a step end.
@@ -152,8 +157,8 @@ class Host:
                 self._idle = None
             self._stale = False
 
-    def ours(self) -> bool:
-        """Return whether the present thread is stepped, and not one that the program has made."""
+    def is_stepped_thread(self) -> bool:
+        """Return whether the current thread is stepped: a thread of the program's own is not."""
         thread = threading.current_thread()
         return thread is self._main or isinstance(thread, Worker)
 
@@ -161,12 +166,12 @@ class Host:
         """Return whether there is a node."""
         return bool(self._alive())
 
-    def has_spoken(self) -> bool:
-        """Return whether a node has sent anything, but for news of its parameters."""
+    def has_sent(self) -> bool:
+        """Return whether a node has sent anything but parameter events."""
         return any(not channel.startswith("/parameter_events ") for channel in self.counts.fresh)
 
     def note(self, reason: str) -> None:
-        """Remember to tell the grader why steps are not all that moves this program."""
+        """Note for the grader why steps are not all that moves this program; one of the protocol's `REASONS`."""
         if reason not in self._notes:
             self._notes.append(reason)
 
@@ -201,48 +206,33 @@ class Host:
                     self._worked = self._stale = False
                     continue
                 return None
-            if self._moves(work[0]):
+            if self._positions.advances(work[0]):
                 self._worked = True
                 self._progress = time.monotonic()
                 return work
 
-    def _moves(self, task: Any) -> bool:
-        """Return whether it is worth while to resume a task.
-
-        rclpy resumes coroutines that wait over and over. One that stands where it stood, while nothing else has
-        happened, has nothing to do before the next step.
-        """
-        position = where(task)
-        if task not in self._seen or self._positions.get(task, position) != position:
-            self._seen.add(task)
-            self._positions.clear()  # this one moves, which may be what others wait for
-        elif task in self._positions:
-            return False
-        self._positions[task] = position
-        return True
-
     def _in_order(self, executor: Executor) -> list[Any]:
-        """Return the executor's nodes as they were made; it keeps them in a set, in another order every time."""
+        """Return the executor's nodes in the order of their creation; the executor keeps them in a set."""
         there = executor.get_nodes()
         return [node for node in self._alive() if node in there]
 
-    def _owing(self, executor: Executor) -> list[tuple[message_counts.Reader, Any]]:
-        """Return the readers of an executor that have not taken all that they were sent, and could now."""
+    def _readers_behind(self, executor: Executor) -> list[tuple[message_counts.Reader, Any]]:
+        """Return an executor's readers with unread messages whose callbacks can run now, each with its entity."""
         nodes = executor.get_nodes()
-        owing = []
-        for reader in list(self.counts.owing):
+        behind = []
+        for reader in list(self.counts.behind):
             entity = reader.entity
             if entity is None:
-                self.counts.owing.discard(reader)
-            elif any(message_counts.holds(node, entity) for node in nodes) and executor.can_execute(entity):
-                owing.append((reader, entity))
-        return owing
+                self.counts.behind.discard(reader)
+            elif any(message_counts.belongs_to(entity, node) for node in nodes) and executor.can_execute(entity):
+                behind.append((reader, entity))
+        return behind
 
-    def _give_up(self, owing: list[tuple[message_counts.Reader, Any]]) -> None:
+    def _drop_overdue(self, behind: list[tuple[message_counts.Reader, Any]]) -> None:
         waited = time.monotonic() - self._progress
-        lost = [r for r, _ in owing if waited > (OVERFLOW if 0 < r.depth < r.owes else PATIENCE)]
-        self._late += [reader.channels[0] for reader in lost if not 0 < reader.depth < reader.owes]
-        self.counts.forgive(lost)
+        lost = [r for r, _ in behind if waited > (OVERFLOW_SECONDS if 0 < r.depth < r.unread else LOSS_SECONDS)]
+        self._lost += [reader.channels[0] for reader in lost if not 0 < reader.depth < reader.unread]
+        self.counts.drop(lost)
 
     def _next_step(self) -> None:
         if self.phase != "spin":
@@ -251,27 +241,27 @@ class Host:
         if self._stepping:
             self._stepping = False
             wake = min((wake for wake in self.wakes if wake is not None), default=None)
-            state = {"late": self._late, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
+            state = {"lost": self._lost, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
             self.pipes.send(event="done", sent=self.counts.flush(), idle=None if self._notes else self._idle, **state)
         while True:
-            order: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
-            if order["op"] == "quit":
+            command: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
+            if command["op"] == "quit":
                 self._quit = True
                 raise KeyboardInterrupt
-            if order["op"] == "describe":
+            if command["op"] == "describe":
                 self.pipes.send(event="description", **self._describe())
-            elif order["op"] == "meet":
-                self.counts.meet(self._prefix(), order["kept"], order["early"])
-                self.pipes.send(event="met", sent=self.counts.flush())
+            elif command["op"] == "match":
+                self.counts.match(self._prefix(), command["kept"], command["early"])
+                self.pipes.send(event="matched", sent=self.counts.flush())
             else:
                 break
-        self._instants = order["instants"]
+        self._instants = command["instants"]
         self._stepping = True
-        self._late = []
+        self._lost = []
         self._positions.clear()
         self._progress = time.monotonic()
         self._set_time(self._instants.pop(0))
-        self.counts.told(order["mail"])
+        self.counts.received(command["pending"])
 
     def _describe(self) -> dict[str, Any]:
         self.hooks.changed = False

@@ -1,6 +1,6 @@
-"""Idleness: how long a program that waits for work has none, as long as nobody sends it anything.
+"""Idleness: until when a program that waits for work has none, as long as nobody sends it anything.
 
-A grader need not ask it to live through an instant at which it would do nothing.
+The grader leaves out the steps at which such a program would do nothing.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ NEVER = 2**63 - 1  # ns
 
 
 def idle_until(executor: Any, nodes: list[Any], now: int, end: int | None) -> int | None:
-    """Return the instant of ROS time, in ns, before which nothing happens without mail; None if that cannot be told.
+    """Return the instant of ROS time, in ns, before which nothing happens unless a message comes.
 
     Args:
         executor: which waits, and has found nothing to do.
         nodes: all nodes of the program.
         now: ROS time in ns.
-        end: when it will wait no more; None for never.
+        end: when its wait times out; None for never.
+
+    Returns:
+        The instant; None if that cannot be told.
     """
     if threading.active_count() > 1 or any(not task.done() for task, _, _ in executor._tasks):
         return None

@@ -1,7 +1,6 @@
-"""Message counts: how many messages this program has sent on each channel, and how many its readers have still to take.
+"""Message counts: how many messages this program has sent on each channel, and how many its readers have not taken yet.
 
-A reader is what takes messages of one kind: a subscription, a service, a client, or one of the parts of an action
-server or client. It owes as many takes as messages were sent to it, by the grader, by other programs or by its own.
+A reader takes messages of one kind. It is a subscription, a service, a client, or a part of an action server or client.
 """
 
 from __future__ import annotations
@@ -9,7 +8,7 @@ from __future__ import annotations
 import time
 import weakref
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from rclpy.exceptions import InvalidHandle
@@ -26,9 +25,11 @@ class Reader:
     """What takes the messages of some channels.
 
     Attributes:
+        channels: what it takes.
         part: which part of an action's entity it is, and its index in what the entity's `is_ready` returns.
-        owes: messages that were sent to it and that it has not taken; meaningless until it has met its writers.
-        met: when it met them, in ns of system time; 0 before.
+        latched: whether it gets what latched writers hold.
+        unread: messages that were sent to it and that it has not taken; counted once it is matched.
+        matched_ns: when it was matched with its writers, in ns of system time; 0 before.
         depth: how many messages its queue holds; 0 where nothing is dropped.
     """
 
@@ -46,8 +47,8 @@ class Reader:
         self.part = part
         self.depth = depth
         self.latched = latched
-        self.owes = 0
-        self.met = 0
+        self.unread = 0
+        self.matched_ns = 0
 
     @property
     def entity(self) -> Any:
@@ -57,44 +58,55 @@ class Reader:
 
 
 class MessageCounts:
-    """All readers of this process and all counts."""
+    """The readers and the counts of this process.
+
+    Attributes:
+        readers: by the address of the C object, and the part of it.
+        fresh: messages that were sent since the grader was last told, by channel.
+        kept: messages that latched writers hold for readers that come late, by channel.
+        behind: the readers that have unread messages.
+    """
 
     def __init__(self) -> None:
-        self.readers: dict[tuple[int, str], Reader] = {}  # by address of the C object, and part
-        self.fresh: Counter[str] = Counter()  # sent since the grader was last told
-        self.kept: Counter[str] = Counter()  # what latched writers hold for readers that come late
-        self.owing: set[Reader] = set()
+        self.readers: dict[tuple[int, str], Reader] = {}
+        self.fresh: Counter[str] = Counter()
+        self.kept: Counter[str] = Counter()
+        self.behind: set[Reader] = set()
         self._by_channel: dict[str, list[Reader]] = {}
 
     def add(self, handle: Any, reader: Reader) -> None:
-        """Know a new reader."""
+        """Add a new reader, which belongs to a C object."""
         self.readers[(handle.pointer, reader.part[0])] = reader
 
     def sent(self, channel: str, depth: int = 0) -> None:
-        """Book a message that this program has sent; `depth` is how many a latched writer keeps."""
+        """Count a message that this program has sent; `depth` is how many a latched writer holds."""
         self.fresh[channel] += 1
         if depth:
             self.kept[channel] = min(self.kept[channel] + 1, depth)
-        self._owe(channel, 1)
+        self._add_unread(channel, 1)
 
-    def told(self, mail: dict[str, int]) -> None:
-        """Book messages that others have sent."""
-        for channel, count in mail.items():
-            self._owe(channel, count)
+    def received(self, pending: dict[str, int]) -> None:
+        """Count messages that the grader and other programs have sent."""
+        for channel, count in pending.items():
+            self._add_unread(channel, count)
 
     def took(self, handle: Any, part: str) -> None:
-        """Book a message that was taken."""
+        """Count a message that one part of a C object has taken."""
         reader = self.readers.get((handle.pointer, part))
-        if reader is not None and reader.met:
-            reader.owes -= 1
-            if reader.owes <= 0:
-                self.owing.discard(reader)
+        if reader is not None and reader.matched_ns:
+            reader.unread -= 1
+            if reader.unread <= 0:
+                self.behind.discard(reader)
 
-    def meet(self, prefix: str, kept: dict[str, int], early: dict[str, int]) -> None:
-        """Begin to count for the readers that are new: their writers see them now.
+    def match(self, prefix: str, kept: dict[str, int], early: dict[str, int]) -> None:
+        """Begin to count for new readers, which are matched with their writers now.
 
-        They owe what latched writers (`kept`, and this program's own) keep for them, and requests that were sent
-        before there was anyone to step. `prefix` names this process.
+        What latched writers hold, this program's own too, and early requests are unread messages.
+
+        Args:
+            prefix: of this process's GUIDs.
+            kept: messages that latched writers of others hold, by channel.
+            early: requests and responses that others sent before the first step, by channel.
         """
         kept = dict(Counter(kept) + self.kept)
         early = dict(Counter(early) + self.fresh)
@@ -102,50 +114,50 @@ class MessageCounts:
             entity = reader.entity
             if entity is None:
                 del self.readers[key]
-                self.owing.discard(reader)
-            elif not reader.met:
-                reader.met = time.time_ns()
+                self.behind.discard(reader)
+            elif not reader.matched_ns:
+                reader.matched_ns = time.time_ns()
                 if reader.latched:
-                    reader.owes = min(reader.depth, sum(kept.get(channel, 0) for channel in reader.channels))
+                    reader.unread = min(reader.depth, sum(kept.get(channel, 0) for channel in reader.channels))
                 elif reader.depth:
                     if not reader.part[0]:
                         _empty(entity)
                 else:
-                    reader.owes = sum(early.get(channel, 0) for channel in reader.channels)
-                if reader.owes > 0:
-                    self.owing.add(reader)
+                    reader.unread = sum(early.get(channel, 0) for channel in reader.channels)
+                if reader.unread > 0:
+                    self.behind.add(reader)
         self._by_channel = {}
         for reader in self.readers.values():
             for channel in channels.of(reader.channels, prefix):
                 self._by_channel.setdefault(channel, []).append(reader)
 
-    def forgive(self, readers: Iterable[Reader]) -> None:
-        """Take what did not come for lost."""
+    def drop(self, readers: Iterable[Reader]) -> None:
+        """Count what did not come as lost."""
         for reader in list(readers):
-            reader.owes = 0
-            self.owing.discard(reader)
+            reader.unread = 0
+            self.behind.discard(reader)
 
     def flush(self) -> dict[str, int]:
-        """Return what was sent since the last time."""
+        """Return what was sent since the last call, by channel."""
         fresh, self.fresh = dict(self.fresh), Counter()
         return fresh
 
-    def alive(self) -> Iterator[tuple[Reader, Any]]:
-        """Yield the readers whose entities are there, with these."""
-        for reader in list(self.readers.values()):
-            entity = reader.entity
-            if entity is not None:
-                yield reader, entity
-
-    def _owe(self, channel: str, count: int) -> None:
+    def _add_unread(self, channel: str, count: int) -> None:
         for reader in self._by_channel.get(channel, ()):
-            reader.owes += count
-            if reader.owes > 0:
-                self.owing.add(reader)
+            reader.unread += count
+            if reader.unread > 0:
+                self.behind.add(reader)
 
 
 def wait_for(reader: Reader, entity: Any, context: Any, seconds: float) -> bool:
-    """Wait until a message has come in for a reader, at most `seconds`; return whether one has."""
+    """Wait until a message has arrived for a reader; return whether one has.
+
+    Args:
+        reader: who waits.
+        entity: its rclpy object.
+        context: rclpy's context of that object.
+        seconds: of real time, at most.
+    """
     try:
         with entity.handle if hasattr(entity, "handle") else entity, context.handle:
             return _wait_for(reader, entity, context, int(max(0.0, seconds) * 1e9))
@@ -179,12 +191,12 @@ def _wait_for(reader: Reader, entity: Any, context: Any, nanoseconds: int) -> bo
 
 
 def _empty(subscription: Any) -> None:
-    """Drop what came before the reader's time."""
+    """Drop the messages that came before the reader was matched."""
     while _take_message(subscription.handle, subscription.msg_type, True) is not None:
         pass
 
 
-def holds(node: Any, entity: Any) -> bool:
+def belongs_to(entity: Any, node: Any) -> bool:
     """Return whether an entity belongs to a node."""
     kinds = (node.subscriptions, node.services, node.clients, node.waitables)
     return any(entity is one for kind in kinds for one in kind)

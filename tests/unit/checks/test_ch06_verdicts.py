@@ -12,15 +12,17 @@ from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
 from autograder.checks.ch06_testing.support.verdicts import expect_awake, expect_passed, fit, trouble
 from autograder.harness import Workspace
-from autograder.probes.junit import Claims, Verdict
+from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.test_reports import Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
 
-GOOD, BAD = Verdict.PASSED, Verdict.FAILED
+GOOD, BAD = ClaimedOutcome.PASSED, ClaimedOutcome.FAILED
 
 
-def report(*verdicts: Verdict, status: int | None = None, ending: Ending | None = None, message: str = "") -> Report:
+def report(
+    *verdicts: ClaimedOutcome, status: int | None = None, ending: Ending | None = None, message: str = ""
+) -> Report:
     names = [f"test_limits::test_{number}" for number in range(len(verdicts))]
     said = {name: message if verdict is BAD else "" for name, verdict in zip(names, verdicts, strict=True)}
     implied = int(BAD in verdicts) if status is None else status

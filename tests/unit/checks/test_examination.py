@@ -14,11 +14,11 @@ from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
 from autograder.harness import Workspace
 from autograder.probes import test_runs
-from autograder.probes.junit import Claims, Verdict
+from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.ros import environment
 
-ALL_PASS = Report(None, 0, Claims({f"test::{number}": Verdict.PASSED for number in range(8)}), 0, "")
+ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for number in range(8)}), 0, "")
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_all_checks_of_runs_meet_every_fault(workspace: Workspace, ordered: list
     examination = Examination(workspace, 1, frozenset(FILES))
     assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {"second", "backwards"}
     assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
-    assert [order.files[0] for order in ordered if order.overheard] == [GUARD]
+    assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
 
 
 def test_a_run_is_the_same_whatever_else_is_run(workspace: Workspace, ordered: list[TestRun]) -> None:

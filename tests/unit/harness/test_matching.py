@@ -1,4 +1,4 @@
-"""When everyone in a harness has met everyone."""
+"""When everyone in a harness has matched everyone."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _program(writers: int | None = None, readers: int | None = None, ready: bool
 
 
 @pytest.mark.parametrize(
-    ("programs", "met"),
+    ("programs", "matched"),
     [
         ([], True),
         ([_program(writers=0)], True),
@@ -45,6 +45,6 @@ def _program(writers: int | None = None, readers: int | None = None, ready: bool
     ],
 )
 def test_programs_have_met_when_each_sees_all_that_it_is_joined_to(
-    programs: list[Description], met: bool, grader_node: GraderNode
+    programs: list[Description], matched: bool, grader_node: GraderNode
 ) -> None:
-    assert connected(programs, grader_node) is met
+    assert connected(programs, grader_node) is matched

@@ -11,10 +11,10 @@ from autograder.lockstep.failures import (
     diagnose_crash,
     diagnose_deadlock,
     diagnose_ending,
+    diagnose_no_answer,
     diagnose_output,
-    stuck,
+    diagnose_unsteppable,
     tail,
-    unsteppable,
 )
 from autograder.lockstep.protocol import REASONS, Crash, Deadlock
 from autograder.sandbox import Limits, Process
@@ -99,7 +99,7 @@ def test_a_program_that_runs_but_no_longer_answers_is_no_ended_one() -> None:
 
 
 def test_a_node_that_never_spins_and_one_that_hangs_are_told_apart() -> None:
-    never, hangs = stuck(Kind.NEVER_STARTED, "60 s", "a\nb"), stuck(Kind.STUCK, "30 s", "")
+    never, hangs = diagnose_no_answer(Kind.NEVER_STARTED, "60 s", "a\nb"), diagnose_no_answer(Kind.STUCK, "30 s", "")
     assert "did not start to spin within 60 s" in never.sentence
     assert never.detail == "a\nb"
     assert "did not come back from a callback within 30 s" in hangs.sentence
@@ -139,6 +139,6 @@ def test_a_deadlock_is_explained(reason: str, words: str) -> None:
 
 @pytest.mark.parametrize("reason", REASONS)
 def test_a_program_that_cannot_be_stepped_hears_why(reason: str) -> None:
-    diagnosis = unsteppable(reason, "")
+    diagnosis = diagnose_unsteppable(reason, "")
     assert diagnosis.kind is Kind.NEVER_STARTED
     assert "Your node's time cannot be stepped: it " in diagnosis.sentence

@@ -71,7 +71,7 @@ def test_no_bytes_get_through_but_events(noise: bytes) -> None:
 def test_forged_fields_of_any_type_become_records_of_the_right_one(forged: dict[str, Any]) -> None:
     reply = protocol.reply(forged)
     assert all(type(topic) is str and type(n) is int and n >= 0 for topic, n in reply.sent.items())
-    assert all(type(channel) is str for channel in reply.late)
+    assert all(type(channel) is str for channel in reply.lost)
     assert type(reply.changed) is bool
     description = protocol.description(forged)
     assert all(type(name) is str for name in (*description.nodes, *description.servers, *description.reads()))
@@ -138,17 +138,6 @@ def test_texts_and_lists_are_cut() -> None:
 
 def _trees() -> dict[str, ast.Module]:
     return {path.name: ast.parse(path.read_text()) for path in HOST.glob("*.py")}
-
-
-def test_the_host_starts_at_the_time_that_the_grader_believes() -> None:
-    assigned = {
-        target.id: eval(compile(ast.Expression(node.value), "host.py", "eval"))
-        for node in _trees()["host.py"].body
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.BinOp)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    }
-    assert assigned["START"] == protocol.START
 
 
 def test_the_host_imports_nothing_of_the_grader() -> None:

@@ -12,7 +12,7 @@ import pytest
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import Stepper, UnsteppableError, stepper
-from autograder.lockstep.stepper import Patience
+from autograder.lockstep.stepper import Timeout
 from autograder.sandbox import Ending, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
@@ -23,7 +23,7 @@ Open = Callable[[str], Stepper]
 def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
     """Open a stepper on a program that stands in the host's place and says what a forger would."""
     monkeypatch.setenv(launcher.TIER_VARIABLE, "process")
-    monkeypatch.setattr(stepper, "START", Patience(30.0, 10.0))
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(30.0, 10.0))
     with ExitStack() as stack:
 
         def open_stepper(code: str) -> Stepper:
@@ -45,7 +45,7 @@ def test_a_host_that_answers_is_stepped(host: Open) -> None:
     answers = r"""
 os.write(write, b'{"event": "ready"}\n')
 os.read(read, 999)
-os.write(write, b'{"event": "done", "sent": {"/cmd_vel": 3}, "late": []}\n')
+os.write(write, b'{"event": "done", "sent": {"/cmd_vel": 3}, "lost": []}\n')
 os.read(read, 999)
 """
     program = host(answers)
@@ -68,19 +68,19 @@ def test_a_program_that_ends_before_it_is_ready_has_ended_early(host: Open) -> N
 
 
 def test_a_program_that_never_is_ready_never_started(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stepper, "START", Patience(0.5, 10.0))
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(0.5, 10.0))
     assert _kind(host("signal.pause()").wait_ready) is Kind.NEVER_STARTED
 
 
 def test_a_step_that_does_not_come_back_is_stuck(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stepper, "STEP", Patience(0.5, 10.0))
+    monkeypatch.setattr(stepper, "STEP_TIMEOUT", Timeout(0.5, 10.0))
     program = host('os.write(write, b\'{"event": "ready"}\\n\')\nsignal.pause()')
     program.wait_ready()
     assert _kind(lambda: program.step([1], {})) is Kind.STUCK
 
 
 def test_a_program_that_computes_without_end_is_not_waited_for(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stepper, "START", Patience(600.0, 0.2))
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(600.0, 0.2))
     with pytest.raises(StudentError, match="did not start to spin within 0 s of computing"):
         host("while True: pass").wait_ready()
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.probes.junit import MAX_BYTES, MAX_MESSAGE, Claims, Verdict, parse, read
+from autograder.probes.junit import MAX_BYTES, MAX_MESSAGE, ClaimedOutcome, Claims, parse, read
 
 REPORT = """<?xml version="1.0" encoding="utf-8"?><testsuites><testsuite name="pytest">
 <testcase classname="test.test_limits" name="test_a[0.5]" />
@@ -23,11 +23,11 @@ def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
     claims = parse(REPORT.encode())
     assert claims is not None
     assert claims.verdicts == {
-        "test_limits::test_a[0.5]": Verdict.PASSED,
-        "test_limits::test_b": Verdict.FAILED,
-        "test_limits::test_c": Verdict.ERROR,
-        "test_limits::test_d": Verdict.SKIPPED,
-        "test_limits::test_e": Verdict.ERROR,
+        "test_limits::test_a[0.5]": ClaimedOutcome.PASSED,
+        "test_limits::test_b": ClaimedOutcome.FAILED,
+        "test_limits::test_c": ClaimedOutcome.ERROR,
+        "test_limits::test_d": ClaimedOutcome.SKIPPED,
+        "test_limits::test_e": ClaimedOutcome.ERROR,
     }
     assert claims.messages["test_limits::test_b"] == "assert 1 == 2"
     assert claims.messages["test_limits::test_a[0.5]"] == ""
@@ -35,7 +35,7 @@ def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
 
 def test_a_test_in_a_class_belongs_to_its_module() -> None:
     claims = parse(b'<testsuite><testcase classname="p.test.test_limits.Speed" name="test_a"/></testsuite>')
-    assert claims == Claims({"test_limits::Speed::test_a": Verdict.PASSED}, {"test_limits::Speed::test_a": ""})
+    assert claims == Claims({"test_limits::Speed::test_a": ClaimedOutcome.PASSED}, {"test_limits::Speed::test_a": ""})
 
 
 def test_a_message_is_cut_to_its_bound() -> None:
@@ -64,7 +64,7 @@ def test_what_is_no_small_plain_report_is_nothing(data: bytes) -> None:
 def test_a_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "report.xml"
     path.write_text('<testsuite><testcase classname="t" name="a"/></testsuite>')
-    assert read(path) == Claims({"t::a": Verdict.PASSED}, {"t::a": ""})
+    assert read(path) == Claims({"t::a": ClaimedOutcome.PASSED}, {"t::a": ""})
 
 
 def test_links_pipes_and_folders_are_not_read(tmp_path: Path) -> None:

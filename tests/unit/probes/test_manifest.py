@@ -71,7 +71,7 @@ def test_what_ros_refuses_is_refused_with_the_reason(before: str, after: str, wo
     ("data", "words"),
     [
         (None, "lamp has no package.xml"),
-        (b"<package>" + b" " * manifest.MAX_BYTES, "far larger than a manifest"),
+        (b"<package>" + b" " * manifest.MAX_MANIFEST, "far larger than a manifest"),
         (b"\xff\xfe<package/>", "not UTF-8"),
     ],
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.probes.junit import Claims, Verdict
+from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.memory import Memory
 from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.probes.versions import Version
@@ -24,7 +24,7 @@ FILES = {
 }
 SOURCE = Source("half", FILES)
 HALF, OTHER = TestRun(("test_half.py",), RIGHT), TestRun(("test_other.py",), RIGHT)
-REPORT = Report(Ending.EXITED, 0, Claims({"test_half::test_odd": Verdict.PASSED}), 0, "1 passed")
+REPORT = Report(Ending.EXITED, 0, Claims({"test_half::test_odd": ClaimedOutcome.PASSED}), 0, "1 passed")
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_tests_that_name_another_file_can_read_it(memory: Memory) -> None:
     [
         replace(HALF, version=Version({"half/__init__.py": "def half(x):\n    return x // 2\n"}, RIGHT.scripts)),
         replace(HALF, version=Version(RIGHT.files, {"half": "half.other"})),
-        *(replace(HALF, **{flag: True}) for flag in ("backwards", "first_failure", "overheard")),
+        *(replace(HALF, **{flag: True}) for flag in ("backwards", "first_failure", "sniffed")),
         replace(HALF, conftest=False),
         replace(HALF, files=("test_half.py", "test_other.py")),
     ],

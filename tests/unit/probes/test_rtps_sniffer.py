@@ -10,13 +10,13 @@ import pytest
 
 from autograder.exceptions import GraderError
 from autograder.probes import rtps_sniffer
-from autograder.probes.rtps_sniffer import Ear
+from autograder.probes.rtps_sniffer import RtpsSniffer
 
 
 @pytest.fixture
-def ear() -> Iterator[Ear]:
-    with Ear() as ear:
-        yield ear
+def sniffer() -> Iterator[RtpsSniffer]:
+    with RtpsSniffer() as sniffer:
+        yield sniffer
 
 
 def say(word: bytes, address: str, port: int) -> None:
@@ -24,30 +24,30 @@ def say(word: bytes, address: str, port: int) -> None:
         mouth.sendto(word, (address, port))
 
 
-def test_an_announcement_is_heard_once(ear: Ear) -> None:
-    assert not ear.heard()
-    say(b"RTPS and more", "127.0.0.1", 7400 + 250 * ear.domain + 10)
-    assert ear.heard()
-    assert not ear.heard()
+def test_an_announcement_is_taken_once(sniffer: RtpsSniffer) -> None:
+    assert not sniffer.take_announcements()
+    say(b"RTPS and more", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
+    assert sniffer.take_announcements()
+    assert not sniffer.take_announcements()
 
 
-def test_what_is_no_announcement_is_not_heard(ear: Ear) -> None:
-    say(b"hello", "127.0.0.1", 7400 + 250 * ear.domain + 10)
-    assert not ear.heard()
+def test_what_is_no_announcement_is_not_taken(sniffer: RtpsSniffer) -> None:
+    say(b"hello", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
+    assert not sniffer.take_announcements()
 
 
-def test_two_ears_listen_in_different_domains(ear: Ear) -> None:
-    with Ear() as other:
-        assert other.domain != ear.domain
+def test_two_sniffers_listen_in_different_domains(sniffer: RtpsSniffer) -> None:
+    with RtpsSniffer() as other:
+        assert other.domain != sniffer.domain
         say(b"RTPS", "127.0.0.1", 7400 + 250 * other.domain + 10)
-        assert not ear.heard()
-        assert other.heard()
+        assert not sniffer.take_announcements()
+        assert other.take_announcements()
 
 
 def test_an_ear_finds_no_room_where_all_domains_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rtps_sniffer, "DOMAINS", range(228, 230))
     with ExitStack() as stack:
         for _ in rtps_sniffer.DOMAINS:
-            stack.enter_context(Ear())
+            stack.enter_context(RtpsSniffer())
         with pytest.raises(GraderError, match="participants in all DDS domains from 228 to 229"):
-            Ear()
+            RtpsSniffer()

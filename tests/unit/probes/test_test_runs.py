@@ -48,7 +48,7 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
 
 
 def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
-    return run(workspace, take(workspace, "half"), orders, lanes=2)
+    return run(workspace, take(workspace, "half"), orders, jobs=2)
 
 
 def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
@@ -200,7 +200,7 @@ def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
     )
     assert all(
         report.passed
-        for report in run(workspace, take(workspace, "half"), [TestRun(("test_half.py",), RIGHT)] * 3, lanes=1)
+        for report in run(workspace, take(workspace, "half"), [TestRun(("test_half.py",), RIGHT)] * 3, jobs=1)
     )
 
 
@@ -213,7 +213,7 @@ def test_two_versions_are_seen_at_one_place(workspace: Workspace) -> None:
         workspace,
         take(workspace, "half"),
         [TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG)],
-        lanes=1,
+        jobs=1,
     )
     messages = {report.claims.messages["test_half::test_place"] for report in reports}
     assert len(messages) == 1
@@ -234,7 +234,7 @@ def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
 
 
 @pytest.mark.parametrize(
-    ("init", "more", "heard"),
+    ("init", "more", "joins"),
     [
         ("", "", True),
         ("domain_id=int(os.environ['ROS_DOMAIN_ID'])", "LOCALHOST", True),
@@ -243,22 +243,22 @@ def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
     ],
     ids=["default", "on this machine", "own domain", "hidden"],
 )
-def test_who_joins_the_default_domain_is_overheard(workspace: Workspace, init: str, more: str, heard: bool) -> None:
+def test_who_joins_the_default_domain_is_overheard(workspace: Workspace, init: str, more: str, joins: bool) -> None:
     text = "import os\nimport rclpy\nfrom rclpy.context import Context\n\n\ndef test_it():\n    context = Context()\n"
     text += f"    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = '{more}'\n" if more else ""
     text += f"    rclpy.init(context=context, {init})\n    node = rclpy.create_node('n', context=context)\n"
     text += "    node.destroy_node()\n    rclpy.try_shutdown(context=context)\n"
     write(workspace, text)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, overheard=True))
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
     assert report.passed, report.output
-    assert report.heard is heard
+    assert report.joined_domain is joins
 
 
 def test_where_nobody_joins_nobody_is_heard(workspace: Workspace) -> None:
     write(workspace, GOOD)
-    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, overheard=True))
+    (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
     assert report.passed
-    assert not report.heard
+    assert not report.joined_domain
 
 
 def test_tests_that_speak_of_launching_get_its_plugin_and_others_do_not(workspace: Workspace) -> None:

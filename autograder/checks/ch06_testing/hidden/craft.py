@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.contract import LEAST
 from autograder.checks.ch06_testing.support.verdicts import expect_awake
 from autograder.harness import Workspace
 from autograder.probes import linters
-from autograder.probes.junit import Verdict
+from autograder.probes.junit import ClaimedOutcome
 
 check = group("craft")
 LINTERS = ("test_flake8", "test_pep257")
@@ -53,9 +53,9 @@ def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
     verdicts = examination.colcon.claims.verdicts
     ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
-    names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not Verdict.SKIPPED}
+    names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.SKIPPED}
     missing = [name for name in LINTERS if name not in names]
     expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
-    bad = [name.partition("::")[2] for name, verdict in ran.items() if verdict is not Verdict.PASSED]
+    bad = [name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.PASSED]
     expect(not bad, f"{' and '.join(bad)} found something in the package.", fraction=0.5)
     linters.expect_tidy(workspace, examination.source, fraction=0.5)

@@ -60,7 +60,7 @@ class Examination:
         """What the tests of each file say of a right version; those of the node are overheard."""
         asked = {FILES[check] for check in self._checks if check in FILES}
         wanted = {
-            name: TestRun((name,), right(STYLES[0], self._draw(name)), overheard=name == GUARD)
+            name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD)
             for name in LEAST
             if name in asked and name in self.source.tests
         }

@@ -33,7 +33,7 @@ def test_guard_right(examination: Examination) -> None:
 def test_alone(examination: Examination) -> None:
     """They meet in a domain of their own, where no other robot takes part."""
     expect(
-        not examination.trial[GUARD].heard,
+        not examination.trial[GUARD].joined_domain,
         f"While the tests in {GUARD} ran, a node of theirs appeared in the default domain, in which other robots are.",
     )
 

@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from autograder.checks import expect
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
-from autograder.harness.base import NAME
+from autograder.harness.grader_node import NAME
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
 _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"

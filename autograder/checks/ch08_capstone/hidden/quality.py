@@ -10,7 +10,7 @@ from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import colcon_test
-from autograder.probes.junit import Verdict
+from autograder.probes.junit import ClaimedOutcome
 from autograder.probes.test_reports import Report
 from autograder.probes.test_runs import take
 
@@ -48,7 +48,7 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
     """Flake8 and PEP 257 have nothing to say."""
     for name in LINTERS:
         verdict = tested.claims.verdicts.get(name)
-        expect(verdict is Verdict.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
+        expect(verdict is ClaimedOutcome.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
     linters.expect_tidy(workspace, take(workspace, PACKAGE))
 
 

@@ -8,16 +8,16 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from autograder.grading.machine import Machine
+from autograder.grading.machine_lock import MachineLock
 
 SECONDS = 60.0  # for what must happen
 
 
 def test_many_use_the_machine_beside_each_other() -> None:
-    machine, all_in = Machine(), threading.Barrier(3)
+    machine, all_in = MachineLock(), threading.Barrier(3)
 
     def use() -> int:
-        with machine.beside():
+        with machine.shared():
             return all_in.wait(SECONDS)
 
     with ThreadPoolExecutor(3) as pool:
@@ -25,18 +25,18 @@ def test_many_use_the_machine_beside_each_other() -> None:
 
 
 def test_one_alone_waits_for_the_others_and_the_next_wait_for_it() -> None:
-    machine, order = Machine(), list[str]()
+    machine, order = MachineLock(), list[str]()
     begun, ended = threading.Event(), threading.Event()
 
     def beside(name: str, wait: threading.Event | None = None) -> None:
-        with machine.beside():
+        with machine.shared():
             begun.set()
             if wait is not None:
                 wait.wait(SECONDS)
             order.append(name)
 
     def alone(name: str) -> None:
-        with machine.alone():
+        with machine.exclusive():
             order.append(f"{name} begins")
             order.append(f"{name} ends")
 
@@ -57,12 +57,12 @@ def test_one_alone_waits_for_the_others_and_the_next_wait_for_it() -> None:
     assert order[1:-1] in (["a begins", "a ends", "b begins", "b ends"], ["b begins", "b ends", "a begins", "a ends"])
 
 
-@pytest.mark.parametrize("way", ["beside", "alone"])
+@pytest.mark.parametrize("way", ["shared", "exclusive"])
 def test_an_error_gives_the_machine_back(way: str) -> None:
-    machine = Machine()
+    machine = MachineLock()
     with pytest.raises(ValueError, match="mine"), getattr(machine, way)():
         raise ValueError("mine")
-    with machine.alone(), pytest.raises(ZeroDivisionError):
+    with machine.exclusive(), pytest.raises(ZeroDivisionError):
         _ = 1 / 0
-    with machine.beside():
+    with machine.shared():
         pass

@@ -1,0 +1,39 @@
+"""How long a step of ROS time is."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.harness.steps import FINEST_TICK_NS, TICK_NS, next_instant, tick_of
+
+MS = 1_000_000
+
+
+@pytest.mark.parametrize(
+    ("timers", "tick"),
+    [
+        ([], TICK_NS),
+        ([500 * MS], TICK_NS),
+        ([150 * MS], 50 * MS),
+        ([20 * MS, 30 * MS], 10 * MS),
+        ([7 * MS], FINEST_TICK_NS),
+    ],
+    ids=["no timer", "longer", "every firing is hit", "of several", "never finer"],
+)
+def test_a_tick_hits_every_firing_of_the_timers(timers: list[int], tick: int) -> None:
+    assert tick_of(TICK_NS, timers) == tick
+
+
+@pytest.mark.parametrize(
+    ("wakes", "instant"),
+    [
+        ([], 100 * MS),
+        ([None, 250 * MS], 100 * MS),
+        ([60 * MS, 40 * MS], 40 * MS),
+        ([3 * MS], FINEST_TICK_NS),
+        ([99 * MS + 1], 100 * MS),
+    ],
+    ids=["nobody wakes", "later", "the first", "not at once", "so shortly before the end"],
+)
+def test_a_step_ends_early_where_a_program_wants_to_continue(wakes: list[int | None], instant: int) -> None:
+    assert next_instant(0, 100 * MS, wakes) == instant
