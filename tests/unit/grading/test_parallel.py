@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from autograder.grading.parallel import together
+from autograder.grading.parallel import map_parallel
 
 MANY = tuple(range(50))
 
@@ -24,7 +24,7 @@ def test_results_come_in_the_order_of_the_items_whoever_is_done_first() -> None:
         second_done.set()
 
     came: list[int] = []
-    assert together(do, (0, 1, 2), jobs=2, on_done=on_done) == (0, 1, 4)
+    assert map_parallel(do, (0, 1, 2), jobs=2, on_done=on_done) == (0, 1, 4)
     assert sorted(came) == [0, 1, 4]
     assert came[0] != 0
 
@@ -44,7 +44,7 @@ def test_once_broken_off_nothing_more_is_begun(error: type[BaseException]) -> No
         raise error("enough")
 
     with pytest.raises(error, match="enough"):
-        together(do, MANY, jobs=2, on_done=on_done)
+        map_parallel(do, MANY, jobs=2, on_done=on_done)
     assert 1 <= len(begun) <= 3
 
 
@@ -56,5 +56,5 @@ def test_a_failure_of_what_is_done_comes_out() -> None:
         raise ValueError(f"item {item}")
 
     with pytest.raises(ValueError, match="item"):
-        together(do, MANY, jobs=1, on_done=lambda result: None)
+        map_parallel(do, MANY, jobs=1, on_done=lambda result: None)
     assert begun[0] == 0
