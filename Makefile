@@ -50,9 +50,10 @@ lint:
 	$(BIN)/mypy --config-file autograder/ros/standins/mypy.ini $(addprefix -p ,$(STANDINS))
 	$(BIN)/lint-imports --no-cache --no-logo
 
+# The settings take away two of nbgrader's buttons: "Validate" would praise an unsolved notebook.
 lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_ARGS=)
 	@$(BOOTSTRAP)
-	@$(WITH_ROS) jupyter lab --ServerApp.root_dir=chapters \
+	@JUPYTER_CONFIG_PATH=$(CURDIR)/assets/students/jupyter $(WITH_ROS) jupyter lab --ServerApp.root_dir=chapters \
 		$(if $(filter 0,$(shell id -u)),--allow-root) $(LAB_ARGS)
 
 tour:           ## solve each chapter's release in JupyterLab, keep screenshots in .build/screenshots

@@ -12,14 +12,18 @@ from __future__ import annotations
 
 import os
 
+from IPython.core.getipython import get_ipython
+
+from autograder.notebook import writefile
 from autograder.notebook.checking import CheckReport, check
 from autograder.notebook.comparing import side_by_side
 from autograder.notebook.driving import DriveReport, drive
-from autograder.notebook.exceptions import Notice
+from autograder.notebook.notices import NotGraded, Notice
 from autograder.notebook.simulator_session import SimulatorSession, simulator
 from autograder.notebook.sourcing import source
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from sim.grading import grading
 
 __all__ = [
     "CheckReport",
@@ -39,18 +43,22 @@ __all__ = [
 def ros() -> None:
     """Switch ROS 2 on for this kernel; after it, `import rclpy` works. Safe to run twice.
 
+    From then on, `%%writefile` never destroys what a student wrote in the editor (see `writefile`).
+
     The kernel gets a ROS domain of its own, unless `ROS_DOMAIN_ID` names one: two notebooks, or two students on one
     network, do not hear each other.
 
     Raises:
         RosError: there is no ROS 2 Jazzy; the message says what mends it.
     """
+    if not grading():
+        writefile.register(get_ipython())
     given = os.environ.get("ROS_DOMAIN_ID")
     activate(domain=Domain().number if given is None else int(given))
 
 
-def grade(assignment: str, group: str) -> Notice:
+def grade(assignment: str, group: str) -> NotGraded:
     """Say that the hidden checks of `group` decide after the hand-in; nothing is graded in the kernel."""
-    return Notice(
+    return NotGraded(
         f"{assignment}: the hidden checks of “{group}” are run after you have handed in, outside this notebook."
     )

@@ -9,7 +9,7 @@ from typing import Any
 
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
-from autograder.notebook.exceptions import INFO, STYLE, TROUBLE, Notice
+from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import send
 from sim.grading import grading
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from autograder.notebook.driving import DriveReport
-from autograder.notebook.exceptions import Notice
+from autograder.notebook.notices import Notice
 
 if TYPE_CHECKING:
     from sim.view import Picture

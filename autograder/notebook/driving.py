@@ -12,7 +12,7 @@ import yaml
 from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
-from autograder.notebook.exceptions import TROUBLE, Notice
+from autograder.notebook.notices import TROUBLE, Notice
 from autograder.notebook.worker_client import RECORDING, send
 from sim import (
     DeadSector,

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from autograder import layout
-from autograder.notebook.exceptions import Notice
+from autograder.notebook.notices import Notice
 from autograder.ros import activate
 from sim.grading import grading
 

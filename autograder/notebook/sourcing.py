@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 
 from autograder.exceptions import UsageError
-from autograder.notebook.exceptions import TROUBLE, Notice
+from autograder.notebook.notices import TROUBLE, Notice
 from sim.grading import grading
 
 SITE = Path(f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")

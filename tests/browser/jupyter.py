@@ -21,6 +21,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 ROOT = Path(__file__).resolve().parents[2]
+STUDENTS_SETTINGS = ROOT / "assets" / "students" / "jupyter"
 PATIENCE = 120.0  # seconds: a deadline, not an expectation
 
 
@@ -77,6 +78,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
         **{key: value for key, value in os.environ.items() if key != "AUTOGRADER_GRADING"},
         "HOME": str(home),
         "JUPYTER_CONFIG_DIR": str(home / "config"),
+        "JUPYTER_CONFIG_PATH": str(STUDENTS_SETTINGS),
         "JUPYTER_DATA_DIR": str(home / "data"),
         "JUPYTER_RUNTIME_DIR": str(home / "runtime"),
         "IPYTHONDIR": str(home / "ipython"),

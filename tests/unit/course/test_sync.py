@@ -51,7 +51,9 @@ def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path
     sync(made, solutions)
     (solutions / "pkg/node.py").write_text(NODE.replace("return 0", "return 1"))
     (found,) = stale(made, solutions)
-    assert str(found).startswith("01_small.ipynb, cell 'node': differs from solutions/pkg/node.py; run `autograder course sync`")
+    assert str(found).startswith(
+        "01_small.ipynb, cell 'node': differs from solutions/pkg/node.py; run `autograder course sync`"
+    )
     assert "-    return 0" in str(found)
     assert "+    return 1" in str(found)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from nbformat.v4 import new_code_cell, new_output
+from nbgrader.utils import determine_grade
 
 from autograder.checks import Outcome
 from autograder.exceptions import UsageError
@@ -12,6 +14,7 @@ from autograder.notebook import CheckReport, Notice, check, drive, grade
 from autograder.notebook.checking import Line
 from sim.grading import GRADING_VARIABLE
 
+GRADED = {"grade": True, "solution": False, "locked": True, "grade_id": "g", "schema_version": 3}
 LINES = (
     Line("It starts.", Outcome.PASSED, "", (), "https://docs.ros.org"),
     Line("It turns <left>.", Outcome.FAILED, "it drove & drove", ("look <here>",), "https://docs.ros.org"),
@@ -65,3 +68,9 @@ def test_what_is_not_there_is_named(tmp_path: Path) -> None:
         drive("a", "b", faults="fog", workspace=tmp_path)
     with pytest.raises(UsageError, match="there are no visible checks for '77_none'; there are for: 00_welcome, "):
         check("77_none", tmp_path)
+
+
+def test_a_grade_cell_outside_of_grading_is_worth_nothing_to_nbgrader() -> None:
+    cell = new_code_cell('grade("02_nodes", "graph")', metadata={"nbgrader": {**GRADED, "points": 5}})
+    cell.outputs = [new_output("execute_result", {"text/plain": repr(grade("02_nodes", "graph"))})]
+    assert determine_grade(cell) == (0.0, 5)

@@ -23,3 +23,14 @@ class Notice:
     def _repr_html_(self) -> str:
         detail = f"<pre>{html.escape(self.detail)}</pre>" if self.detail else ""
         return f'<div style="{STYLE.format(colour=self.colour)}">{html.escape(self.sentence)}{detail}</div>'
+
+
+class NotGraded(Notice):
+    """What a locked grade cell says outside of grading.
+
+    Its text form is 0.0. nbgrader takes a cell's text for its points, and gives full points to a text that is no
+    number: so its "Validate" button and a plain `nbgrader autograde` give no credit.
+    """
+
+    def __repr__(self) -> str:
+        return "0.0"

@@ -1,0 +1,145 @@
+"""The course's `%%writefile`: it writes a file as IPython's does, and never destroys a student's work.
+
+A cell that still holds an exercise's stub does not replace a file that the student has written by other means. A file
+that was changed since a cell last wrote it is copied to `replaced/` in its workspace before a cell replaces it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from IPython.core import magic_arguments
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.display import display
+
+from autograder.notebook.notices import Notice
+
+STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
+RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last
+REPLACED = "replaced"
+
+
+class Action(Enum):
+    """What becomes of a file when a cell wants to write it."""
+
+    WRITE = "write"
+    KEEP = "keep"
+    COPY = "copy"  # then write
+
+
+def choose(cell: str, on_disk: str | None, written: str | None) -> Action:
+    """Choose what becomes of a file.
+
+    Args:
+        cell: the text that the cell would write.
+        on_disk: the file's text; None where there is no file.
+        written: the digest of what a cell wrote to the file last; None where that is not known.
+    """
+    if on_disk is None or on_disk == cell:
+        return Action.WRITE
+    if cell.count(STUB) > on_disk.count(STUB):
+        return Action.KEEP
+    return Action.WRITE if written == digest(on_disk) else Action.COPY
+
+
+def digest(text: str) -> str:
+    """Return the SHA-256 of a text, in hexadecimal digits."""
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def register(shell: InteractiveShell | None) -> None:
+    """Let `%%writefile` of this shell be the course's; without a shell, do nothing. Safe to call twice."""
+    if shell is None:
+        return
+    in_shell: Any = shell  # IPython has no types
+    original = in_shell.find_cell_magic("writefile")
+    if original is None or getattr(original, "is_the_courses", False):
+        return
+
+    def writefile(line: str, cell: str) -> None:
+        write(line, cell, original)
+
+    writefile.is_the_courses = True  # type: ignore[attr-defined]
+    in_shell.register_magic_function(writefile, "cell")
+
+
+def write(line: str, cell: str, original: Any) -> None:
+    """Write a cell's text to the file that `line` names, unless that would destroy a student's work.
+
+    The file's old text is compared as a whole. A record that is lost makes copies, never losses.
+
+    Args:
+        line: what stands behind `%%writefile`.
+        cell: the text.
+        original: IPython's own magic, which writes the file and says so.
+    """
+    parse: Any = magic_arguments.parse_argstring
+    arguments = parse(original, line)
+    path = Path(arguments.filename.strip("'\"")).expanduser()
+    home = _workspace(path)
+    record, name, on_disk = _read_record(home), os.path.relpath(path, home), _text(path)
+    if arguments.append:
+        original(line, cell)
+        if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
+            _write_record(home, {**record, name: digest((on_disk or "") + cell)})
+        return
+    action = choose(cell, on_disk, record.get(name))
+    if action is Action.KEEP:
+        _show(
+            f"{path} was kept as it is: it was written outside of this cell, and the cell still holds the exercise's "
+            "stub. To start again from the stub, delete the file and run the cell."
+        )
+        return
+    if action is Action.COPY:
+        _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
+    original(line, cell)
+    _write_record(home, {**record, name: digest(cell)})
+
+
+def _show(sentence: str) -> None:
+    show: Any = display
+    show(Notice(sentence))
+
+
+def _workspace(path: Path) -> Path:
+    """Return the workspace `ws` that a file lies in, or the file's folder."""
+    return next((folder for folder in path.parents if folder.name == "ws"), path.parent)
+
+
+def _text(path: Path) -> str | None:
+    if not path.is_file():
+        return None
+    return path.read_bytes().decode("utf-8", "surrogateescape")
+
+
+def _keep_copy(path: Path, home: Path) -> Path:
+    """Copy a file to the first free name in the workspace's folder of replaced files; return the copy's path."""
+    top = home / REPLACED
+    stem = top / os.path.relpath(path, home)
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    (top / "COLCON_IGNORE").touch()  # a copy of package.xml is no package
+    number = 1
+    while (copy := stem.with_name(f"{stem.name}.{number}")).exists():
+        number += 1
+    copy.write_bytes(path.read_bytes())
+    return copy
+
+
+def _read_record(home: Path) -> dict[str, str]:
+    """Read what cells wrote last; nothing where there is no record, or none that can be read."""
+    try:
+        record = json.loads((home / RECORD).read_text())
+    except (OSError, ValueError):
+        return {}
+    return record if isinstance(record, dict) else {}
+
+
+def _write_record(home: Path, record: dict[str, str]) -> None:
+    fresh = home / f"{RECORD}.{os.getpid()}"
+    fresh.write_text(json.dumps(record, indent=1, sort_keys=True))
+    fresh.replace(home / RECORD)

@@ -1,0 +1,122 @@
+"""The course's `%%writefile` never destroys what a student wrote."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.testing.globalipapp import start_ipython
+
+from autograder.course.forms import CODE_STUB
+from autograder.notebook.writefile import RECORD, REPLACED, STUB, Action, choose, digest, register
+
+UNSOLVED = f"def main():\n    {CODE_STUB}\n"
+HALF = f"def main():\n    return 0\n\n\ndef other():\n    {CODE_STUB}\n"
+SOLVED = "def main():\n    return 0\n"
+OTHER = "def main():\n    return 1\n"
+Run = Callable[[str, str], str]
+FILE = "ws/src/pkg/node.py"
+
+
+@pytest.mark.parametrize(
+    ("cell", "on_disk", "written", "action"),
+    [
+        (UNSOLVED, None, None, Action.WRITE),
+        (UNSOLVED, UNSOLVED, None, Action.WRITE),
+        (UNSOLVED, SOLVED, None, Action.KEEP),
+        (UNSOLVED, SOLVED, digest(SOLVED), Action.KEEP),  # the cell was solved once and has lost its answer
+        (UNSOLVED, "", None, Action.KEEP),
+        (UNSOLVED + UNSOLVED, HALF, None, Action.KEEP),
+        (HALF, UNSOLVED, digest(UNSOLVED), Action.WRITE),
+        (HALF, UNSOLVED + "# mine\n", digest(UNSOLVED), Action.COPY),
+        (SOLVED, UNSOLVED, digest(UNSOLVED), Action.WRITE),
+        (SOLVED, OTHER, digest(OTHER), Action.WRITE),
+        (SOLVED, OTHER, digest(UNSOLVED), Action.COPY),
+        (SOLVED, OTHER, None, Action.COPY),
+    ],
+)
+def test_a_file_is_written_kept_or_copied_first(
+    cell: str, on_disk: str | None, written: str | None, action: Action
+) -> None:
+    assert choose(cell, on_disk, written) is action
+
+
+def test_the_stub_is_the_one_that_releases_hold() -> None:
+    assert STUB in CODE_STUB
+
+
+@pytest.fixture(scope="module")
+def shell() -> InteractiveShell:
+    made = start_ipython() or InteractiveShell.instance()
+    register(made)
+    register(made)
+    return made
+
+
+@pytest.fixture
+def run(
+    shell: InteractiveShell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Run:
+    """Run a `%%writefile` cell in an empty folder; return what it says."""
+    monkeypatch.chdir(tmp_path)
+    Path(FILE).parent.mkdir(parents=True)
+
+    def run_cell(text: str, line: str = FILE) -> str:
+        shell.run_cell_magic("writefile", line, text)
+        return capsys.readouterr().out
+
+    return run_cell
+
+
+def test_a_cell_writes_its_file_and_writes_it_again(run: Run) -> None:
+    assert run(UNSOLVED) == f"Writing {FILE}\n"
+    assert run(SOLVED) == f"Overwriting {FILE}\n"
+    assert Path(FILE).read_text() == SOLVED
+    assert not Path("ws", REPLACED).exists()
+
+
+def test_an_untouched_cell_does_not_replace_what_the_editor_wrote(run: Run) -> None:
+    run(UNSOLVED)
+    Path(FILE).write_text(SOLVED)
+    assert f"{FILE} was kept as it is" in run(UNSOLVED)
+    assert Path(FILE).read_text() == SOLVED
+
+
+def test_a_changed_file_is_copied_before_a_cell_replaces_it(run: Run) -> None:
+    run(SOLVED)
+    for number, text in enumerate((OTHER, OTHER + "# more\n"), 1):
+        Path(FILE).write_text(text)
+        said = run(SOLVED)
+        copy = Path("ws", REPLACED, "src/pkg", f"node.py.{number}")
+        assert f"Its old text is kept in {copy}." in said
+        assert copy.read_text() == text
+    assert Path(FILE).read_text() == SOLVED
+    assert Path("ws", REPLACED, "COLCON_IGNORE").is_file()
+
+
+@pytest.mark.parametrize("damage", ["", "[1]", "{", '{"src/pkg/node.py": 5}'])
+def test_without_a_readable_record_a_file_is_copied(run: Run, damage: str) -> None:
+    run(OTHER)
+    Path("ws", RECORD).write_text(damage)
+    assert "is kept in" in run(SOLVED)
+
+
+def test_bytes_that_are_no_text_are_copied_as_they_are(run: Run) -> None:
+    Path(FILE).write_bytes(b"\xff\x00\r\n")
+    run(SOLVED)
+    assert Path("ws", REPLACED, "src/pkg/node.py.1").read_bytes() == b"\xff\x00\r\n"
+
+
+def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
+    run(SOLVED)
+    assert run("# end\n", f"-a {FILE}") == f"Appending to {FILE}\n"
+    assert Path(FILE).read_text() == SOLVED + "# end\n"
+    assert run(SOLVED) == f"Overwriting {FILE}\n"  # no editor has touched what cells appended
+    assert run(SOLVED, '"ws/a file.py"') == "Writing ws/a file.py\n"
+    assert Path("ws/a file.py").read_text() == SOLVED
+
+
+def test_without_a_shell_there_is_nothing_to_register() -> None:
+    register(None)
