@@ -19,7 +19,7 @@ from autograder.result import write_json
 @click.argument("workspace", type=click.Path(path_type=Path), default=Path("ws"), metavar="[PATH]")
 @json_option
 def check(assignment: str, workspace: Path, json_file: Path | None) -> None:
-    """Run the visible checks of ID on the colcon workspace at PATH (./ws by default)."""
+    """Run the visible checks of the chapter ID on the colcon workspace at PATH (./ws by default)."""
     report = run_checks(assignment, workspace)
     click.echo(repr(report))
     if json_file is not None:

@@ -27,7 +27,7 @@ _solutions = click.option("--solutions", type=click.Path(path_type=Path), defaul
 
 @click.group()
 def course() -> None:
-    """Keep the notebooks and the reference solutions one text."""
+    """Keep the notebooks and the reference solutions the same text."""
 
 
 @course.command()
@@ -35,7 +35,7 @@ def course() -> None:
 @_folders
 @_solutions
 def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
-    """Write the reference's text into cells and given files, and the suites' points into grade cells."""
+    """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     for chapter in _chosen(names, root):
         try:
             changed = bring_in(chapter, solutions)
@@ -59,7 +59,7 @@ def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
 @_folders
 @_solutions
 def check(names: tuple[str, ...], root: Path, solutions: Path) -> None:
-    """Say what is stale, or not as a notebook of the course must be; exit 1 then."""
+    """Say what is stale and which rules for notebooks are broken. If there is anything, the exit status is 1."""
     found = [finding for chapter in _chosen(names, root) for finding in findings(chapter, solutions)]
     for finding in found:
         click.echo(str(finding))
@@ -88,7 +88,7 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
 
 @course.command()
 def tables() -> None:
-    """Write the instructors' pages: what is taught where, which checks judge it, and what proves them."""
+    """Write the pages for instructors: what is taught where, which checks judge it, and what proves them."""
     survey = Survey.of_the_course()
     for finding in survey.coverage.findings:
         click.echo(str(finding))

@@ -22,7 +22,12 @@ REFERENCE = "reference"
 
 
 @click.command()
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=layout.BUILD / "demo")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=layout.BUILD / "demo",
+    help="The folder for the results.",
+)
 @jobs_option
 @seed_option
 @isolation_option
@@ -30,7 +35,7 @@ REFERENCE = "reference"
 def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None) -> None:
     """Grade the reference solution and flawed submissions, and show what each loses.
 
-    Exit status: 0 when the reference has all marks and no flawed submission has, 1 otherwise.
+    The exit status is 0 when the reference has all marks and no flawed submission has, and 1 otherwise.
     """
     suite = suites.hidden(ASSIGNMENT)
     shown = [mutant for mutant in mutants(ASSIGNMENT) if mutant.demo]

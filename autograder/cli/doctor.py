@@ -16,7 +16,7 @@ from autograder.result import write_json
 @click.command()
 @json_option
 def doctor(json_file: Path | None) -> None:
-    """Say what is found, what is missing, and the one command that mends it."""
+    """Say what this machine has, what it lacks, and the one command that mends it."""
     findings = examine()
     click.echo(render(findings))
     if json_file is not None:

@@ -15,9 +15,14 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
 
 @click.command()
 @click.argument("results", type=click.Path(path_type=Path))
-@click.option("--format", "name", required=True, type=click.Choice(list(exporters.FORMATS)), help="The format.")
 @click.option(
-    "--out", required=True, type=click.Path(path_type=Path), help=f"The file to write; for {_FOLDERS}, the folder."
+    "--format", "name", required=True, type=click.Choice(list(exporters.FORMATS)), help="The format to write."
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    help=f"The file to write. For {_FOLDERS}, it is the folder.",
 )
 @json_option
 def export(results: Path, name: str, out: Path, json_file: Path | None) -> None:

@@ -19,16 +19,23 @@ INTERRUPTED = 130  # as a shell tells it
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--assignment", required=True, metavar="ID", help="Which assignment they answer, such as 02_nodes.")
+@click.option(
+    "--assignment", required=True, metavar="ID", help="The assignment that the submissions answer, such as 02_nodes."
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("results"),
     show_default=True,
-    help="Gets a folder a student: result.json, pictures, feedback.html.",
+    help="The folder for the results. Each student gets a folder in it: result.json, pictures, feedback.html.",
 )
-@click.option("--resume", is_flag=True, help="Keep results whose submission, suite and seed have not changed.")
-@click.option("--require", type=click.FloatRange(0, 100), metavar="PERCENT", help="Exit 1 if a mark is below.")
+@click.option("--resume", is_flag=True, help="Keep a result whose submission, suite and seed have not changed.")
+@click.option(
+    "--require",
+    type=click.FloatRange(0, 100),
+    metavar="PERCENT",
+    help="The least mark. If one is below it, the exit status is 1.",
+)
 @jobs_option
 @seed_option
 @isolation_option
@@ -44,10 +51,12 @@ def grade(
     isolation: str,
     json_file: Path | None,
 ) -> None:
-    """Grade PATHS: each a submission (folder, zip, notebook), or a folder of them, one a student.
+    """Grade the submissions at PATHS.
 
-    Exit status: 0 when every submission was graded, 1 when one was not (or is below --require), 2 for a wrong call,
-    130 after Ctrl-C, which lets end what has begun.
+    A path is a submission (a folder, a zip or a notebook), or a folder with a submission for each student.
+
+    The exit status is 0 when every submission was graded, 1 when one was not graded or is below --require, 2 for a
+    wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
     """
     suites.hidden(assignment)
     entries = discover(paths, assignment)

@@ -18,17 +18,18 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("assignments", nargs=-1, metavar="[ID]...")
-@click.option("--source", is_flag=True, help="As they are in chapters/ (when no form is named).")
-@click.option("--solved", is_flag=True, help="With the reference answers, as the grader sees them.")
-@click.option("--released", is_flag=True, help="As students get them, exercises unsolved.")
+@click.option("--source", is_flag=True, help="Execute them as they are in chapters/. This is the default.")
+@click.option("--solved", is_flag=True, help="Execute them with the reference answers, as the grader sees them.")
+@click.option("--released", is_flag=True, help="Execute them as students get them, with the exercises unsolved.")
 @jobs_option
 @json_option
 def notebooks(
     assignments: tuple[str, ...], source: bool, solved: bool, released: bool, jobs: int, json_file: Path | None
 ) -> None:
-    """Execute notebooks (all of them by default), warnings as errors, one report each in .build/notebooks.
+    """Execute the notebooks of the chapters ID (all by default).
 
-    Forms may be combined: --source --solved --released takes all three.
+    A warning is an error. The report of each notebook lies in .build/notebooks. The forms may be combined: --source
+    --solved --released takes all three.
     """
     from autograder.course import Form, run_notebooks
     from autograder.ros import activate

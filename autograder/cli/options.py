@@ -16,20 +16,29 @@ from autograder.result import Result, Status
 from autograder.sandbox import Tier
 
 json_option = click.option(
-    "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Write what was found as JSON, too."
+    "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Also write what was found as JSON."
 )
 jobs_option = click.option(
-    "-j", "--jobs", type=click.IntRange(1, 64), default=os.cpu_count() or 1, show_default=True, help="How many at once."
+    "-j",
+    "--jobs",
+    type=click.IntRange(1, 64),
+    default=os.cpu_count() or 1,
+    show_default=True,
+    help="The number of workers.",
 )
 seed_option = click.option(
-    "--seed", type=click.IntRange(0, 2**31 - 1), default=DEFAULT_SEED, show_default=True, help="Draws hidden inputs."
+    "--seed",
+    type=click.IntRange(0, 2**31 - 1),
+    default=DEFAULT_SEED,
+    show_default=True,
+    help="The number from which hidden inputs are drawn.",
 )
 isolation_option = click.option(
     "--isolation",
     type=click.Choice([tier.value for tier in Tier]),
     default=Tier.BUBBLEWRAP.value,
     show_default=True,
-    help="How submissions are kept apart. `process` is for code that you trust.",
+    help="How submissions are kept apart. Use `process` only for code that you trust.",
 )
 
 

@@ -14,14 +14,14 @@ from autograder.result import write_json
 @click.command()
 @click.argument("names", nargs=-1, metavar="[ID]...")
 @click.option(
-    "--out", required=True, type=click.Path(path_type=Path), help="The folder to make; it must not be there yet."
+    "--out", required=True, type=click.Path(path_type=Path), help="The folder to make. It must not be there yet."
 )
 @json_option
 def release(names: tuple[str, ...], out: Path, json_file: Path | None) -> None:
     """Write the students' bundle of the chapters ID (all by default).
 
-    It holds the released notebooks with the packages that they give, the simulator and the students' half of the
-    autograder; no hidden check and no solution.
+    The bundle holds the released notebooks, the packages that they give, the simulator, and the students' half of the
+    autograder. It holds no hidden check and no solution.
     """
     written = write_bundle(out, names)
     click.echo(f"{out}: {', '.join(written)}")

@@ -17,8 +17,8 @@ from autograder.ros.exceptions import RosError
 def ros(command: tuple[str, ...]) -> None:
     """Run COMMAND with ROS 2 switched on, for example `autograder ros jupyter lab`.
 
-    Without a command, print the variables as shell lines: `eval "$(autograder ros)"` does what sourcing a ROS
-    installation's setup.bash does.
+    Without a command, the variables are printed as shell lines. `eval "$(autograder ros)"` does what sourcing the
+    setup.bash of a ROS installation does.
     """
     sys.exit(_run(command))
 

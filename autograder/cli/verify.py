@@ -22,11 +22,24 @@ HEADINGS = ("submission", "marks", "claim")
 
 @click.command()
 @click.option(
-    "--assignment", "assignments", multiple=True, metavar="ID", help="Only these; all graded ones by default."
+    "--assignment",
+    "assignments",
+    multiple=True,
+    metavar="ID",
+    help="Prove only these assignments. The default is all of them.",
 )
-@click.option("--quick", is_flag=True, help="One mutant a check, no generated ones and no attacks: for each change.")
-@click.option("--only", "names", multiple=True, metavar="NAME", help="Only these submissions of the proof.")
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=layout.BUILD / "verify")
+@click.option(
+    "--quick",
+    is_flag=True,
+    help="Take one mutant for each check, no generated mutants and no attacks. This is for every change.",
+)
+@click.option("--only", "names", multiple=True, metavar="NAME", help="Grade only these submissions of the proof.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=layout.BUILD / "verify",
+    help="The folder for the results.",
+)
 @jobs_option
 @seed_option
 @isolation_option
@@ -43,10 +56,11 @@ def verify(
 ) -> None:
     """Prove the grader by submissions whose mark is known.
 
-    The reference and right answers in another style have every point, the untouched release none; each named mutant
-    loses the checks that it names and no other; of the generated ones nine in ten lose something; no attack gains.
+    The reference and right answers in another style have every point. The untouched release has none. Each named
+    mutant loses the checks that it names, and no other. Of the generated mutants, nine in ten lose a point. No attack
+    gains a point.
 
-    Exit status: 0 when the proof stands, 1 otherwise.
+    The exit status is 0 when all of this holds, and 1 otherwise.
     """
     began = time.monotonic()
     proof = [case for name in assignments or suites.graded() for case in cases(name, quick=quick)]

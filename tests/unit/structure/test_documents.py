@@ -85,3 +85,24 @@ def test_each_make_target_that_a_document_names_is_there() -> None:
     for document in DOCUMENTS:
         named = {match[1] for span in spans(document) if (match := re.match(r"make (?:\w+=\S+ )?([a-z-]+)", span))}
         assert named <= targets, document
+
+
+def table(heading: str) -> list[list[str]]:
+    """Return the rows of the first table below a heading of CONTRIBUTING.md, without its head."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split(f"## {heading}\n")[1].split("\n## ")[0]
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    return rows[2:]
+
+
+def test_a_wish_needs_at_most_two_files() -> None:
+    rows = table("I want to ...")
+    assert len(rows) > 8
+    for wish, opened in rows:
+        files = {name for name in re.findall(r"`([^`]+)`", opened) if "/" in name}
+        assert 1 <= len(files) <= 2, wish
+
+
+def test_the_fixtures_are_those_of_the_plug_in() -> None:
+    source = (ROOT / "autograder/grading/plugin.py").read_text(encoding="utf-8")
+    fixtures = set(re.findall(r"@pytest\.fixture.*\n    def (\w+)", source))
+    assert {row[0].strip("`") for row in table("Fixtures")} == fixtures != set()
