@@ -9,6 +9,7 @@ import selectors
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -37,6 +38,8 @@ class Lanes:
 
     def __init__(self, tier: Tier, count: int) -> None:
         self.tier, self.count = require(tier), count
+        # The kernel ends a cell with the thread that started it. This one lives as long as the lanes do.
+        self._starter = ThreadPoolExecutor(1)
         self._idle: queue.SimpleQueue[_Lane | None] = queue.SimpleQueue()
         for _ in range(count):
             self._idle.put(None)
@@ -48,12 +51,13 @@ class Lanes:
         for lane in [self._idle.get() for number in range(self.count)]:
             if lane is not None:
                 lane.close()
+        self._starter.shutdown()
 
     def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
         """Grade one submission; `job_in` makes its job from a scratch folder."""
         lane = self._idle.get()
         try:
-            lane = lane or _Lane(self.tier)
+            lane = lane or self._starter.submit(_Lane, self.tier).result()
             report = lane.grade(replace(job_in(lane.scratch / "job"), memory=lane.scratch / MEMORY))
             if report.ending is not Ending.EXITED:
                 lane.close()

@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,18 @@ def test_one_cell_for_many_gives_the_results_of_a_cell_each(reference: Path, hal
     assert [_verdicts(result) for result in shared] == [_verdicts(alone[number]) for number in (0, 1, 0)]
     assert [result.suite_version for result in shared[:2]] == [result.suite_version for result in alone]
     assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+
+
+def test_a_lane_outlives_the_thread_that_used_it_first(half: Path, tmp_path: Path) -> None:
+    servers = []
+    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
+        for name in ("one", "two"):
+            with ThreadPoolExecutor(1) as thread:
+                graded = thread.submit(_grade, half, tmp_path / name, lanes).result()
+            assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+            servers.append(_servers())
+    assert len(servers[0]) == 1
+    assert servers[0] == servers[1]
 
 
 def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
