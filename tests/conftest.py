@@ -39,6 +39,9 @@ heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the
 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
+# Files of long tests that share nothing. What takes longest comes first, so that all workers end at the same time.
+_APART = ("tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py")
+_FIRST = (_APART[0], "tests/e2e/test_nbgrader.py", "tests/browser/test_tour.py", _APART[1], "tests/e2e", "tests/browser")
 
 
 class ByFile(LoadScopeScheduling):
@@ -47,12 +50,21 @@ class ByFile(LoadScopeScheduling):
     def _split_scope(self, nodeid: str) -> str:
         file, _, test = nodeid.partition("::")
         chapter = _CHAPTER.search(test)
+        if file in _APART:
+            return nodeid
         return f"{file} {chapter[0]}" if chapter else file
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile:
     return ByFile(config, log)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    def place(item: pytest.Item) -> int:
+        return next((place for place, start in enumerate(_FIRST) if item.nodeid.startswith(start)), len(_FIRST))
+
+    items.sort(key=place)
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""Every chapter runs to its end in all three forms, and is as a notebook of the course must be."""
+"""Every chapter runs to its end solved and as released, and is as a notebook of the course must be."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ import runpy
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+import yaml
 from nbformat import NotebookNode
 
 from autograder.course import Chapter, Form, chapters, in_form, run_notebook
@@ -18,6 +20,7 @@ from autograder.layout import ROOT
 
 CHAPTERS = chapters()
 STILL_TO_BE_WRITTEN = "still to be written"
+MARKS = ("# BEGIN SOLUTION", "# END SOLUTION")
 each_chapter = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.assignment)
 
 
@@ -58,10 +61,41 @@ def test_a_given_package_installs_only_executables_that_the_chapter_has(chapter:
             assert str(module) in there
 
 
+def meaning(cell: str) -> object:
+    """Return what a code cell means to whoever reads what it writes: Python, YAML, XML, or lines with `#` comments."""
+    head, _, body = cell.partition("\n")
+    suffix = Path(head).suffix if head.startswith("%%writefile ") else ".py"
+    if suffix == ".py":
+        return ast.dump(ast.parse(body if head.startswith("%%writefile ") else cell))
+    if suffix == ".yaml":
+        return yaml.safe_load(body)
+    if suffix == ".xml":
+        return [(element.tag, element.attrib, text(element)) for element in ElementTree.fromstring(body).iter()]
+    return [line for line in body.split("\n") if not line.startswith("#")]
+
+
+def text(element: ElementTree.Element) -> str:
+    """Return an element's own text; one that holds others has none that counts."""
+    return "" if len(element) else (element.text or "")
+
+
+@each_chapter
+def test_a_solved_notebook_is_the_source_without_the_comments_around_its_answers(chapter: Chapter) -> None:
+    """So the source runs as a student's solved notebook does, and need not run in both forms."""
+    source, solved = chapter.read(), in_form(chapter.read(), Form.SOLVED)
+    assert len(source.cells) == len(solved.cells)
+    for before, after in zip(source.cells, solved.cells, strict=True):
+        assert {**before, "source": ""} == {**after, "source": ""}
+        if before.cell_type == "code" and before.source != after.source:
+            kept = [line for line in before.source.split("\n") if line.strip() not in MARKS]
+            assert after.source.split("\n") == kept
+            assert meaning(after.source) == meaning(before.source)
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
 @each_chapter
-@pytest.mark.parametrize("form", list(Form))
+@pytest.mark.parametrize("form", [Form.SOURCE, Form.RELEASED])
 def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
     result = run_notebook(chapter.path, form, timeout=400, report=tmp_path / chapter.path.name)
     assert result.ok, result.failure
