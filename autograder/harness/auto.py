@@ -193,9 +193,6 @@ class AutoHarness:
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
         return self._harness.send_goal(action_type, name, goal, seconds)
 
-    def wait(self, goal: Goal, seconds: float) -> bool:
-        return self._harness.wait(goal, seconds)
-
     @property
     def _harness(self) -> Harness:
         """The harness that was chosen.

@@ -250,10 +250,6 @@ class Harness(ABC):
             return Goal()
         return self._actions.send(action_type, name, goal)
 
-    def wait(self, goal: Goal, seconds: float) -> bool:
-        """Let the programs run until a goal is over, at most `seconds` of ROS time; return whether it is."""
-        return self.until(lambda: goal.over, seconds)
-
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Take messages until `condition` holds, at most `seconds` of real time; return whether it does."""
         deadline = time.monotonic() + seconds

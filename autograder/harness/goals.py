@@ -10,8 +10,6 @@ from typing import Any
 from action_msgs.msg import GoalInfo, GoalStatus
 from action_msgs.srv import CancelGoal
 
-ENDED = frozenset({GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED})
-
 
 @dataclass(frozen=True)
 class Stamped:
@@ -44,11 +42,6 @@ class Goal:
     result: Any = None
     cancelled: bool | None = None
     _cancel: Callable[[], None] = lambda: None
-
-    @property
-    def over(self) -> bool:
-        """Whether there is nothing left to wait for: it was rejected, or its result is there."""
-        return self.accepted is False or self.result is not None
 
     def cancel(self) -> None:
         """Ask the server to cancel the goal; `cancelled` is its answer, once the program has run on."""

@@ -45,7 +45,7 @@ _NUMBERS = itertools.count()
 
 
 @dataclass(frozen=True)
-class Program:
+class RunningProgram:
     """A running executable of a package, as the system sees it."""
 
     pid: int
@@ -221,13 +221,13 @@ class LaunchHarness:
         # A node that lacks one of the parameters answers with no value at all.
         return {name: (self._ask(node, (name,), seconds) or {}).get(name) for name in names}
 
-    def programs(self) -> list[Program]:
+    def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids."""
         found = []
         for pid in sorted(measure(self.process.innermost()).pids):
             # A script is the second word, behind its interpreter; a process that has ended has no words.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
-            found += [Program(pid, match["package"], match["name"]) for match in matches if match is not None]
+            found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
         return found
 
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:

@@ -146,13 +146,13 @@ def goals(scratch: Path, program: str) -> Any:
     def run() -> Any:
         with open_lab(workspace, "node") as harness:
             whole = harness.send_goal(count, "/count", count.Goal(order=3))
-            over = harness.wait(whole, 3.0)
+            over = harness.until(lambda: whole.result is not None, 3.0)
             refused = harness.send_goal(count, "/count", count.Goal(order=99))
-            harness.wait(refused, 1.0)
+            harness.until(lambda: refused.accepted is not None, 1.0)
             stopped = harness.send_goal(count, "/count", count.Goal(order=40))
             harness.run(0.35)
             stopped.cancel()
-            harness.wait(stopped, 20.0)
+            harness.until(lambda: stopped.result is not None, 20.0)
             feedback = [[round(f.seconds, 3), f.message.last] for f in whole.feedback]
             ends = [[goal.accepted, goal.status] for goal in (whole, refused, stopped)]
             return [over, ends, list(whole.result.sequence), feedback, len(stopped.feedback), stopped.cancelled]
