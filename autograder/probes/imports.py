@@ -9,11 +9,11 @@ from __future__ import annotations
 import ast
 import os
 import sys
-import warnings
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from autograder.probes.files import parse_python, read_plain
 from autograder.probes.manifest import Manifest
 
 MAX_FILES = 300
@@ -85,14 +85,8 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
 
 def modules(text: str) -> frozenset[str]:
     """Return the top-level names that a module's text imports; none if it is no Python."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a student's "\d" is not our warning
-            tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return frozenset()
     found: set[str] = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(parse_python(text) or ast.Module([], [])):
         if isinstance(node, ast.Import):
             found.update(alias.name.split(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -141,6 +135,4 @@ def _sources(package: Path) -> Iterator[Path]:
 
 
 def _text(path: Path) -> str:
-    with path.open("rb") as stream:
-        data = stream.read(MAX_BYTES + 1)
-    return "" if len(data) > MAX_BYTES else data.decode(errors="replace")
+    return (read_plain(path, MAX_BYTES) or b"").decode(errors="replace")

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from email.parser import HeaderParser
 from pathlib import Path
 
+from autograder.probes.files import read_plain
+
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024
 INDEX = Path("share/ament_index/resource_index/packages")
@@ -73,7 +75,7 @@ def look(install: Path, package: str) -> Installed:
         executables=_executables(prefix / "lib" / package),
         misplaced=_executables(prefix / "bin"),
         modules=modules,
-        marker=_read(prefix / INDEX / package) is not None,
+        marker=read_plain(prefix / INDEX / package, MAX_BYTES) is not None,
         shared=tuple(name for name in _files(share) if not _of_colcon(name)),
         recorded=_recorded(install, package),
         scripts=_scripts(_joined(own, "entry_points.txt")),
@@ -98,21 +100,10 @@ def _files(folder: Path) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _read(path: Path) -> bytes | None:
-    try:
-        if not stat.S_ISREG(path.lstat().st_mode):
-            return None
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except OSError:
-        return None
-    return data if len(data) <= MAX_BYTES else None
-
-
 def _read_below(folder: Path, name: Path) -> bytes | None:
     """Return a plain file's bytes, unless a link on the way to it leads out of the folder."""
     path = folder / name
-    return _read(path) if path.parent.resolve().is_relative_to(folder.resolve()) else None
+    return read_plain(path, MAX_BYTES) if path.parent.resolve().is_relative_to(folder.resolve()) else None
 
 
 def _recorded(install: Path, package: str) -> frozenset[str]:
@@ -123,7 +114,7 @@ def _recorded(install: Path, package: str) -> frozenset[str]:
 
 
 def _joined(folders: list[Path], name: str) -> str:
-    return "\n".join((_read(folder / name) or b"").decode(errors="replace") for folder in folders)
+    return "\n".join((read_plain(folder / name, MAX_BYTES) or b"").decode(errors="replace") for folder in folders)
 
 
 def _executables(folder: Path) -> tuple[str, ...]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import stat
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
+
+from autograder.probes.files import read_plain
 
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
@@ -38,15 +38,8 @@ class Claims:
 
 def read(path: Path) -> Claims | None:
     """Read a report that untrusted code may have written; None when it is no plain, small JUnit file."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-    except OSError:
-        return None
-    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-        os.close(descriptor)
-        return None
-    with os.fdopen(descriptor, "rb") as stream:
-        return parse(stream.read(MAX_BYTES + 1))
+    data = read_plain(path, MAX_BYTES)
+    return None if data is None else parse(data)
 
 
 def parse(data: bytes) -> Claims | None:
