@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from .condition import Condition
+from .events import ExecutionComplete
 from .launch_context import LaunchContext
-from .launch_description_entity import LaunchDescriptionEntity
-
-if TYPE_CHECKING:
-    from .launch_description_entity import OptionalEntities
+from .launch_description_entity import LaunchDescriptionEntity, OptionalEntities
 
 
 class Action(LaunchDescriptionEntity):
@@ -58,8 +55,6 @@ class Action(LaunchDescriptionEntity):
             self.__announce_completion(context)
 
     def __announce_completion(self, context: LaunchContext) -> None:
-        from .events import ExecutionComplete
-
         event = ExecutionComplete(action=self)
         if not context.would_handle_event(event):
             return

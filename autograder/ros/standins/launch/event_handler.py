@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
 
+from .action import Action
 from .event import Event
 from .launch_context import LaunchContext
 from .launch_description_entity import LaunchDescriptionEntity, OptionalEntities, SomeEntitiesType
 
-if TYPE_CHECKING:
-    from .action import Action
-
 EventCallback = Callable[[Event, LaunchContext], OptionalEntities]
-ActionMatcher = Callable[["Action"], bool]
+ActionMatcher = Callable[[Action], bool]
 
 
 class BaseEventHandler:

@@ -6,12 +6,26 @@ import asyncio
 import os
 from collections import deque
 from collections.abc import Coroutine, Iterable, MutableMapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from .event import Event
-    from .event_handler import BaseEventHandler
-    from .substitution import Substitution
+from .event import Event
+
+
+class Handler(Protocol):
+    """What the context needs of an event handler; `launch.event_handler.BaseEventHandler` is one."""
+
+    def matches(self, event: Event) -> bool:
+        """Whether `event` is for this handler."""
+
+    def handle(self, event: Event, context: LaunchContext) -> Any:
+        """Handle `event`; return entities to visit next, or None."""
+
+
+class Performable(Protocol):
+    """What the context needs of a substitution; `launch.Substitution` is one."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the string that this substitution stands for in `context`."""
 
 
 class _Locals:
@@ -45,7 +59,7 @@ class LaunchContext:
         self._environment_stack: list[dict[str, str]] = []
         self._locals_stack: list[dict[str, Any]] = []
         self._locals: dict[str, Any] = {}
-        self._event_handlers: deque[BaseEventHandler] = deque()
+        self._event_handlers: deque[Handler] = deque()
         self._event_queue: asyncio.Queue[Event] = asyncio.Queue()
         self._completion_futures: list[asyncio.Future[None]] = []
         self._tasks: set[asyncio.Task[None]] = set()
@@ -103,14 +117,14 @@ class LaunchContext:
         os.environ.clear()
         os.environ.update(values)
 
-    def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
+    def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
         """Register `event_handler`: before the others, or after them with `append`."""
         if append:
             self._event_handlers.append(event_handler)
         else:
             self._event_handlers.appendleft(event_handler)
 
-    def unregister_event_handler(self, event_handler: BaseEventHandler) -> None:
+    def unregister_event_handler(self, event_handler: Handler) -> None:
         """Remove `event_handler`; ValueError if it is not registered."""
         self._event_handlers.remove(event_handler)
 
@@ -138,6 +152,6 @@ class LaunchContext:
         """Queue `event`."""
         self._event_queue.put_nowait(event)
 
-    def perform_substitution(self, sub: Substitution) -> str:
+    def perform_substitution(self, sub: Performable) -> str:
         """Return the text of `sub` in this context."""
         return sub.perform(self)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from .launch_context import LaunchContext
+from .launch_description import LaunchDescription
 from .substitution import (
     SomeSubstitutionsType,
     TextSubstitution,
@@ -12,10 +13,6 @@ from .substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from .launch_context import LaunchContext
-    from .launch_description import LaunchDescription
 
 
 class LaunchDescriptionSource:

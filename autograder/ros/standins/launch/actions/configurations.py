@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from .._arguments import ArgumentDeclaration, ArgumentScope
 from ..action import Action
 from ..launch_context import LaunchContext
 from ..launch_description_entity import LaunchDescriptionEntity
@@ -17,7 +18,7 @@ from ..substitution import (
 from .environment import PopEnvironment, PushEnvironment, ResetEnvironment
 
 
-class DeclareLaunchArgument(Action):
+class DeclareLaunchArgument(ArgumentDeclaration):
     """Declares an argument, whose value is the launch configuration of the same name.
 
     The default, if there is one, is performed when the declaration is executed and nobody has set a value.
@@ -117,7 +118,7 @@ class PopLaunchConfigurations(Action):
         context._pop_launch_configurations()
 
 
-class ResetLaunchConfigurations(Action):
+class ResetLaunchConfigurations(ArgumentScope):
     """Removes all launch configurations but those given, whose values are performed before."""
 
     def __init__(

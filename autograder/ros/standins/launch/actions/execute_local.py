@@ -10,14 +10,14 @@ import traceback
 from collections.abc import Mapping
 from typing import Any, cast
 
+from .._launch_event_handlers import OnShutdown
 from .._output import OutputText
 from .._process import ChildProcess
 from ..action import Action, the_loop
 from ..conditions import evaluate_condition_expression
 from ..descriptions import Executable
 from ..event import Event
-from ..event_handler import EventCallback, EventHandler
-from ..event_handlers import OnProcessExit, OnShutdown
+from ..event_handler import EventCallback, EventHandler, OnActionEventBase
 from ..events import Shutdown
 from ..events.process import (
     ProcessExited,
@@ -157,7 +157,14 @@ class ExecuteLocal(Action):
         )
         context.register_event_handler(OnShutdown(on_shutdown=self._on_shutdown))
         if self._on_exit is not None:
-            context.register_event_handler(OnProcessExit(target_action=self, on_exit=self._on_exit))
+            # `OnProcessExit` stands above this module: this is what it makes.
+            on_exit = OnActionEventBase(
+                action_matcher=self,
+                on_event=self._on_exit,
+                target_event_cls=ProcessExited,
+                target_action_cls=ExecuteLocal,
+            )
+            context.register_event_handler(on_exit)
         context.start_task(self._run(context))
         return None
 

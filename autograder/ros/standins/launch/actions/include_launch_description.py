@@ -6,11 +6,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..action import Action
+from .._arguments import Inclusion
 from ..launch_context import LaunchContext
 from ..launch_description import LaunchDescription
 from ..launch_description_entity import LaunchDescriptionEntity
 from ..launch_description_source import LaunchDescriptionSource
+from ..launch_description_sources import AnyLaunchDescriptionSource
 from ..substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
@@ -23,7 +24,7 @@ Argument = tuple[SomeSubstitutionsType, SomeSubstitutionsType]
 _LOCALS = ("current_launch_file_path", "current_launch_file_directory")
 
 
-class IncludeLaunchDescription(Action):
+class IncludeLaunchDescription(Inclusion):
     """Executes another launch description, with arguments given as pairs of name and value.
 
     The arguments become launch configurations and stay so afterwards, unless a group encloses the include.
@@ -38,8 +39,6 @@ class IncludeLaunchDescription(Action):
     ) -> None:
         super().__init__(**kwargs)
         if not isinstance(launch_description_source, LaunchDescriptionSource):
-            from ..launch_description_sources import AnyLaunchDescriptionSource
-
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self.launch_description_source = launch_description_source
         self.launch_arguments = [self._pair(argument) for argument in launch_arguments or ()]

@@ -7,9 +7,9 @@ import inspect
 from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
+from .._launch_event_handlers import OnShutdown
 from ..action import Action, the_loop
 from ..event import Event
-from ..event_handlers import OnShutdown
 from ..launch_context import LaunchContext
 from ..launch_description_entity import OptionalEntities
 

@@ -6,10 +6,11 @@ import asyncio
 from collections.abc import Iterable
 from typing import Any
 
+from .._launch_event_handlers import OnShutdown
 from ..action import Action, the_loop
+from ..conditions import evaluate_condition_expression
 from ..event import Event
 from ..event_handler import EventHandler
-from ..event_handlers import OnShutdown
 from ..events import TimerEvent
 from ..launch_context import LaunchContext
 from ..launch_description_entity import LaunchDescriptionEntity, OptionalEntities
@@ -78,8 +79,6 @@ class TimerAction(Action):
     def _cancels_on_shutdown(self, context: LaunchContext) -> bool:
         if isinstance(self._cancel_on_shutdown, bool):
             return self._cancel_on_shutdown
-        from ..conditions import evaluate_condition_expression
-
         return evaluate_condition_expression(context, normalize_to_list_of_substitutions(self._cancel_on_shutdown))
 
     async def _wait(self, context: LaunchContext, seconds: float) -> None:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from standin_notice import guard
 
 from ..event import Event
+from ..launch_description_entity import LaunchDescriptionEntity
 from . import matchers, process
 from .matchers import matches_action
-
-if TYPE_CHECKING:
-    from ..action import Action
-    from ..launch_description import LaunchDescription
 
 __all__ = [
     "ExecutionComplete",
@@ -40,7 +35,7 @@ class ExecutionComplete(Event):
 
     name = "launch.events.ExecutionComplete"
 
-    def __init__(self, *, action: Action) -> None:
+    def __init__(self, *, action: LaunchDescriptionEntity) -> None:
         self.action = action
 
 
@@ -49,7 +44,7 @@ class IncludeLaunchDescription(Event):
 
     name = "launch.events.IncludeLaunchDescription"
 
-    def __init__(self, launch_description: LaunchDescription) -> None:
+    def __init__(self, launch_description: LaunchDescriptionEntity) -> None:
         self.launch_description = launch_description
 
 
@@ -58,7 +53,7 @@ class TimerEvent(Event):
 
     name = "launch.events.TimerEvent"
 
-    def __init__(self, *, timer_action: Action) -> None:
+    def __init__(self, *, timer_action: LaunchDescriptionEntity) -> None:
         self.timer_action = timer_action
 
 

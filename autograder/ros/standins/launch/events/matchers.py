@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from ..action import Action
+from ..launch_description_entity import LaunchDescriptionEntity
 
 
-def matches_action(target_action: Action) -> Callable[[Action], bool]:
+def matches_action(target_action: LaunchDescriptionEntity) -> Callable[[object], bool]:
     """Return a matcher that is true of `target_action` only."""
     return lambda action: action is target_action

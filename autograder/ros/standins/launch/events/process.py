@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from standin_notice import guard
 
 from ..event import Event
 
-if TYPE_CHECKING:
-    from ..actions.execute_local import ExecuteLocal
 
-ProcessMatcher = Callable[["ExecuteLocal"], bool]
+class ProcessAction(Protocol):
+    """What the events need of the action that runs a process; `launch.actions.ExecuteLocal` is one."""
+
+    @property
+    def process_details(self) -> dict[str, Any] | None:
+        """The action, name, pid, cmd, cwd and env of the process, or None before it is prepared."""
+
+
+ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class RunningProcessEvent(Event):
@@ -24,7 +30,7 @@ class RunningProcessEvent(Event):
     def __init__(
         self,
         *,
-        action: ExecuteLocal,
+        action: ProcessAction,
         name: str,
         cmd: list[str],
         cwd: str | None,
@@ -39,7 +45,7 @@ class RunningProcessEvent(Event):
         self.pid = pid
 
     @property
-    def execute_process_action(self) -> ExecuteLocal:
+    def execute_process_action(self) -> ProcessAction:
         """The action that runs the process (an older name of `action`)."""
         return self.action
 

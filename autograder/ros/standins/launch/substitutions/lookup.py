@@ -10,6 +10,7 @@ from typing import Any
 
 from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
+from ..logging import launch_config
 from ..substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -139,8 +140,6 @@ class LaunchLogDir(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the folder."""
-        from ..logging import launch_config
-
         return launch_config.log_dir
 
 
