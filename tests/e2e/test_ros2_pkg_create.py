@@ -78,9 +78,8 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     who = ("--license", "Apache-2.0", "--maintainer-name", "Ada O'Neil", "--maintainer-email", "ada@example.com")
     python = ("--build-type", "ament_python", "--node-name", "hello", "--dependencies", "rclpy", "std_msgs")
     about = ("--description", 'Says "hello" & it\'s <polite>')
-    cpp = ("--node-name", "talk", "--library-name", "voice")
     assert space.ros2("pkg", "create", "py_pkg", *who, *python, *about, cwd=source).returncode == 0
-    assert space.ros2("pkg", "create", "cpp_pkg", *who, *cpp, cwd=source).returncode == 0
+    assert space.ros2("pkg", "create", "cmake_pkg", *who, cwd=source).returncode == 0
     package = source / "py_pkg"
     (package / "launch").mkdir()
     (package / "launch" / "hello.launch.py").write_text(LAUNCH)
@@ -121,8 +120,8 @@ def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
     assert workspace.ros2("pkg", "executables", "py_pkg").stdout == "py_pkg hello\npy_pkg stubborn\n"
     install = workspace.folder / "install"
     assert workspace.ros2("pkg", "prefix", "py_pkg").stdout == f"{install}\n"
-    assert workspace.ros2("pkg", "prefix", "--share", "cpp_pkg").stdout == f"{install}/share/cpp_pkg\n"
-    assert {"py_pkg", "cpp_pkg", "rclpy"} <= set(workspace.ros2("pkg", "list").stdout.split())
+    assert workspace.ros2("pkg", "prefix", "--share", "cmake_pkg").stdout == f"{install}/share/cmake_pkg\n"
+    assert {"py_pkg", "cmake_pkg", "rclpy"} <= set(workspace.ros2("pkg", "list").stdout.split())
     described = workspace.ros2("pkg", "xml", "py_pkg", "--tag", "description").stdout
     assert described == 'Says "hello" & it\'s <polite>\n'
     assert "<license>Apache-2.0</license>" in workspace.ros2("pkg", "xml", "py_pkg").stdout
@@ -132,9 +131,8 @@ def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
     assert untagged.stderr == "No value for tag 'url' in package.xml for package 'py_pkg'\n"
 
 
-def test_run_starts_the_executables_of_both_packages(workspace: Workspace) -> None:
+def test_run_starts_an_executable(workspace: Workspace) -> None:
     assert workspace.ros2("run", "py_pkg", "hello").stdout == "Hi from py_pkg.\n"
-    assert workspace.ros2("run", "cpp_pkg", "talk").stdout == "hello world cpp_pkg package\n"
     assert workspace.ros2("run", "--prefix", "echo would run", "py_pkg", "hello", "-x").stdout.startswith("would run /")
 
 

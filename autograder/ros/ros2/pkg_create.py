@@ -13,7 +13,6 @@ from datetime import date
 from pathlib import Path
 
 from autograder.ros.ros2 import pkg_templates as templates
-from autograder.ros.ros2 import pkg_templates_cpp as templates_cpp
 from autograder.ros.ros2.exceptions import NotCoveredError, Ros2Error
 from autograder.ros.ros2.parsing import Outcome
 from autograder.ros.ros2.pkg_templates import LICENCE_TEXTS, PackageSpec
@@ -93,7 +92,7 @@ def files(spec: PackageSpec, licence: str | None) -> Iterator[tuple[str, str]]:
     A path that ends in a slash is a folder.
     """
     yield MANIFEST, templates.package_xml(spec)
-    yield from _python_files(spec) if _is_python(spec) else _cpp_files(spec)
+    yield from _python_files(spec) if _is_python(spec) else _cmake_files(spec)
     if licence is not None:
         yield LICENCE, licence
 
@@ -112,14 +111,10 @@ def _python_files(spec: PackageSpec) -> Iterator[tuple[str, str]]:
         yield f"{spec.name}/{spec.library_name}/__init__.py", ""
 
 
-def _cpp_files(spec: PackageSpec) -> Iterator[tuple[str, str]]:
+def _cmake_files(spec: PackageSpec) -> Iterator[tuple[str, str]]:
     yield "src/", ""
     yield f"include/{spec.name}/", ""
-    yield "CMakeLists.txt", templates_cpp.cmakelists(spec)
-    if spec.node_name:
-        yield f"src/{spec.node_name}.cpp", templates_cpp.cpp_node(spec)
-    if spec.library_name:
-        yield from templates_cpp.cpp_library(spec).items()
+    yield "CMakeLists.txt", templates.cmakelists(spec)
 
 
 def _is_python(spec: PackageSpec) -> bool:
@@ -131,7 +126,7 @@ def _spec(args: argparse.Namespace) -> PackageSpec:
 
     Raises:
         Ros2Error: a name cannot be one of a package, module or target.
-        NotCoveredError: the build type is not covered.
+        NotCoveredError: the build type is not covered, or a C++ executable or library is asked for.
     """
     if args.build_type == "cmake":
         raise NotCoveredError("`ros2 pkg create --build-type cmake`")
@@ -140,6 +135,9 @@ def _spec(args: argparse.Namespace) -> PackageSpec:
             raise Ros2Error(
                 f"'{name}' cannot be the name of a {noun}: take letters, digits and underscores, a letter first"
             )
+    if args.build_type == "ament_cmake" and (args.node_name or args.library_name):
+        option = "--node-name" if args.node_name else "--library-name"
+        raise NotCoveredError(f"`ros2 pkg create --build-type ament_cmake {option}`, a C++ package,")
     node = args.node_name
     if args.build_type == "ament_python" and args.package_name == "test":
         raise Ros2Error("A Python package cannot be named 'test': its code and its tests would share a folder")

@@ -1,8 +1,8 @@
 """The files of a new package, as text; nothing here touches the disk.
 
-The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own. One thing differs on
+The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own. Two things differ on
 purpose: setup.py names pytest in `extras_require`, as with `tests_require` and a setuptools of today `colcon test`
-runs no test at all.
+runs no test at all; CMakeLists.txt does without the lint packages where they are not installed.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class PackageSpec:
         description, licence: for package.xml and setup.py.
         maintainer_name, maintainer_email: likewise.
         dependencies: names of packages to depend on.
-        node_name: an executable to begin with, or `None`.
-        library_name: a library to begin with, or `None`.
+        node_name: an executable to begin with, of `ament_python` only, or `None`.
+        library_name: a library to begin with, of `ament_python` only, or `None`.
     """
 
     name: str
@@ -68,8 +68,7 @@ def package_xml(spec: PackageSpec) -> str:
     if spec.build_type == "ament_python":
         tools, tests = [], ["ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest"]
     else:
-        tools = ["ament_cmake_ros" if spec.library_name else "ament_cmake"]
-        tests = ["ament_lint_auto", "ament_lint_common"]
+        tools, tests = ["ament_cmake"], ["ament_lint_auto", "ament_lint_common"]
     groups = (("buildtool_depend", tools), ("depend", spec.dependencies), ("test_depend", tests))
     blocks = ["\n".join(f"  <{tag}>{escape(name)}</{tag}>" for name in names) for tag, names in groups if names]
     schema = f"http://download.ros.org/schema/package_format{spec.package_format}.xsd"
@@ -138,6 +137,33 @@ def python_node(spec: PackageSpec) -> str:
 
 if __name__ == '__main__':
     main()
+"""
+
+
+def cmakelists(spec: PackageSpec) -> str:
+    """Return CMakeLists.txt of an ament_cmake package without C++ targets."""
+    finds = "\n".join(f"find_package({name} REQUIRED)" for name in ["ament_cmake", *spec.dependencies])
+    return f"""cmake_minimum_required(VERSION 3.10)
+project({spec.name})
+
+if(CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  add_compile_options(-Wall -Wextra -Wpedantic)
+endif()
+
+{finds}
+
+if(BUILD_TESTING)
+  # Part of a ROS 2 installation; a build without it skips the linters.
+  find_package(ament_lint_auto QUIET)
+  if(ament_lint_auto_FOUND)
+    # Take the next two lines away once every source file has a copyright header and the package is in git.
+    set(ament_cmake_copyright_FOUND TRUE)
+    set(ament_cmake_cpplint_FOUND TRUE)
+    ament_lint_auto_find_test_dependencies()
+  endif()
+endif()
+
+ament_package()
 """
 
 

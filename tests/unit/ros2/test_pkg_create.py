@@ -45,7 +45,7 @@ def test_it_tells_of_each_file(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_it_tells_of_the_folders_for_sources_and_headers(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["pkg", "create", "p", "--license", "MIT", "--node-name", "n"]) is None
+    assert main(["pkg", "create", "p", "--license", "MIT"]) is None
     printed = capsys.readouterr().out.splitlines()
     assert printed[printed.index("creating folder ./p") :] == [
         "creating folder ./p",
@@ -54,7 +54,6 @@ def test_it_tells_of_the_folders_for_sources_and_headers(capsys: pytest.CaptureF
         "creating folder ./p/src",
         "creating folder ./p/include/p",
         "creating ./p/CMakeLists.txt",
-        "creating ./p/src/n.cpp",
     ]
 
 
@@ -88,6 +87,14 @@ def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) ->
         (("p", "--library-name", "a b"), "'a b' cannot be the name of a library"),
         (("test", "--build-type", "ament_python"), "A Python package cannot be named 'test'"),
         (("p", "--build-type", "cmake"), "`ros2 pkg create --build-type cmake` is not covered"),
+        (
+            ("p", "--node-name", "n"),
+            "`ros2 pkg create --build-type ament_cmake --node-name`, a C++ package, is not covered",
+        ),
+        (
+            ("p", "--library-name", "l"),
+            "`ros2 pkg create --build-type ament_cmake --library-name`, a C++ package, is not",
+        ),
         (("p", "--destination-directory", "/proc/nowhere"), "unable to create /proc/nowhere/p"),
     ],
 )
@@ -98,6 +105,8 @@ def test_what_cannot_work_is_refused(words: tuple[str, ...], error: str) -> None
 
 
 def test_a_node_named_like_the_library_is_renamed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["pkg", "create", "p", "--node-name", "x", "--library-name", "x"]) is None
+    assert (
+        main(["pkg", "create", "p", "--build-type", "ament_python", "--node-name", "x", "--library-name", "x"]) is None
+    )
     assert "[WARNING] renaming node to x_node" in capsys.readouterr().err
-    assert Path("p/src/x_node.cpp").is_file()
+    assert Path("p/p/x_node.py").is_file()
