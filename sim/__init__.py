@@ -12,11 +12,10 @@ from sim.faults import DeadSector, Faults, Window
 from sim.lidar import LDS_01, RPLIDAR_A1, UTM_30LX, LidarSpec, Scan
 from sim.pose import Command, Pose
 from sim.recording import Recorder, Recording, ScanLog, load_recording, replay, run
-from sim.robot import OdometryDrift, RobotSpec, RobotState
-from sim.schema import world_schema
+from sim.robot import OdometryDrift, RobotSpec
 from sim.sensing import cast, directions, observe, scan_angles
 from sim.simulation import start, step
-from sim.state import Event, Simulation, State
+from sim.state import Event, RobotState, Simulation, State
 from sim.world import BOX_NAMES, Goal, Mover, World, box
 from sim.worldfile import load_world
 
@@ -62,5 +61,4 @@ __all__ = [
     "scan_angles",
     "start",
     "step",
-    "world_schema",
 ]

@@ -1,23 +1,18 @@
-"""A differential drive robot: what it is (`RobotSpec`) and how it stands at one instant (`RobotState`)."""
+"""A differential drive robot: its size, its limits, its lidar, its odometry drift and its faults."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from sim.exceptions import SpecError
 from sim.faults import NO_FAULTS, Faults
 from sim.lidar import LDS_01, LidarSpec
-from sim.pose import ORIGIN, REST, Command, Pose
+from sim.pose import Pose
 
 CONVEX = "three points or more of a convex polygon round (0, 0), anticlockwise, in metres"
-
-if TYPE_CHECKING:
-    from sim.state import State
-
-Covariance = tuple[float, float, float, float, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,29 +76,6 @@ class RobotSpec:
         ):
             if not good:
                 raise SpecError(f"robot {self.name!r}: {what} is {getattr(self, what)!r}; give {remedy}")
-
-
-@dataclass(frozen=True, slots=True)
-class RobotState:
-    """One robot at one instant.
-
-    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on turning
-    while it slides along something); `command` the last one received, at `command_ns`; `odometry` the pose by its
-    wheels in the frame `odom` (which starts at the start pose), with `covariance` over (x, y, theta), 3 x 3 row by
-    row in m², m rad and rad². `collided` is true while something blocks it; `collisions` counts the contacts so far.
-    `held` is the state in which a frozen lidar froze.
-    """
-
-    name: str
-    pose: Pose
-    velocity: Command = REST
-    command: Command = REST
-    command_ns: int = 0
-    odometry: Pose = ORIGIN
-    covariance: Covariance = (0.0,) * 9
-    collided: bool = False
-    collisions: int = 0
-    held: State | None = None
 
 
 def _finite(pose: Pose) -> bool:

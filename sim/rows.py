@@ -10,8 +10,8 @@ import numpy as np
 from sim.lidar import Scan
 from sim.pose import Command, Pose
 from sim.recording import Recording
-from sim.robot import Covariance, RobotState
 from sim.simulation import State
+from sim.state import Covariance, RobotState
 
 
 def row_at(recording: Recording, time: float) -> int:

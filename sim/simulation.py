@@ -13,10 +13,10 @@ from sim.engine.trig import wrap
 from sim.exceptions import SpecError
 from sim.noise import normal, words_of_ticks
 from sim.pose import REST, Command, Pose
-from sim.robot import RobotSpec, RobotState
+from sim.robot import RobotSpec
 from sim.scene import Body
 from sim.sensing import observe
-from sim.state import Commands, Event, Simulation, State
+from sim.state import Commands, Event, RobotState, Simulation, State
 
 __all__ = ["Clearance", "Commands", "Event", "Simulation", "State", "clearance", "observe", "start", "step"]
 

@@ -9,12 +9,13 @@ from typing import Any
 
 from sim.engine import EngineName, engine
 from sim.exceptions import SpecError
-from sim.pose import Command
-from sim.robot import RobotSpec, RobotState
+from sim.pose import ORIGIN, REST, Command, Pose
+from sim.robot import RobotSpec
 from sim.scene import Scene, build
 from sim.world import World
 
 Commands = Mapping[str, Command] | Command | None
+Covariance = tuple[float, float, float, float, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +93,29 @@ class Simulation:
         except KeyError:
             names = ", ".join(spec.name for spec in self.robots)
             raise SpecError(f"there is no robot {robot!r}; the robots are: {names}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """One robot at one instant.
+
+    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on turning
+    while it slides along something); `command` the last one received, at `command_ns`; `odometry` the pose by its
+    wheels in the frame `odom` (which starts at the start pose), with `covariance` over (x, y, theta), 3 x 3 row by
+    row in m², m rad and rad². `collided` is true while something blocks it; `collisions` counts the contacts so far.
+    `held` is the state in which a frozen lidar froze.
+    """
+
+    name: str
+    pose: Pose
+    velocity: Command = REST
+    command: Command = REST
+    command_ns: int = 0
+    odometry: Pose = ORIGIN
+    covariance: Covariance = (0.0,) * 9
+    collided: bool = False
+    collisions: int = 0
+    held: State | None = None
 
 
 @dataclass(frozen=True, slots=True)

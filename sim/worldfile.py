@@ -18,7 +18,7 @@
     movers:
       - {name: cart, path: [[0, 0], [2, 0]], radius: 0.2, speed: 0.3, pause: 1, loop: false}
 
-Every section may be left out. The schema is published as `sim.world_schema()`.
+Every section may be left out.
 """
 
 from __future__ import annotations

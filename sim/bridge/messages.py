@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Quaternion, Twist, TwistStamped
+from geometry_msgs.msg import Quaternion, TwistStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
 from sim.lidar import Scan
 from sim.pose import Command
-from sim.robot import RobotState
+from sim.state import RobotState
 
 NANOSECONDS = 1_000_000_000
 
@@ -72,7 +72,8 @@ def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_f
     msg.pose.pose.position.y = float(robot.odometry.y)
     msg.pose.pose.orientation = yaw_to_quaternion(robot.odometry.theta)
     msg.pose.covariance[_PLANAR] = robot.covariance
-    _put(robot.velocity, msg.twist.twist)
+    msg.twist.twist.linear.x = float(robot.velocity.linear)
+    msg.twist.twist.angular.z = float(robot.velocity.angular)
     return msg
 
 
@@ -91,24 +92,6 @@ def twist_to_command(msg: Any) -> Command:
     return Command(linear=linear, angular=angular)
 
 
-def command_to_twist(command: Command) -> Any:
-    """Return `command` as geometry_msgs/Twist."""
-    msg = Twist()
-    _put(command, msg)
-    return msg
-
-
-def _put(command: Command, twist: Any) -> None:
-    twist.linear.x = float(command.linear)
-    twist.angular.z = float(command.angular)
-
-
 def yaw_to_quaternion(yaw: float) -> Any:
     """Return the rotation by `yaw` radians about z as geometry_msgs/Quaternion."""
     return Quaternion(z=math.sin(yaw / 2.0), w=math.cos(yaw / 2.0))
-
-
-def quaternion_to_yaw(quaternion: Any) -> float:
-    """Return the rotation about z of a geometry_msgs/Quaternion, in radians between -π and π."""
-    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -1,6 +1,6 @@
 """How a differential drive moves: exact arcs, limited accelerations, odometry that drifts, and contacts that stop it.
 
-A robot is a vector of `STATE` numbers: x, y, theta, v, w, then the odometry's x, y, theta, then the upper triangle of
+A robot is a vector of 14 numbers: x, y, theta, v, w, then the odometry's x, y, theta, then the upper triangle of
 its covariance. During a tick v and w are constant, so that its path is an arc of a circle, whose chord is
 v dt sinc(w dt / 2) at the heading of half the turn. Plain Python throughout: the compiled engine compiles it.
 """
@@ -17,7 +17,6 @@ from sim.engine.trig import sinc, sincos, wrap
 
 Floats = NDArray[np.float64]
 
-STATE = 14
 # A contact is a gap of two skins; sliding along may wear it to one, and no motion makes a gap smaller than that.
 SKIN = 1e-6
 # How far a robot may move between two looks at what is around it, where something is near.

@@ -13,8 +13,8 @@ from sim.export.exceptions import ExportError
 from sim.lidar import Scan
 from sim.pose import Command
 from sim.recording import Recording
-from sim.robot import RobotState
 from sim.rows import scan_at, state_at
+from sim.state import RobotState
 
 PLANAR = (0, 1, 5)  # x, y and yaw among the six axes of a covariance
 

@@ -2,29 +2,57 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import ipywidgets as widgets
 
 from sim.pose import Command
-
-if TYPE_CHECKING:
-    from sim.view.player import LiveView
-    from sim.view.session import Source
+from sim.view.session import Source
 
 LINEAR, ANGULAR = 0.22, 0.9
 """What an arrow of the pad asks for, in m/s and rad/s."""
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
 
-
 _SOMEBODY = "your code drives"
+
+
+class Player(Protocol):
+    """What the buttons control; `sim.view.LiveView` is one."""
+
+    @property
+    def playing(self) -> bool:
+        """Whether time goes on."""
+
+    def play(self) -> None:
+        """Let time go on."""
+
+    def pause(self) -> None:
+        """Stop time."""
+
+    def step(self) -> None:
+        """Pause, and go on by 0.1 s of simulated time."""
+
+    def seek(self, seconds: float) -> None:
+        """Show the instant `seconds`."""
+
+    def reset(self) -> None:
+        """Go back to the start of the run."""
+
+    def drive(self, command: Command) -> None:
+        """Give the first robot a command by hand."""
+
+    def automatic(self) -> None:
+        """Give the first robot back to the callback or to the node that drives it."""
+
+    def set_speed(self, speed: float) -> None:
+        """Set how many simulated seconds pass in a second."""
 
 
 class Controls:
     """One image, a row to play with time, a pad to drive, and a place for errors."""
 
-    def __init__(self, view: LiveView, source: Source, speed: float) -> None:
+    def __init__(self, view: Player, source: Source, speed: float) -> None:
         self._view = view
         self._quiet = False
         self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": "980px"})

@@ -10,10 +10,10 @@ Under a grader (the environment variable AUTOGRADER_GRADING is set) `live` start
 from __future__ import annotations
 
 import asyncio
-import os
 import time
 import traceback
 from collections import deque
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
@@ -34,13 +34,13 @@ from sim.world import World
 if TYPE_CHECKING:
     from sim.bridge.background import Bridge
 
-"""The environment variable whose presence says that nobody is looking."""
-
 FPS = 40.0
 """Frames a second that the view aims at."""
 
 LONGEST_LEAP = 0.1
 """Seconds that a frame may add at most: while a cell runs long, simulated time waits with the picture."""
+
+_PACKAGE = Path(__file__).parents[1]
 
 
 def live(
@@ -231,6 +231,6 @@ def _still(source: World | Simulation | Recording | Bridge, theme: Theme) -> Pic
 def _callback_traceback(error: BaseException) -> str:
     """Return the traceback without the frames of this package: the student's own lines and the error."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if "/sim/" not in frame.filename.replace(os.sep, "/")]
+    own = [frame for frame in frames if _PACKAGE not in Path(frame.filename).parents]
     lines = ["Traceback (most recent call last):\n", *traceback.format_list(own)] if own else []
     return "".join([*lines, *traceback.format_exception_only(type(error), error)])

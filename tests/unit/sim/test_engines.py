@@ -200,7 +200,7 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     )
     np.testing.assert_array_equal(through, arrays.fan(walls, *place))
     assert math.isclose(shapes.nearest(walls, circles, 0.3, 0.4), arrays.nearest(walls, circles, 0.3, 0.4))
-    robot = np.zeros(motion.STATE)
+    robot = np.zeros(14)
     other = robot.copy()
     limits, drift, noise = np.array([1.0, 1.0, 9.0, 9.0]), np.zeros(3), np.zeros((4, 2))
     motion.coast(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)

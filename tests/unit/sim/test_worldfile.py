@@ -6,14 +6,13 @@ import math
 import re
 from pathlib import Path
 
-import jsonschema
 import numpy as np
 import pytest
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim import WorldError, load_world, world_schema
+from sim import WorldError, load_world
 
 GOOD = """\
 name: test room
@@ -68,18 +67,12 @@ def test_a_world_needs_few_words(tmp_path: Path) -> None:
     assert (world.name, len(world.segments), len(world.starts)) == ("world", 1, 1)
 
 
-def test_the_published_schema_accepts_what_is_read_and_is_a_schema() -> None:
-    jsonschema.Draft202012Validator.check_schema(world_schema())
-    jsonschema.validate(yaml.safe_load(GOOD), world_schema())
-
-
-def test_the_worlds_of_the_course_fit_the_published_schema(request: pytest.FixtureRequest) -> None:
+def test_the_worlds_of_the_course_can_be_read(request: pytest.FixtureRequest) -> None:
     paths = sorted((request.config.rootpath / "assets" / "worlds").glob("*.yaml"))
     worlds = {path: yaml.safe_load(path.read_text(encoding="utf-8")) for path in paths}
     assert worlds
     for path, data in worlds.items():
         if "image" not in data:  # that is a map
-            jsonschema.validate(data, world_schema())
             assert len(load_world(path).segments) > 0
 
 
