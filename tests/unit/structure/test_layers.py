@@ -48,6 +48,18 @@ BREACHES = {
     "circles": ("sim/engine/shapes.py", "sim.engine.motion", "No cycles are allowed in sim.engine"),
 }
 
+# The stand-ins are imported under names of their own, so they stand outside of the project's contracts.
+LAUNCH = """
+[tool.importlinter]
+root_package = "launch"
+exclude_type_checking_imports = false
+[[tool.importlinter.contracts]]
+id = "circles"
+name = "No circle among the modules of the stand-in"
+type = "acyclic_siblings"
+ancestors = ["launch"]
+"""
+
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -111,6 +123,16 @@ def test_a_part_without_a_layer_is_reported(copy: Path) -> None:
     new.unlink()
     assert status == 1
     assert "newcomer" in report
+
+
+def test_the_launch_stand_in_imports_in_one_direction(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "autograder" / "ros" / "standins" / "launch", tmp_path / "launch")
+    (tmp_path / "pyproject.toml").write_text(LAUNCH)
+    status, report = lint(tmp_path)
+    assert (status, "Contracts: 1 kept, 0 broken." in report) == (0, True), report
+    with appended(tmp_path / "launch" / "event.py", "import launch.actions"):
+        status, report = lint(tmp_path)
+    assert (status, "No cycles are allowed in launch" in report) == (1, True), report
 
 
 def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> None:
