@@ -9,8 +9,13 @@ import pytest
 from autograder.checks import CheckFailed
 from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, SECOND, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
+from autograder.checks.ch06_testing.support.assertions import (
+    describe_failure,
+    expect_no_sleep,
+    expect_passed,
+    is_usable,
+)
 from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
-from autograder.checks.ch06_testing.support.verdicts import expect_awake, expect_passed, fit, trouble
 from autograder.harness import Workspace
 from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.test_reports import Report, Source
@@ -52,7 +57,7 @@ ENOUGH = report(*[GOOD] * LEAST[LIMITS])
     ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "few"],
 )
 def test_what_does_not_pass_on_the_package_as_it_is_is_named(run: Report | None, sentence: str) -> None:
-    assert not fit(LIMITS, run)
+    assert not is_usable(LIMITS, run)
     with pytest.raises(CheckFailed) as failed:
         expect_passed(LIMITS, run)
     assert failed.value.message == sentence
@@ -60,17 +65,17 @@ def test_what_does_not_pass_on_the_package_as_it_is_is_named(run: Report | None,
 
 def test_enough_tests_that_pass_are_fit() -> None:
     expect_passed(LIMITS, ENOUGH)
-    assert fit(LIMITS, ENOUGH)
+    assert is_usable(LIMITS, ENOUGH)
 
 
 def test_what_a_test_says_of_a_version_that_is_not_public_is_kept() -> None:
-    assert "secret" not in trouble(LIMITS, report(BAD, message="secret"), "here")
+    assert "secret" not in describe_failure(LIMITS, report(BAD, message="secret"), "here")
 
 
 def test_a_sleep_is_named_by_file_and_line() -> None:
     with pytest.raises(CheckFailed, match=r"There is a sleep in test_a\.py, line 3\."):
-        expect_awake(Source("p", {"test/test_a.py": b"import time\n\ntime.sleep(1)\n", "p/a.py": b"sleep(1)"}))
-    expect_awake(Source("p", {"p/a.py": b"sleep(1)", "test/notes.txt": b"sleep(1)"}))
+        expect_no_sleep(Source("p", {"test/test_a.py": b"import time\n\ntime.sleep(1)\n", "p/a.py": b"sleep(1)"}))
+    expect_no_sleep(Source("p", {"p/a.py": b"sleep(1)", "test/notes.txt": b"sleep(1)"}))
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from __future__ import annotations
 from autograder.checks import expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.support import contract
+from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import LEAST
-from autograder.checks.ch06_testing.support.verdicts import expect_awake
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.junit import ClaimedOutcome
@@ -20,7 +20,7 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @hint(*contract.NO_SLEEP)
 def test_no_sleep(examination: Examination) -> None:
     """No test waits with time.sleep."""
-    expect_awake(examination.source)
+    expect_no_sleep(examination.source)
 
 
 @check(points=1, depends=("guard_right", "launch_right"), doc=contract.PYTEST)

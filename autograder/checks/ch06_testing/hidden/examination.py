@@ -9,12 +9,13 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from functools import cached_property
 
-from autograder.checks import CheckFailed, expect
+from autograder.checks import CheckFailed, Row, expect
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, right
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE
-from autograder.checks.ch06_testing.support.verdicts import fit, trouble
+from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, PYTEST
 from autograder.harness import Workspace
 from autograder.probes import test_runs
 from autograder.probes.colcon_test import colcon_test
@@ -34,6 +35,18 @@ FILES = {
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
 SECOND, BACKWARDS = "second", "backwards"
 ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line(Row):
+    """A line of the contract, for the check whether a student's tests object to versions that break it.
+
+    Attributes:
+        promise: the line, as the end of the check's sentence.
+    """
+
+    promise: str
+    doc: str = PYTEST
 
 
 class Examination:
@@ -71,7 +84,7 @@ class Examination:
         """The other runs: by file, and what is special about the version or the run."""
         wanted: dict[tuple[str, str], TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in (name for name in reversed(LEAST) if fit(name, self.trial.get(name))):
+        for name in (name for name in reversed(LEAST) if is_usable(name, self.trial.get(name))):
             mine = self._wanted(name)
             whats = sorted(mine)
             self._draw(name, "order").shuffle(whats)
@@ -90,7 +103,7 @@ class Examination:
         """Fail the check unless a file's tests pass on the right version in other words, or backwards."""
         for what in whats:
             if not self.runs[name, what].passed:
-                raise CheckFailed(trouble(name, self.runs[name, what], _WHERE[what]))
+                raise CheckFailed(describe_failure(name, self.runs[name, what], _WHERE[what]))
 
     def expect_objection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests of its file object to every fault that belongs to it.

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from autograder.checks import group, hint
-from autograder.checks.ch06_testing.hidden.examination import SECOND, Examination
+from autograder.checks import each, group, hint
+from autograder.checks.ch06_testing.hidden.examination import SECOND, Examination, Line
 from autograder.checks.ch06_testing.support import contract
+from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LAUNCH
-from autograder.checks.ch06_testing.support.verdicts import expect_passed
 
 check = group("launch", doc=contract.INTEGRATION)
 RIGHT = ("launch_right",)
@@ -27,17 +27,33 @@ def test_launch_right(examination: Examination) -> None:
     examination.expect_right(LAUNCH, SECOND)
 
 
-@check(points=2, depends=RIGHT)
-@hint("At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?")
-@hint("At 0.4 m: the defaults say stop, the configuration does not.")
-def test_configuration(examination: Examination) -> None:
-    """A test fails when the launched node does not get its configuration."""
-    examination.expect_objection("configuration", "guard.launch.py starts the node with config/guard.yaml.")
+LINES = (
+    Line(
+        id="configuration",
+        title="A test fails when the launched node does not get its configuration.",
+        promise="guard.launch.py starts the node with config/guard.yaml.",
+        points=2,
+        hints=(
+            "At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?",
+            "At 0.4 m: the defaults say stop, the configuration does not.",
+        ),
+        doc=contract.INTEGRATION,
+    ),
+    Line(
+        id="runs",
+        title="A test fails when the launched node dies, or is not where the robot looks for it.",
+        promise="guard.launch.py runs the node /speed_guard, on the topics of the contract.",
+        points=2,
+        hints=(
+            "A launch file that can be read has not yet started anything that lives.",
+            "Ask the launched node something over its topics, and count on the answer within a deadline.",
+        ),
+        doc=contract.INTEGRATION,
+    ),
+)
 
 
-@check(points=2, depends=RIGHT)
-@hint("A launch file that can be read has not yet started anything that lives.")
-@hint("Ask the launched node something over its topics, and count on the answer within a deadline.")
-def test_runs(examination: Examination) -> None:
-    """A test fails when the launched node dies, or is not where the robot looks for it."""
-    examination.expect_objection("runs", "guard.launch.py runs the node /speed_guard, on the topics of the contract.")
+@each(group("launch", depends=RIGHT), LINES)
+def tests_object_to_a_broken_line(line: Line, examination: Examination) -> None:
+    """The tests of the file object to every version that breaks the line."""
+    examination.expect_objection(line.id, line.promise)

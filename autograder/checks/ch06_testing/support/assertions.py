@@ -1,4 +1,4 @@
-"""What a run of a student's tests means, in the student's words."""
+"""Assertions on runs of a student's tests, and what a run that failed is called in the student's words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.sandbox import Ending
 UNFINISHED = "still to be written"
 
 
-def fit(name: str, report: Report | None) -> bool:
+def is_usable(name: str, report: Report | None) -> bool:
     """Whether the tests of a file pass on a right version, and are enough to judge others by."""
     return report is not None and report.passed and len(report.executed) >= LEAST[name]
 
@@ -21,7 +21,7 @@ def expect_passed(name: str, report: Report | None) -> None:
     if report is None:
         raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
     if not report.passed:
-        raise CheckFailed(trouble(name, report, "on the package as it is", said=True))
+        raise CheckFailed(describe_failure(name, report, "on the package as it is", said=True))
     count = len(report.executed)
     expect(
         count >= LEAST[name],
@@ -30,14 +30,14 @@ def expect_passed(name: str, report: Report | None) -> None:
     )
 
 
-def expect_awake(source: Source) -> None:
+def expect_no_sleep(source: Source) -> None:
     """Fail the check if a test file sleeps."""
     python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
     found = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
     expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
 
 
-def trouble(name: str, report: Report, where: str, *, said: bool = False) -> str:
+def describe_failure(name: str, report: Report, where: str, *, said: bool = False) -> str:
     """Say why a run that should have passed did not.
 
     Args:
