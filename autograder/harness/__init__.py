@@ -2,7 +2,8 @@
 
 A `Harness` starts programs and talks with them. `SteppedHarness` steps their time. `RealTimeHarness` runs them in real
 time and can send them signals. `AutoHarness` steps programs where that is possible. `launch.LaunchHarness` runs `ros2
-launch`. `drive` lets the programs steer the simulated robot, in any harness but the last.
+launch`. `drive` lets the programs steer the simulated robot, in any harness but the last. `Shared` keeps
+a harness for several checks.
 """
 
 from autograder.harness.auto import AutoHarness
@@ -11,6 +12,7 @@ from autograder.harness.drive import Drive, drive
 from autograder.harness.goals import Goal, Stamped
 from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
+from autograder.harness.shared import Shared
 from autograder.harness.stepped import SteppedHarness
 from autograder.workspace import Workspace
 
@@ -21,6 +23,7 @@ __all__ = [
     "Harness",
     "Program",
     "RealTimeHarness",
+    "Shared",
     "Stamped",
     "SteppedHarness",
     "Workspace",

@@ -10,12 +10,12 @@ from autograder.probes.installed import Installed, look
 
 
 @pytest.fixture(scope="session")
-def dance(workspace: Workspace) -> Installed:
+def installed_dance(workspace: Workspace) -> Installed:
     """What was installed of the package that the student makes."""
-    return look(workspace.install, contract.DANCE)
+    return look(workspace.install, contract.SQUARE_DANCE)
 
 
 @pytest.fixture(scope="session")
-def watch(workspace: Workspace) -> Installed:
+def installed_alarm(workspace: Workspace) -> Installed:
     """What was installed of the package that the student repairs."""
-    return look(workspace.install, contract.WATCH)
+    return look(workspace.install, contract.WALL_ALARM)

@@ -4,47 +4,14 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from typing import Generic, TypeVar
+from collections.abc import Iterator
 
 import pytest
 
 from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types, load_types
-from autograder.harness import AutoHarness, Workspace
-
-AnyHarness = TypeVar("AnyHarness", bound=AutoHarness)
-
-
-class Shared(Generic[AnyHarness]):
-    """Keeps one harness for several checks, and replaces it once its program has ended."""
-
-    def __init__(self, make: Callable[[], AnyHarness]) -> None:
-        self._make, self._stack = make, ExitStack()
-        self._harness: AnyHarness | None = None
-
-    def harness(self) -> AnyHarness:
-        """Return a harness whose program runs."""
-        harness = self._harness
-        if harness is None or harness.process.ending is not None:
-            self.close()
-            harness = self._make()
-            self._stack.enter_context(harness)
-            self._harness = harness
-        return harness
-
-    def close(self) -> None:
-        """Let the present harness go."""
-        self._harness = None
-        self._stack.close()
-
-
-def _shared(make: Callable[[], AnyHarness]) -> Iterator[Shared[AnyHarness]]:
-    shared = Shared(make)
-    yield shared
-    shared.close()
+from autograder.harness import Shared, Workspace
 
 
 @pytest.fixture(scope="session")
@@ -54,43 +21,46 @@ def types(workspace: Workspace) -> Types:
 
 
 @pytest.fixture(scope="session")
-def reporters(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
-    """Where the shared status publisher is kept."""
-    yield from _shared(lambda: Reporter(workspace, types))
+def shared_reporter(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
+    """Keeps the status publisher that several checks share."""
+    with Shared(lambda: Reporter(workspace, types)) as shared:
+        yield shared
 
 
 @pytest.fixture
-def reporter(reporters: Shared[Reporter]) -> Reporter:
+def reporter(shared_reporter: Shared[Reporter]) -> Reporter:
     """The status publisher; it has met the sensors of earlier checks."""
-    return reporters.harness()
+    return shared_reporter.get()
 
 
 @pytest.fixture(scope="session")
-def silent_reporters(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
-    """Where the status publisher is kept that no sensor ever speaks to."""
-    yield from _shared(lambda: Reporter(workspace, types))
+def shared_silent_reporter(workspace: Workspace, types: Types) -> Iterator[Shared[Reporter]]:
+    """Keeps the status publisher that no sensor ever speaks to."""
+    with Shared(lambda: Reporter(workspace, types)) as shared:
+        yield shared
 
 
 @pytest.fixture
-def silent_reporter(silent_reporters: Shared[Reporter]) -> Reporter:
+def silent_reporter(shared_silent_reporter: Shared[Reporter]) -> Reporter:
     """A status publisher that has not heard of any sensor."""
-    return silent_reporters.harness()
+    return shared_silent_reporter.get()
 
 
 @pytest.fixture(scope="session")
-def drivers(workspace: Workspace, types: Types) -> Iterator[Shared[Driver]]:
-    """Where the shared distance driver is kept."""
-    yield from _shared(lambda: Driver(workspace, types))
+def shared_driver(workspace: Workspace, types: Types) -> Iterator[Shared[Driver]]:
+    """Keeps the distance driver that several checks share."""
+    with Shared(lambda: Driver(workspace, types)) as shared:
+        yield shared
 
 
 @pytest.fixture
-def driver(drivers: Shared[Driver]) -> Driver:
+def driver(shared_driver: Shared[Driver]) -> Driver:
     """The distance driver, on wheels that the grader turns."""
-    return drivers.harness()
+    return shared_driver.get()
 
 
 @pytest.fixture
-def ready(driver: Driver, draw: random.Random) -> Driver:
+def placed_driver(driver: Driver, draw: random.Random) -> Driver:
     """The distance driver somewhere on the plane, askew to both axes, and it has heard where."""
     heading = draw.choice((0.0, math.pi / 2.0, math.pi, -math.pi / 2.0)) + draw.uniform(0.65, 0.9)
     driver.place(draw.uniform(-5.0, 5.0), draw.uniform(-5.0, 5.0), heading)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
-from autograder.checks.ch09_assessment.support.robot import NodeHarness, Types
+from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, Types
 from autograder.harness import Workspace
-
-Start = Callable[..., NodeHarness]
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from autograder import layout
 from autograder.checks import CheckFailed, suites
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS
 from autograder.checks.ch09_assessment.support import contract
-from autograder.checks.ch09_assessment.visible.sheet import answers, expect_letter, parse
+from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter, parse
 from autograder.course import Chapter, Form, in_form
 from autograder.course.syllabus import Syllabus
 from autograder.harness import Workspace

@@ -8,7 +8,7 @@ import pytest
 from geometry_msgs.msg import Twist
 
 from autograder.checks import CheckFailed
-from autograder.checks.ch02_nodes.support.robot import expect_forward, expect_stop, expect_turn, say
+from autograder.checks.ch02_nodes.support.robot import describe_command, expect_forward, expect_stop, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.harness import Stamped
 
@@ -81,4 +81,4 @@ def test_no_command_at_all_is_never_right() -> None:
     ],
 )
 def test_a_command_is_put_into_words(pair: tuple[float, float], words: str) -> None:
-    assert say(_commands(pair)[0].message) == words
+    assert describe_command(_commands(pair)[0].message) == words

@@ -10,7 +10,8 @@ import shutil
 from dataclasses import dataclass, replace
 
 from autograder.building.build import build
-from autograder.checks.ch01_package_structure.support import contract, judge
+from autograder.checks.ch01_package_structure.support import contract
+from autograder.checks.ch01_package_structure.support.assertions import source_of
 from autograder.harness import Workspace
 from autograder.probes.installed import Installed, look
 
@@ -41,10 +42,10 @@ def grow(workspace: Workspace, draw: random.Random) -> Grown:
         StudentError: the copy does not build.
     """
     word = f"{draw.choice(WORDS)}_{draw.randrange(100, 1000)}"
-    name = contract.DANCE
+    name = contract.SQUARE_DANCE
     copy = replace(workspace, root=workspace.root.parent / "grown")
     folder = copy.root / "src" / name
-    shutil.copytree(judge.folder(workspace, name), folder)
+    shutil.copytree(source_of(workspace, name), folder)
     grown = Grown(
         look(copy.install, name),
         launch=f"launch/{word}.launch.py",

@@ -7,7 +7,17 @@ from pathlib import Path
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.growth import Grown
-from autograder.checks.ch01_package_structure.support import contract, judge
+from autograder.checks.ch01_package_structure.support import contract
+from autograder.checks.ch01_package_structure.support.assertions import (
+    expect_built,
+    expect_executable,
+    expect_manifest,
+    expect_modules,
+    expect_pytest,
+    expect_same_facts,
+    expect_shared,
+    source_of,
+)
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import INDEX, Installed
@@ -20,19 +30,20 @@ check = group("install")
 @hint("A syntax error in setup.py, a file that data_files names and that is not there: colcon quotes Python.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds square_dance."""
-    judge.expect_built(builds, contract.DANCE)
+    expect_built(builds, contract.SQUARE_DANCE)
 
 
 @check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
-def test_marker(dance: Installed) -> None:
+def test_marker(installed_dance: Installed) -> None:
     """setup.py installs the marker by which ROS finds the package, and package.xml."""
     expect(
-        dance.marker, "The ament index does not know square_dance: ros2 run would say that the package is not found."
+        installed_dance.marker,
+        "The ament index does not know square_dance: ros2 run would say that the package is not found.",
     )
-    marker, manifest = INDEX / contract.DANCE, Path("share", contract.DANCE, "package.xml")
-    missing = [str(path) for path in (marker, manifest) if str(path) not in dance.recorded]
+    marker, manifest = INDEX / contract.SQUARE_DANCE, Path("share", contract.SQUARE_DANCE, "package.xml")
+    missing = [str(path) for path in (marker, manifest) if str(path) not in installed_dance.recorded]
     expect(
         not missing,
         f"setup.py does not install {' and '.join(missing)}. colcon still does it for you, and warns that it will not "
@@ -44,47 +55,47 @@ def test_marker(dance: Installed) -> None:
 @check(points=2, depends=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
-def test_executable(dance: Installed) -> None:
+def test_executable(installed_dance: Installed) -> None:
     """The program dancer lies where `ros2 run` looks for it."""
-    judge.expect_executable(dance, contract.DANCER)
+    expect_executable(installed_dance, contract.DANCER)
 
 
 @check(points=2, depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("packages=[package_name] means one folder, not those in it.")
 @hint("find_packages takes a folder for a package when there is an __init__.py in it.")
-def test_subpackages(workspace: Workspace, dance: Installed) -> None:
+def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
     """All of its modules are installed, those in nodes and utils, too."""
-    judge.expect_modules(dance, judge.folder(workspace, contract.DANCE))
+    expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
 
 
 @check(points=1, depends=("builds",), doc=contract.DEVELOP)
 @hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
-def test_launch_file(workspace: Workspace, dance: Installed) -> None:
+def test_launch_file(workspace: Workspace, installed_dance: Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
-    judge.expect_shared(dance, judge.folder(workspace, contract.DANCE), contract.DANCE_LAUNCH)
+    expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_LAUNCH)
 
 
 @check(points=1, depends=("builds",), doc=contract.DEVELOP)
 @hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
-def test_config(workspace: Workspace, dance: Installed) -> None:
+def test_config(workspace: Workspace, installed_dance: Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
-    judge.expect_shared(dance, judge.folder(workspace, contract.DANCE), contract.DANCE_CONFIG)
+    expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_CONFIG)
 
 
 @check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("package.xml and setup.py each say the version, the licence and the maintainer.")
 @hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
-def test_same_facts(workspace: Workspace, dance: Installed) -> None:
+def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
     """setup.py names the version, the licence and the maintainer that package.xml names."""
-    judge.expect_same_facts(dance, judge.expect_manifest(workspace, contract.DANCE))
+    expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
 
 
 @check(points=1, depends=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']}; setuptools no longer knows tests_require.")
-def test_names_pytest(dance: Installed) -> None:
+def test_names_pytest(installed_dance: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    judge.expect_pytest(dance)
+    expect_pytest(installed_dance)
 
 
 @check(points=2, depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)

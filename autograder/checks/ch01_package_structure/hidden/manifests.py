@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch01_package_structure.support import contract, judge
+from autograder.checks.ch01_package_structure.support import contract
+from autograder.checks.ch01_package_structure.support.assertions import expect_declared, expect_manifest, source_of
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.manifest import PLACEHOLDER
@@ -20,14 +21,14 @@ DECLARE = (
 @hint('<export><build_type>ament_python</build_type></export>, inside <package format="3">.')
 def test_manifest(workspace: Workspace) -> None:
     """ROS takes square_dance/package.xml for that of a Python package, in format 3."""
-    judge.expect_manifest(workspace, contract.DANCE)
+    expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
 @check(points=1, depends=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
-    licences = judge.expect_manifest(workspace, contract.DANCE).licences
+    licences = expect_manifest(workspace, contract.SQUARE_DANCE).licences
     expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
@@ -35,7 +36,7 @@ def test_licence(workspace: Workspace) -> None:
 @hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
-    said = judge.expect_manifest(workspace, contract.DANCE).description
+    said = expect_manifest(workspace, contract.SQUARE_DANCE).description
     expect(len(said.split()) >= 3 and PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
@@ -43,26 +44,26 @@ def test_description(workspace: Workspace) -> None:
 @hint(*DECLARE)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
-    manifest = judge.expect_manifest(workspace, contract.DANCE)
-    needed = imports.imported(judge.folder(workspace, contract.DANCE), without=("test", "launch"))
-    judge.expect_declared(needed, manifest.needs("exec"))
+    manifest = expect_manifest(workspace, contract.SQUARE_DANCE)
+    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
+    expect_declared(needed, manifest.needs("exec"))
 
 
 @check(points=1, depends=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
-    manifest = judge.expect_manifest(workspace, contract.DANCE)
-    needed = imports.imported(judge.folder(workspace, contract.DANCE), within=("launch",))
-    judge.expect_declared(needed, manifest.needs("exec"))
+    manifest = expect_manifest(workspace, contract.SQUARE_DANCE)
+    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
+    expect_declared(needed, manifest.needs("exec"))
 
 
 @check(points=1, depends=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""
-    manifest = judge.expect_manifest(workspace, contract.DANCE)
-    folder = judge.folder(workspace, contract.DANCE)
-    runs = {each.module for each in imports.imported(folder, without=("test",))}
-    needed = [each for each in imports.imported(folder, within=("test",)) if each.module not in runs]
-    judge.expect_declared(needed, manifest.needs("exec", "test"))
+    manifest = expect_manifest(workspace, contract.SQUARE_DANCE)
+    source = source_of(workspace, contract.SQUARE_DANCE)
+    runs = {each.module for each in imports.imported(source, without=("test",))}
+    needed = [each for each in imports.imported(source, within=("test",)) if each.module not in runs]
+    expect_declared(needed, manifest.needs("exec", "test"))

@@ -6,7 +6,18 @@ import random
 from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch01_package_structure.support import contract, judge, robots
+from autograder.checks.ch01_package_structure.support import contract, robots
+from autograder.checks.ch01_package_structure.support.assertions import (
+    expect_built,
+    expect_declared,
+    expect_executable,
+    expect_manifest,
+    expect_modules,
+    expect_pytest,
+    expect_shared,
+    licence,
+    source_of,
+)
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
@@ -21,30 +32,30 @@ MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds wall_alarm."""
-    judge.expect_built(builds, contract.WATCH)
+    expect_built(builds, contract.WALL_ALARM)
 
 
 @check(points=2, depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
-def test_alarm_executable(watch: Installed) -> None:
+def test_alarm_executable(installed_alarm: Installed) -> None:
     """The program alarm lies where `ros2 run` looks for it."""
-    judge.expect_executable(watch, contract.ALARM)
+    expect_executable(installed_alarm, contract.ALARM)
 
 
 @check(points=2, depends=("alarm_builds",), doc=contract.SUBPACKAGES)
 @hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
 @hint("packages=find_packages(exclude=['test']) in setup.py.")
-def test_alarm_subpackages(workspace: Workspace, watch: Installed) -> None:
+def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> None:
     """All of its modules are installed."""
-    judge.expect_modules(watch, judge.folder(workspace, contract.WATCH))
+    expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
 
 
 @check(points=1, depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
-def test_alarm_config(workspace: Workspace, watch: Installed) -> None:
+def test_alarm_config(workspace: Workspace, installed_alarm: Installed) -> None:
     """Its configuration is installed."""
-    judge.expect_shared(watch, judge.folder(workspace, contract.WATCH), contract.ALARM_CONFIG)
+    expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
 
 
 @check(points=2, doc=contract.ROSDEP)
@@ -52,17 +63,17 @@ def test_alarm_config(workspace: Workspace, watch: Installed) -> None:
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml declares what its modules and its launch file import."""
-    manifest = judge.expect_manifest(workspace, contract.WATCH)
-    needed = imports.imported(judge.folder(workspace, contract.WATCH), without=("test",))
-    judge.expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
+    manifest = expect_manifest(workspace, contract.WALL_ALARM)
+    needed = imports.imported(source_of(workspace, contract.WALL_ALARM), without=("test",))
+    expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
 
 
 @check(points=1, depends=("alarm_builds",), doc=contract.REP_149)
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
-def test_alarm_licence(workspace: Workspace, watch: Installed) -> None:
+def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None:
     """Both files name the licence Apache-2.0."""
-    licences = judge.expect_manifest(workspace, contract.WATCH).licences
-    said = judge.licence(watch)
+    licences = expect_manifest(workspace, contract.WALL_ALARM).licences
+    said = licence(installed_alarm)
     expect(
         licences == (contract.LICENCE,) and said == contract.LICENCE,
         f"The licence is {', '.join(licences)} in package.xml and {said or 'missing'} in setup.py; it should be "
@@ -73,9 +84,9 @@ def test_alarm_licence(workspace: Workspace, watch: Installed) -> None:
 @check(points=1, depends=("alarm_builds",), doc=contract.COLCON)
 @hint("colcon build warns: Unknown distribution option.")
 @hint("extras_require={'test': ['pytest']} instead of tests_require=['pytest'].")
-def test_alarm_names_pytest(watch: Installed) -> None:
+def test_alarm_names_pytest(installed_alarm: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    judge.expect_pytest(watch)
+    expect_pytest(installed_alarm)
 
 
 @check(points=2, depends=("alarm_executable", "alarm_subpackages"), doc=contract.CREATE)
@@ -90,9 +101,9 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
 
 @check(points=1, depends=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
 @hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
-def test_alarm_configured(workspace: Workspace, watch: Installed, draw: random.Random) -> None:
+def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""
-    path = watch.prefix / "share" / watch.package / contract.ALARM_CONFIG
+    path = installed_alarm.prefix / "share" / installed_alarm.package / contract.ALARM_CONFIG
     with robots.alarm(workspace, "--params-file", str(path)) as harness:
         robots.expect_alarm(harness, round(draw.uniform(0.55, 0.75), 2), True)
         robots.expect_alarm(harness, round(draw.uniform(0.85, 2.0), 2), False)

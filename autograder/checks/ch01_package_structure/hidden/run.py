@@ -22,7 +22,7 @@ HINTS = (
 
 
 @dataclass(frozen=True)
-class Dance:
+class RunningDancer:
     """A dancer in the harness, and how long the side of its square is, in metres."""
 
     harness: SteppedHarness
@@ -30,34 +30,34 @@ class Dance:
 
 
 @pytest.fixture(scope="module")
-def running(workspace: Workspace, seed: int) -> Iterator[Dance]:
+def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
     """One dancer for the checks that it starts, and that it dances."""
     side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
     with robots.dancer(workspace, "-p", f"side:={side}") as harness:
-        yield Dance(harness, side)
+        yield RunningDancer(harness, side)
 
 
 @check(points=2, depends=("executable", "subpackages"), doc=contract.CREATE)
 @hint(*HINTS)
-def test_starts(running: Dance) -> None:
+def test_starts(running_dancer: RunningDancer) -> None:
     """`ros2 run square_dance dancer` starts a node called dancer."""
-    names = running.harness.nodes()
+    names = running_dancer.harness.nodes()
     expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
 
 
 @check(points=1, depends=("starts",), doc=contract.CREATE)
 @hint(*HINTS)
-def test_dances(running: Dance) -> None:
+def test_dances(running_dancer: RunningDancer) -> None:
     """It drives along a side of the square, and then turns to the left."""
-    robots.expect_dance(running.harness, running.side)
+    robots.expect_dance(running_dancer.harness, running_dancer.side)
 
 
 @check(points=1, depends=("starts", "config"), doc=contract.DEVELOP)
 @hint("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side.")
-def test_configured(workspace: Workspace, dance: Installed) -> None:
+def test_configured(workspace: Workspace, installed_dance: Installed) -> None:
     """With the installed configuration it dances a square of the size that is written there."""
-    path = dance.prefix / "share" / dance.package / contract.DANCE_CONFIG
-    side = _side(dance.read(contract.DANCE_CONFIG) or b"")
+    path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
+    side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")
     with robots.dancer(workspace, "--params-file", str(path)) as harness:
         robots.expect_dance(harness, side)
 

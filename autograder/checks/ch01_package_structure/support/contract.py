@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-DANCE = "square_dance"
+SQUARE_DANCE = "square_dance"
 DANCER = "dancer"
 DANCE_LAUNCH = "launch/square_dance.launch.py"
 DANCE_CONFIG = "config/square_dance.yaml"
 SPEED = 0.25  # m/s
 TURN = math.pi / 8  # rad/s
 
-WATCH = "wall_alarm"
+WALL_ALARM = "wall_alarm"
 ALARM = "alarm"
 ALARM_CONFIG = "config/wall_alarm.yaml"
 NEAR = 0.8  # m, in the alarm's configuration

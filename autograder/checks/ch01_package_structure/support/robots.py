@@ -20,7 +20,7 @@ CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
 def dancer(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
     """Start the dancer."""
     with SteppedHarness(
-        workspace, contract.DANCE, contract.DANCER, listens={CMD_VEL: Twist}, arguments=_ros(arguments)
+        workspace, contract.SQUARE_DANCE, contract.DANCER, listens={CMD_VEL: Twist}, arguments=_ros(arguments)
     ) as harness:
         yield harness
 
@@ -30,7 +30,7 @@ def alarm(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
     """Start the alarm."""
     with SteppedHarness(
         workspace,
-        contract.WATCH,
+        contract.WALL_ALARM,
         contract.ALARM,
         offers={SCAN: LaserScan},
         listens={ALARM: Bool},

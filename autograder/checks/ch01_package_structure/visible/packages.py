@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from autograder.checks import group, hint
-from autograder.checks.ch01_package_structure.support import contract, judge, robots
+from autograder.checks.ch01_package_structure.support import contract, robots
+from autograder.checks.ch01_package_structure.support.assertions import (
+    expect_built,
+    expect_declared,
+    expect_executable,
+    expect_manifest,
+    expect_modules,
+    expect_shared,
+    source_of,
+)
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
@@ -19,7 +28,7 @@ check = group("packages")
 @hint('The tags stand between <package format="3"> and </package>; <export> stands last.')
 def test_manifest(workspace: Workspace) -> None:
     """ROS takes square_dance/package.xml for that of a Python package."""
-    judge.expect_manifest(workspace, contract.DANCE)
+    expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
 @check(points=1, depends=("manifest",), doc=contract.ROSDEP)
@@ -27,8 +36,8 @@ def test_manifest(workspace: Workspace) -> None:
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
     """package.xml of square_dance declares whatever its files import."""
-    manifest = judge.expect_manifest(workspace, contract.DANCE)
-    judge.expect_declared(imports.imported(judge.folder(workspace, contract.DANCE)), manifest.needs())
+    manifest = expect_manifest(workspace, contract.SQUARE_DANCE)
+    expect_declared(imports.imported(source_of(workspace, contract.SQUARE_DANCE)), manifest.needs())
 
 
 @check(points=1, doc=contract.COLCON)
@@ -36,16 +45,16 @@ def test_dependencies(workspace: Workspace) -> None:
 @hint("can't copy 'resource/square_dance' means: the empty marker file is not there.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds square_dance."""
-    judge.expect_built(builds, contract.DANCE)
+    expect_built(builds, contract.SQUARE_DANCE)
 
 
 @check(points=1, depends=("builds",), doc=contract.DEVELOP)
 @hint("Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.")
 @hint("find_packages finds folders that have an __init__.py; setup.cfg says where programs go.")
-def test_dancer(workspace: Workspace, dance: Installed) -> None:
+def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
     """`ros2 run square_dance dancer` would find the program, with all of its modules, and it dances."""
-    judge.expect_executable(dance, contract.DANCER)
-    judge.expect_modules(dance, judge.folder(workspace, contract.DANCE))
+    expect_executable(installed_dance, contract.DANCER)
+    expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
     with robots.dancer(workspace) as harness:
         robots.expect_dance(harness, 1.0)
 
@@ -53,10 +62,10 @@ def test_dancer(workspace: Workspace, dance: Installed) -> None:
 @check(points=1, depends=("builds",), doc=contract.DEVELOP)
 @hint("Each entry of data_files is a pair: a folder below the install prefix, and a list of files.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')); config goes the same way.")
-def test_shared(workspace: Workspace, dance: Installed) -> None:
+def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
     """The launch file and the configuration of square_dance are installed."""
     for name in (contract.DANCE_LAUNCH, contract.DANCE_CONFIG):
-        judge.expect_shared(dance, judge.folder(workspace, contract.DANCE), name)
+        expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
 @check(points=1, doc=contract.COLCON)
@@ -64,16 +73,16 @@ def test_shared(workspace: Workspace, dance: Installed) -> None:
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds wall_alarm."""
-    judge.expect_built(builds, contract.WATCH)
+    expect_built(builds, contract.WALL_ALARM)
 
 
 @check(points=1, depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Mend it rung by rung: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
-def test_alarm_runs(workspace: Workspace, watch: Installed) -> None:
+def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
     """`ros2 run wall_alarm alarm` would find the program, and its alarm goes off."""
-    judge.expect_executable(watch, contract.ALARM)
-    judge.expect_modules(watch, judge.folder(workspace, contract.WATCH))
+    expect_executable(installed_alarm, contract.ALARM)
+    expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
     with robots.alarm(workspace) as harness:
         robots.expect_alarm(harness, 0.3, True)
         robots.expect_alarm(harness, 3.0, False)
@@ -84,5 +93,5 @@ def test_alarm_runs(workspace: Workspace, watch: Installed) -> None:
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml of wall_alarm declares whatever its files import."""
-    manifest = judge.expect_manifest(workspace, contract.WATCH)
-    judge.expect_declared(imports.imported(judge.folder(workspace, contract.WATCH)), manifest.needs())
+    manifest = expect_manifest(workspace, contract.WALL_ALARM)
+    expect_declared(imports.imported(source_of(workspace, contract.WALL_ALARM)), manifest.needs())

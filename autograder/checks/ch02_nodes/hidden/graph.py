@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.robot import Robot, unheard
+from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_ending
 
@@ -40,7 +40,7 @@ def test_subscribes_scan(robot: Robot) -> None:
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
     """Its scan subscription matches a lidar that publishes best-effort."""
-    reason = unheard(robot)
+    reason = qos_mismatch(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
 
 

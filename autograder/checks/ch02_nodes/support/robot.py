@@ -46,7 +46,7 @@ class Robot(AutoHarness):
         return self.messages("/cmd_vel", since=began)
 
 
-def unheard(robot: Robot) -> str:
+def qos_mismatch(robot: Robot) -> str:
     """Say why a best-effort lidar would not reach the robot's scan subscription; an empty string if it does.
 
     A subscription gets nothing from a publisher that offers less than it requests.
@@ -74,7 +74,7 @@ def expect_stop(commands: Sequence[Stamped], situation: str) -> None:
     _expect(commands, 0.0, 0.0, situation, "publish zero velocity")
 
 
-def say(command: Twist) -> str:
+def describe_command(command: Twist) -> str:
     """Put a command into words."""
     linear, angular = command.linear.x, command.angular.z
     if not (math.isfinite(linear) and math.isfinite(angular)):
@@ -91,7 +91,7 @@ def _expect(commands: Sequence[Stamped], linear: float, angular: float, situatio
         for stamped in commands
         if not (_near(stamped.message.linear.x, linear) and _near(stamped.message.angular.z, angular))
     ]
-    expect(not wrong, f"{situation}, the robot {say(wrong[0]) if wrong else ''}: it should {wanted}.")
+    expect(not wrong, f"{situation}, the robot {describe_command(wrong[0]) if wrong else ''}: it should {wanted}.")
 
 
 def _near(value: float, wanted: float) -> bool:

@@ -6,7 +6,7 @@ import math
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn, unheard
+from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn, qos_mismatch
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("controller")
@@ -36,7 +36,7 @@ def test_topics(robot: Robot) -> None:
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_qos(robot: Robot) -> None:
     """A best-effort lidar reaches its scan subscription."""
-    reason = unheard(robot)
+    reason = qos_mismatch(robot)
     expect(not reason, f"It would get no scan: {reason}.")
 
 

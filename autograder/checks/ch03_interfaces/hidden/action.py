@@ -62,47 +62,47 @@ def test_drive_needs_odometry(driver: Driver) -> None:
 
 @check(points=2, depends=("drive_serves",), doc=contract.GROUPS)
 @hint(*EXECUTOR)
-def test_drive_moves(ready: Driver, draw: random.Random) -> None:
+def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
     speed = draw.uniform(0.3, 0.45)
-    goal = ready.start(3.0, speed)
-    began = ready.seconds
-    commands = ready.roll(goal, 0.6)
-    seconds = ready.seconds - began
-    ready.abandon(goal)
+    goal = placed_driver.start(3.0, speed)
+    began = placed_driver.seconds
+    commands = placed_driver.roll(goal, 0.6)
+    seconds = placed_driver.seconds - began
+    placed_driver.abandon(goal)
     expect(bool(commands), "The goal was accepted, but no command came on cmd_vel.")
     wrong = [command for command in commands if not straight(command, speed)]
-    expect(not wrong, f"At a speed of {speed:.2f} m/s the robot was told {_say(wrong[0]) if wrong else ''}.")
+    expect(not wrong, f"At a speed of {speed:.2f} m/s the robot was told {_describe(wrong[0]) if wrong else ''}.")
     rate = len(commands) / seconds
     expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
 
 
 @check(points=2, depends=MOVES, doc=contract.ACTION)
 @hint(*EXECUTOR)
-def test_drive_succeeds(ready: Driver, draw: random.Random) -> None:
+def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
     for speed in (0.5, 0.4):
         distance = draw.uniform(0.6, 0.8)
-        x, y = ready.x, ready.y
-        goal = ready.start(distance, speed)
-        commands = ready.finish(goal, LONG, f"With {distance:.2f} m to drive")
-        driven = math.dist((x, y), (ready.x, ready.y))
-        says = NAMES.get(goal.status, goal.status)
-        expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"After {driven:.2f} of {distance:.2f} m it ended {says}.")
+        x, y = placed_driver.x, placed_driver.y
+        goal = placed_driver.start(distance, speed)
+        commands = placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
+        driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
+        ended = NAMES.get(goal.status, goal.status)
+        expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"After {driven:.2f} of {distance:.2f} m it ended {ended}.")
         expect(stopped(commands), "After the goal had ended, the last command was no stop.")
         most = distance + 3 * contract.PERIOD * speed + SLACK
         expect(distance - SLACK <= driven <= most, f"With {distance:.2f} m to drive, the robot drove {driven:.2f} m.")
-        ready.place(ready.x, ready.y, ready.heading + math.pi / 2.0)
+        placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
 @check(points=2, depends=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
-def test_drive_result(ready: Driver, draw: random.Random) -> None:
+def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
-    x, y = ready.x, ready.y
-    goal = ready.start(draw.uniform(0.15, 0.35), 0.5)
-    ready.finish(goal, LONG, "With a short way to drive")
-    driven = math.dist((x, y), (ready.x, ready.y))
+    x, y = placed_driver.x, placed_driver.y
+    goal = placed_driver.start(draw.uniform(0.15, 0.35), 0.5)
+    placed_driver.finish(goal, LONG, "With a short way to drive")
+    driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
@@ -111,11 +111,11 @@ def test_drive_result(ready: Driver, draw: random.Random) -> None:
 
 @check(points=2, depends=MOVES, doc=contract.ACTION)
 @hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
-def test_drive_feedback(ready: Driver, draw: random.Random) -> None:
+def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     """Feedback comes on the way: driven grows, and remaining is what is left."""
     distance = draw.uniform(0.4, 0.5)
-    goal = ready.start(distance, 0.5)
-    ready.finish(goal, LONG, f"With {distance:.2f} m to drive")
+    goal = placed_driver.start(distance, 0.5)
+    placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
     heard = [stamped.message for stamped in goal.feedback]
     expect(len(heard) >= 4, f"On the way came {len(heard)} feedbacks, instead of about ten a second.")
     wrong = [one for one in heard if abs(one.driven + one.remaining - distance) > SLACK]
@@ -128,7 +128,7 @@ def test_drive_feedback(ready: Driver, draw: random.Random) -> None:
 @check(points=2, depends=("drive_serves",), doc=contract.ACTION)
 @hint("goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.")
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
-def test_drive_rejects(ready: Driver, draw: random.Random) -> None:
+def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
     """A goal whose distance or speed is out of its range is rejected, and the robot stays."""
     over = draw.uniform(0.05, 2.0)
     bad = (
@@ -143,27 +143,26 @@ def test_drive_rejects(ready: Driver, draw: random.Random) -> None:
     )
     accepted = []
     for distance, speed in bad:
-        goal = ready.send(distance, speed)
+        goal = placed_driver.send(distance, speed)
         if goal.accepted:
             accepted.append(f"{distance:.2f} m at {speed:.2f} m/s")
-            ready.abandon(goal)
+            placed_driver.abandon(goal)
     share = round(1.0 - len(accepted) / len(bad), 2)
     expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
 
 
 @check(points=1, depends=MOVES, doc=contract.ACTION)
 @hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
-def test_drive_limits(ready: Driver) -> None:
+def test_drive_limits(placed_driver: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""
     for distance, speed in ((MAX_DISTANCE, None), (0.5, MAX_SPEED)):
-        goal = ready.start(distance, speed)
-        commands = ready.roll(goal, 0.4)
-        ready.abandon(goal)
+        goal = placed_driver.start(distance, speed)
+        commands = placed_driver.roll(goal, 0.4)
+        placed_driver.abandon(goal)
         wanted = 0.2 if speed is None else speed
-        expect(
-            bool(commands) and straight(commands[0], wanted),
-            f"With {distance} m at {wanted} m/s, the robot was told {_say(commands[0]) if commands else 'nothing'}.",
-        )
+        told = _describe(commands[0]) if commands else "nothing"
+        right = bool(commands) and straight(commands[0], wanted)
+        expect(right, f"With {distance} m at {wanted} m/s, the robot was told {told}.")
 
 
 def straight(command: Twist, speed: float) -> bool:
@@ -171,5 +170,5 @@ def straight(command: Twist, speed: float) -> bool:
     return bool(abs(command.linear.x - speed) <= SLACK and abs(command.angular.z) <= SLACK)
 
 
-def _say(command: Twist) -> str:
+def _describe(command: Twist) -> str:
     return f"to drive at {command.linear.x:.2f} m/s and to turn at {command.angular.z:.2f} rad/s"

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from autograder.checks.ch03_interfaces.conftest import Shared
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
-from autograder.harness import Workspace
+from autograder.harness import Shared, Workspace
 
 TUNED_PERIOD = 0.25  # s
 
@@ -22,15 +21,14 @@ def tuned_name(seed: int) -> str:
 
 
 @pytest.fixture(scope="session")
-def tuned_reporters(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
-    """Where the status publisher is kept that is given other parameters."""
+def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
+    """Keeps the status publisher that is given other parameters."""
     arguments = ("--ros-args", "-p", f"status_period:={TUNED_PERIOD}", "-p", f"robot_name:={tuned_name}")
-    shared = Shared(lambda: Reporter(workspace, types, arguments))
-    yield shared
-    shared.close()
+    with Shared(lambda: Reporter(workspace, types, arguments)) as shared:
+        yield shared
 
 
 @pytest.fixture
-def tuned_reporter(tuned_reporters: Shared[Reporter]) -> Reporter:
+def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
     """The status publisher with a name and a period that it is given."""
-    return tuned_reporters.harness()
+    return shared_tuned_reporter.get()

@@ -57,7 +57,7 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
         if abs(math.remainder(used, 1.0)) < 0.01:  # too near to a whole percent to be told apart
             legs[0] += 0.1
             used = sum(legs) / METRES_PER_PERCENT
-        reporter.level(level)
+        reporter.set_battery(level)
         answer = reporter.ask(legs, 0)
         left = math.floor(level - used)
         situation = f"At {level} % and {len(legs)} legs of {sum(legs):.1f} m in all"
@@ -71,7 +71,7 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     for _ in range(2):
         level, reserve = draw.randrange(60, 101), draw.randrange(10, 40)
         longest = (level - reserve) * METRES_PER_PERCENT
-        reporter.level(level)
+        reporter.set_battery(level)
         for legs, left in (([longest], reserve), ([longest / 2, longest / 2 + 2.5], reserve - 1), ([], level)):
             answer = reporter.ask(legs, reserve)
             situation = f"At {level} %, with {left} % left of a reserve of {reserve} %"
@@ -83,7 +83,7 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
-    reporter.level(draw.randrange(10, 40))
+    reporter.set_battery(draw.randrange(10, 40))
     for reserve in (5, 0):
         answer = reporter.ask([draw.uniform(300.0, 900.0), 50.0], reserve)
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
@@ -94,7 +94,7 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
 @hint("0.0 <= leg < math.inf holds for distances alone.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
-    reporter.level(draw.randrange(60, 101))
+    reporter.set_battery(draw.randrange(60, 101))
     for bad in (-draw.uniform(0.1, 5.0), math.nan, math.inf):
         legs = [draw.uniform(1.0, 9.0), bad]
         draw.shuffle(legs)
@@ -105,7 +105,7 @@ def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
-    reporter.level(50)
+    reporter.set_battery(50)
     good, bad = reporter.ask([5.0]), reporter.ask([500.0])
     expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
     expect(len(bad.reason.strip()) >= 3, f"The trip is not possible, and the reason is {bad.reason!r}.")

@@ -112,8 +112,8 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
     levels = [0, 100, *(draw.randrange(1, 100) for _ in range(CASES))]
     for number, level in enumerate(levels):
         offset = (-0.3, 0.3)[number % 2] if 0 < level < 100 else 0.0
-        reporter.tell(draw.random())
-        reporter.tell((level + offset) / 100.0)
+        reporter.publish_battery(draw.random())
+        reporter.publish_battery((level + offset) / 100.0)
         said = reporter.status().battery_level
         expect(
             said == level, f"At percentage {(level + offset) / 100.0:.3f} battery_level is {said}, instead of {level}."
@@ -125,9 +125,9 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
     for percentage in (math.nan, 1.0 + draw.uniform(0.2, 5.0), -draw.uniform(0.2, 1.0)):
-        reporter.tell(0.5)
+        reporter.publish_battery(0.5)
         reporter.run(0.1)
-        reporter.tell(percentage)
+        reporter.publish_battery(percentage)
         said = reporter.status().battery_level
         expect(said == UNKNOWN, f"At percentage {percentage:.2f} battery_level is {said}, instead of {UNKNOWN}.")
 
@@ -137,7 +137,7 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
 def test_status_charging(reporter: Reporter) -> None:
     """is_charging follows the battery's power_supply_status."""
     for charging in (True, False):
-        reporter.tell(0.5, charging=charging)
+        reporter.publish_battery(0.5, charging=charging)
         said = reporter.status().is_charging
         expect(said is charging, f"is_charging is {said} while the battery is {'' if charging else 'dis'}charging.")
 
@@ -148,7 +148,7 @@ def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
     """joint_positions are the newest joint state's positions, as many as there are."""
     for count in (draw.randrange(2, 6), draw.randrange(6, 12)):
         positions = [draw.uniform(-3.0, 3.0) for _ in range(count)]
-        reporter.pose(positions)
+        reporter.publish_joints(positions)
         said = list(reporter.status().joint_positions)
         right = len(said) == count and all(map(same, said, positions))
         expect(right, f"Of {count} positions, joint_positions holds {_some(said)} instead of {_some(positions)}.")

@@ -37,7 +37,7 @@ class Driver(AutoHarness):
         """Put the robot somewhere else, and let the driver hear of it."""
         self.x, self.y, self.heading, self.stuck, self.deaf = x, y, heading, False, False
         for _ in range(3):
-            self._tell()
+            self._publish_odometry()
             self.run(LOOK)
 
     def send(self, distance: float, speed: float | None = None) -> Goal:
@@ -66,7 +66,7 @@ class Driver(AutoHarness):
         while self.seconds < end and goal.result is None and not (until and until()):
             self.run(LOOK)
             seen = self._obey(seen)
-            self._tell()
+            self._publish_odometry()
         self.run(2 * LOOK)  # the last command may come with the result
         self._obey(seen)
         return [stamped.message for stamped in self.messages(COMMANDS)[before:]]
@@ -92,7 +92,7 @@ class Driver(AutoHarness):
                 self.y += PERIOD * stamped.message.linear.x * math.sin(self.heading)
         return len(commands)
 
-    def _tell(self) -> None:
+    def _publish_odometry(self) -> None:
         if self.deaf:
             return
         odometry = Odometry()

@@ -1,4 +1,4 @@
-"""The student's definitions, read from the sources, and verdicts on them in words."""
+"""The student's definitions, read from the sources, and assertions on them."""
 
 from __future__ import annotations
 

@@ -28,12 +28,12 @@ class Reporter(AutoHarness):
         super().__init__(workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments)
         self.types = types
 
-    def tell(self, percentage: float, *, charging: bool = False) -> None:
+    def publish_battery(self, percentage: float, *, charging: bool = False) -> None:
         """Let the battery speak, from 0.0 to 1.0; the message is on its way until time goes on."""
         status = BatteryState.POWER_SUPPLY_STATUS_CHARGING if charging else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
         self.publish(BATTERY, BatteryState(percentage=percentage, power_supply_status=status))
 
-    def pose(self, positions: Sequence[float]) -> None:
+    def publish_joints(self, positions: Sequence[float]) -> None:
         """Let the joints speak."""
         names = [f"joint_{number}" for number in range(len(positions))]
         self.publish(JOINTS, JointState(name=names, position=list(positions)))
@@ -46,10 +46,10 @@ class Reporter(AutoHarness):
         expect(bool(heard), "No message came on robot_status for more than a second.")
         return heard[-1].message
 
-    def level(self, percent: int) -> None:
+    def set_battery(self, percent: int) -> None:
         """Set the battery's level; wait until the status shows that the program has heard of it."""
         began = self.seconds
-        self.tell(min(1.0, (percent + 0.25) / 100.0))
+        self.publish_battery(min(1.0, (percent + 0.25) / 100.0))
 
         def shown() -> bool:
             return any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC, since=began)[-1:])

@@ -21,7 +21,7 @@ def test_status(reporter: Reporter) -> None:
     expect(
         first.battery_level == contract.UNKNOWN, f"Before the battery has spoken its level is {first.battery_level}."
     )
-    reporter.tell(0.4)
+    reporter.publish_battery(0.4)
     level = reporter.status().battery_level
     expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
 
@@ -30,7 +30,7 @@ def test_status(reporter: Reporter) -> None:
 @hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
-    reporter.level(40)
+    reporter.set_battery(40)
     for legs, left in (([50.0, 50.0], 20), ([50.0, 51.0], 19)):
         answer = reporter.ask(legs)
         expect(answer.battery_at_end == left, f"Legs of {legs} leave {answer.battery_at_end} %, instead of {left} %.")

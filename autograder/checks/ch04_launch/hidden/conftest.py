@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, draw_inputs
-from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.harness import Workspace
 
 
@@ -19,8 +19,8 @@ def inputs(seed: int) -> Inputs:
 
 
 @pytest.fixture(scope="module")
-def shared(workspace: Workspace, inputs: Inputs) -> Iterator[Shared]:
+def launches(workspace: Workspace, inputs: Inputs) -> Iterator[Launches]:
     """Launches of one module's checks: each is started when it is first asked for."""
-    launches = Shared(workspace, inputs)
+    launches = Launches(workspace, inputs)
     yield launches
     launches.close()

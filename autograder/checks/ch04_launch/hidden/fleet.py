@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import FIRST, FLEET, PACKAGE, SECOND, SHARED, in_spaces
-from autograder.checks.ch04_launch.visible.launches import HEAR_SECONDS, speakers
+from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
@@ -18,18 +18,18 @@ GROUPED = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDesc
 
 @check(points=3, doc=contract.LARGE)
 @hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED)
-def test_two_robots(shared: Shared) -> None:
+def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
-    launch_probe.expect_nodes(shared.fleet(), in_spaces(FIRST, SECOND))
+    launch_probe.expect_nodes(launches.fleet(), in_spaces(FIRST, SECOND))
 
 
 @check(points=2, depends=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
 @hint("path leads to launch/robot.launch.py in the package's share folder.")
-def test_includes(shared: Shared) -> None:
+def test_includes(launches: Launches) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
     wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
-    nodes = launch_probe.settle(shared.renamed_fleet(), wanted)
+    nodes = launch_probe.settle(launches.renamed_fleet(), wanted)
     expect(
         nodes == wanted,
         "The checks put a robot.launch.py with one node, wheels, beside your file; it started "
@@ -40,26 +40,28 @@ def test_includes(shared: Shared) -> None:
 @check(points=1, doc=contract.SUBSTITUTIONS)
 @hint("ros2 launch -s my_robot_bringup two_robots.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
-def test_fleet_arguments(shared: Shared) -> None:
+def test_fleet_arguments(launches: Launches) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    arguments = launch_probe.shown_arguments(shared.fleet_workspace(), PACKAGE, FLEET)  # those of what it includes, too
+    arguments = launch_probe.shown_arguments(
+        launches.fleet_workspace(), PACKAGE, FLEET
+    )  # those of what it includes, too
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
         launch_probe.expect_argument(arguments, name, default)
 
 
 @check(points=2, depends=("two_robots",), doc=contract.SUBSTITUTIONS)
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
-def test_spaces(shared: Shared, inputs: Inputs) -> None:
+def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
-    launch_probe.expect_nodes(_renamed(shared, inputs), in_spaces(*inputs.names))
+    launch_probe.expect_nodes(_renamed(launches, inputs), in_spaces(*inputs.names))
 
 
 @check(points=2, depends=("spaces",), doc=contract.LARGE)
 @hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
 @hint("A robot's robot_name is its own namespace's name.")
-def test_robot_names(shared: Shared, inputs: Inputs) -> None:
+def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
-    harness = _renamed(shared, inputs)
+    harness = _renamed(launches, inputs)
     for name in inputs.names:
         launch_probe.expect_parameters(harness, f"/{name}/reporter", {"robot_name": name})
 
@@ -67,9 +69,9 @@ def test_robot_names(shared: Shared, inputs: Inputs) -> None:
 @check(points=2, depends=("spaces",), doc=contract.LARGE)
 @hint("The included file has an argument of its own called speed: hand yours on to it.")
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
-def test_fleet_speed(shared: Shared, inputs: Inputs) -> None:
+def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
-    harness = _renamed(shared, inputs)
+    harness = _renamed(launches, inputs)
     for name in inputs.names:
         launch_probe.expect_parameters(harness, f"/{name}/driver", {"speed": inputs.speed})
 
@@ -77,25 +79,27 @@ def test_fleet_speed(shared: Shared, inputs: Inputs) -> None:
 @check(points=3, depends=("two_robots",), doc=contract.LARGE)
 @hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
 @hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
-def test_status(shared: Shared) -> None:
+def test_status(launches: Launches) -> None:
     """Both robots report on /fleet/status."""
-    harness = shared.fleet()
+    harness = launches.fleet()
     wanted = [f"/{FIRST}/reporter", f"/{SECOND}/reporter"]
     harness.wait_for(lambda: harness.publishers(SHARED) == wanted, MATCH_SECONDS)
     on = {topic: harness.publishers(topic) for topic in (SHARED, f"/{FIRST}/status", f"/{SECOND}/status", "/status")}
     seen = "; ".join(f"{topic}: {', '.join(names)}" for topic, names in on.items() if names)
     share = len(set(wanted) & set(on[SHARED])) / 2
     expect(on[SHARED] == wanted, f"Reports are published on {seen or 'no topic'}.", fraction=min(share, 0.5))
-    harness.wait_for(lambda: len(speakers(harness)) == 2, HEAR_SECONDS)
-    expect(len(speakers(harness)) > 0, f"Nothing was heard on {SHARED} within {HEAR_SECONDS:.0f} s.", fraction=0.5)
+    harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
+    expect(
+        len(reporting_robots(harness)) > 0, f"Nothing was heard on {SHARED} within {HEAR_SECONDS:.0f} s.", fraction=0.5
+    )
 
 
 @check(points=2, depends=("two_robots",), doc=contract.LARGE)
 @hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
-def test_own_commands(shared: Shared) -> None:
+def test_own_commands(launches: Launches) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
-    harness = shared.fleet()
+    harness = launches.fleet()
     for name in (FIRST, SECOND):
         wanted = [f"/{name}/driver"], [f"/{name}/reporter"]
         expect(
@@ -106,15 +110,15 @@ def test_own_commands(shared: Shared) -> None:
 
 @check(points=1, depends=("two_robots",))
 @hint("What Node(...) starts, the launch ends.")
-def test_fleet_stop(shared: Shared) -> None:
+def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
-    launch_probe.expect_clean_stop(shared.fleet())
+    launch_probe.expect_clean_stop(launches.fleet())
 
 
 def _ends(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
     return harness.publishers(f"/{name}/cmd_vel"), harness.subscribers(f"/{name}/cmd_vel")
 
 
-def _renamed(shared: Shared, inputs: Inputs) -> LaunchHarness:
+def _renamed(launches: Launches, inputs: Inputs) -> LaunchHarness:
     first, second = inputs.names
-    return shared.fleet(first=first, second=second, speed=inputs.speed)
+    return launches.fleet(first=first, second=second, speed=inputs.speed)

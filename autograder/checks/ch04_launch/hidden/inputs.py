@@ -1,4 +1,4 @@
-"""Hidden inputs: what is written into the parameters file, and which arguments are given."""
+"""Hidden inputs: what is written into the parameters file, and which arguments are included."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, PACKAGE, REPORTER, ROBOT
 from autograder.harness import Workspace
@@ -18,9 +18,9 @@ TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which typ
 @check(points=2, doc=contract.SUBSTITUTIONS)
 @hint("ros2 launch -s my_robot_bringup robot.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
-def test_arguments(shared: Shared) -> None:
+def test_arguments(launches: Launches) -> None:
     """robot.launch.py declares robot_name, speed and report, each with its default and a description."""
-    arguments = shared.robot_arguments()
+    arguments = launches.robot_arguments()
     for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
         launch_probe.expect_argument(arguments, name, default)
 
@@ -28,9 +28,9 @@ def test_arguments(shared: Shared) -> None:
 @check(points=2, depends=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
-def test_choices(workspace: Workspace, shared: Shared) -> None:
+def test_choices(workspace: Workspace, launches: Launches) -> None:
     """Report can be true or false, and nothing else."""
-    found = shared.robot_arguments()["report"].choices
+    found = launches.robot_arguments()["report"].choices
     shown = ", ".join(found) if found else "any value"
     expect(sorted(found) == ["false", "true"], f"The argument report takes {shown}, instead of true and false.")
     with LaunchHarness(workspace, PACKAGE, ROBOT, {"report": "maybe"}) as harness:
@@ -41,42 +41,42 @@ def test_choices(workspace: Workspace, shared: Shared) -> None:
 @check(points=2, doc=contract.LAUNCH)
 @hint("Run the launch file in the notebook and read its first lines that say ERROR.")
 @hint("Node(package='my_robot_bringup', executable='driver', name='driver', ...), and the same for the reporter.")
-def test_starts(shared: Shared) -> None:
+def test_starts(launches: Launches) -> None:
     """robot.launch.py starts driver and reporter, and nothing else."""
-    launch_probe.expect_nodes(shared.robot(), [DRIVER, REPORTER])
+    launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
 
 
 @check(points=1, depends=("starts",))
 @hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
-def test_defaults(shared: Shared) -> None:
+def test_defaults(launches: Launches) -> None:
     """Without arguments, the robot is called robot1 and drives at 0.2 m/s, whatever the parameters file says."""
-    launch_probe.expect_parameters(shared.robot(), DRIVER, {"speed": contract.SPEED})
-    launch_probe.expect_parameters(shared.robot(), REPORTER, {"robot_name": contract.ROBOT_NAME})
+    launch_probe.expect_parameters(launches.robot(), DRIVER, {"speed": contract.SPEED})
+    launch_probe.expect_parameters(launches.robot(), REPORTER, {"robot_name": contract.ROBOT_NAME})
 
 
 @check(points=2, depends=("starts",), doc=contract.LARGE)
 @hint("config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').")
 @hint("parameters=[config, {...}] is a list: first the file, then what has to win over it.")
-def test_parameters_file(shared: Shared, inputs: Inputs) -> None:
+def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
     """Both nodes get the parameters of config/robot.yaml."""
-    launch_probe.expect_parameters(shared.robot(), DRIVER, {"turn_rate": inputs.file["turn_rate"]})
-    launch_probe.expect_parameters(shared.robot(), REPORTER, {"report_period": inputs.file["report_period"]})
+    launch_probe.expect_parameters(launches.robot(), DRIVER, {"turn_rate": inputs.file["turn_rate"]})
+    launch_probe.expect_parameters(launches.robot(), REPORTER, {"report_period": inputs.file["report_period"]})
 
 
 @check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
-def test_speed(shared: Shared, inputs: Inputs) -> None:
+def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
-    harness = shared.robot(speed=inputs.speed, robot_name=inputs.number_name)
+    harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
     launch_probe.settle(harness, [DRIVER, REPORTER])
     launch_probe.expect_parameters(harness, DRIVER, {"speed": inputs.speed})
 
 
 @check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
-def test_name(shared: Shared, inputs: Inputs) -> None:
+def test_name(launches: Launches, inputs: Inputs) -> None:
     """The argument robot_name reaches the reporter, even if it looks like a number."""
-    harness = shared.robot(speed=inputs.speed, robot_name=inputs.number_name)
+    harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     expect(
         REPORTER in nodes,
@@ -88,9 +88,9 @@ def test_name(shared: Shared, inputs: Inputs) -> None:
 @check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 @hint("UnlessCondition is the other way round.")
-def test_quiet(shared: Shared, inputs: Inputs) -> None:
+def test_quiet(launches: Launches, inputs: Inputs) -> None:
     """With report:=false, the reporter is not started."""
-    harness = shared.robot(report="false", speed=inputs.whole_speed)
+    harness = launches.robot(report="false", speed=inputs.whole_speed)
     nodes = launch_probe.settle(harness, [DRIVER])
     expect(
         REPORTER not in nodes and "reporter" not in launch_probe.started(harness.output),
@@ -100,9 +100,9 @@ def test_quiet(shared: Shared, inputs: Inputs) -> None:
 
 @check(points=1, depends=("speed",))
 @hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
-def test_whole_speed(shared: Shared, inputs: Inputs) -> None:
+def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
-    harness = shared.robot(report="false", speed=inputs.whole_speed)
+    harness = launches.robot(report="false", speed=inputs.whole_speed)
     nodes = launch_probe.settle(harness, [DRIVER])
     expect(
         DRIVER in nodes,
@@ -114,6 +114,6 @@ def test_whole_speed(shared: Shared, inputs: Inputs) -> None:
 @check(points=2, depends=("starts",))
 @hint("What a launch file starts with Node(...) ends with the launch.")
 @hint("A program that the launch file starts by other means, such as subprocess, is nobody's child in the end.")
-def test_clean_stop(shared: Shared) -> None:
+def test_clean_stop(launches: Launches) -> None:
     """Ctrl-C ends both nodes cleanly and leaves nothing behind."""
-    launch_probe.expect_clean_stop(shared.robot())
+    launch_probe.expect_clean_stop(launches.robot())

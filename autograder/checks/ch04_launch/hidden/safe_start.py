@@ -6,7 +6,7 @@ import signal
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.shared import Shared
+from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.harness.launch import LaunchHarness
@@ -21,9 +21,9 @@ FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shu
 
 @check(points=3, doc=contract.EVENTS)
 @hint("The driver is in no list but the one that after_self_test returns.", WAITS)
-def test_order(shared: Shared, inputs: Inputs) -> None:
+def test_order(launches: Launches, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
-    harness = shared.safe(battery=inputs.enough)
+    harness = launches.safe(battery=inputs.enough)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     started = launch_probe.started(harness.output)
     expect("self_test" in started, f"The self-test was not started; {', '.join(started) or 'nothing'} was.")
@@ -38,9 +38,9 @@ def test_order(shared: Shared, inputs: Inputs) -> None:
 @check(points=2, depends=("order",), doc=contract.EVENTS)
 @hint("The reporter waits for nobody: it stands in the LaunchDescription itself.")
 @hint("What stands in the list is started at once, one thing after the other, without waiting.")
-def test_reporter_first(shared: Shared, inputs: Inputs) -> None:
+def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     """The reporter starts at once, while the self-test still runs."""
-    harness = shared.safe(battery=inputs.enough)
+    harness = launches.safe(battery=inputs.enough)
     expect(REPORTER in harness.nodes(), "The reporter does not run.")
     before = harness.output.partition("process has finished cleanly")[0]
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
@@ -49,9 +49,9 @@ def test_reporter_first(shared: Shared, inputs: Inputs) -> None:
 @check(points=3, doc=contract.EVENTS)
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 @hint("return [Shutdown(reason='...')] where it is not 0.")
-def test_fails_safe(shared: Shared, inputs: Inputs) -> None:
+def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
     """When the self-test fails, the driver is never started and everything ends."""
-    harness = shared.safe(battery=inputs.empty)
+    harness = launches.safe(battery=inputs.empty)
     harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
     over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     launch_probe.require_written(harness.output)
@@ -66,9 +66,9 @@ def test_fails_safe(shared: Shared, inputs: Inputs) -> None:
 @check(points=1, depends=("order",))
 @hint("80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.")
 @hint("ParameterValue(LaunchConfiguration('battery'), value_type=float)")
-def test_whole_battery(shared: Shared) -> None:
+def test_whole_battery(launches: Launches) -> None:
     """The default, 80 without a point, is a battery too."""
-    harness = shared.safe()
+    harness = launches.safe()
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     expect(
         DRIVER in nodes, f"Without an argument, the driver does not run. {launch_probe.trouble(harness.output)}".strip()
@@ -77,9 +77,9 @@ def test_whole_battery(shared: Shared) -> None:
 
 @check(points=2, depends=("reporter_first",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
-def test_respawns(shared: Shared, inputs: Inputs) -> None:
+def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
-    harness = shared.safe(battery=inputs.enough)
+    harness = launches.safe(battery=inputs.enough)
     before = _pids(harness, "reporter")
     harness.kill("reporter")
     back = harness.wait_for(lambda: bool(_pids(harness, "reporter") - before), RESPAWN_SECONDS)
@@ -89,16 +89,16 @@ def test_respawns(shared: Shared, inputs: Inputs) -> None:
 
 @check(points=2, depends=("order",), doc=contract.EVENTS)
 @hint("The handler's target_action is the very Node that is started.", FOLLOWS)
-def test_driver_crash(shared: Shared, inputs: Inputs) -> None:
+def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
-    _expect_end(shared.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
+    _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
 
 
 @check(points=1, depends=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
-def test_driver_end(shared: Shared) -> None:
+def test_driver_end(launches: Launches) -> None:
     """When the driver ends by itself, with exit status 0, everything ends too."""
-    _expect_end(shared.safe(), signal.SIGINT, "The driver ended with exit status 0")
+    _expect_end(launches.safe(), signal.SIGINT, "The driver ended with exit status 0")
 
 
 def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> None:

@@ -12,11 +12,10 @@ from std_msgs.msg import String
 from autograder.checks import check, expect, hint
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
+from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
-
-HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
 
 
 @dataclass(frozen=True)
@@ -82,8 +81,11 @@ def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts two robots, and both report on /fleet/status."""
     harness = launches.fleet
     launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, contract.SECOND))
-    harness.wait_for(lambda: len(speakers(harness)) == 2, HEAR_SECONDS)
-    expect(len(speakers(harness)) == 2, f"On {SHARED}, {', '.join(sorted(speakers(harness))) or 'nobody'} was heard.")
+    harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
+    expect(
+        len(reporting_robots(harness)) == 2,
+        f"On {SHARED}, {', '.join(sorted(reporting_robots(harness))) or 'nobody'} was heard.",
+    )
 
 
 @check(points=1, group="safe_start", doc=contract.EVENTS)
@@ -96,8 +98,3 @@ def test_safe_start(launches: Launches) -> None:
     ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
     expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
     expect(ended, "With the battery at 5 %, the launch did not end by itself.")
-
-
-def speakers(harness: LaunchHarness) -> set[str]:
-    """Return the names of the robots that have reported on the shared topic."""
-    return {str(message.data).split(" ", maxsplit=1)[0] for message in harness.messages(SHARED)}

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
 
 from autograder.checks import CheckFailed, expect, group, hint, temporal
-from autograder.checks.ch05_parameters.hidden.conftest import Custom
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.gallery import Gallery
-from autograder.harness import Workspace, drive
-from autograder.probes.parameters import Value, differences
+from autograder.harness import Shared, Workspace, drive
+from autograder.probes.parameters import Value, as_declared, differences
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
@@ -22,54 +25,91 @@ NEAR = 0.02  # m between where it stands and where it should
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
+@dataclass(frozen=True)
+class Configured:
+    """A node that was started with values of its own, and those values."""
+
+    robot: Robot
+    values: dict[str, Value]
+    velocity: float
+    safety: float
+    slow: float
+    frequency: float
+    threshold: int
+
+
+@pytest.fixture(scope="module")
+def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[Configured]:
+    """A node started with drawn values for all six parameters."""
+    drawn = random.Random(f"{seed}:custom")
+    velocity, safety = drawn.randrange(40, 80) / 100, drawn.randrange(70, 110) / 100
+    slow = round(safety + drawn.randrange(30, 60) / 100, 2)
+    frequency, threshold = drawn.choice((20.0, 25.0, 50.0)), drawn.randrange(35, 65)
+    values: dict[str, Value] = {
+        "robot_name": f"Robot{drawn.randrange(100, 999)}",
+        "max_linear_velocity": velocity,
+        "safety_distance": safety,
+        "slow_distance": slow,
+        "control_frequency": frequency,
+        "battery_threshold": threshold,
+    }
+    values = as_declared(values, shared_robot.get().initial)
+    with Robot(workspace, values) as robot:
+        yield Configured(robot, values, velocity, safety, slow, frequency, threshold)
+
+
 @check(points=2, depends=("names",), doc=contract.ARGUMENTS)
 @hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
 @hint("ignore_override=True lets the default win over a file: leave it out.")
-def test_overrides(custom: Custom) -> None:
+def test_overrides(configured: Configured) -> None:
     """Started with values from the command line, it has these values."""
-    wrong = differences(custom.robot.parameters.values(*custom.values), custom.values)
-    expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(custom.values)), 2))
+    wrong = differences(configured.robot.parameters.values(*configured.values), configured.values)
+    expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
 
 
 @check(points=2, depends=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
-def test_start_speed(custom: Custom) -> None:
+def test_start_speed(configured: Configured) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
-    speed = custom.robot.speed_at(custom.slow + 0.3)
-    expect_speed(speed, custom.velocity, f"Started with max_linear_velocity {custom.velocity}")
+    speed = configured.robot.speed_at(configured.slow + 0.3)
+    expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
 
 
 @check(points=2, depends=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
-def test_start_rate(custom: Custom) -> None:
+def test_start_rate(configured: Configured) -> None:
     """It publishes at the frequency that it was started with."""
-    expect_rate(custom.robot.command_rate(), custom.frequency, f"Started with control_frequency {custom.frequency}")
+    expect_rate(
+        configured.robot.command_rate(), configured.frequency, f"Started with control_frequency {configured.frequency}"
+    )
 
 
 @check(points=1, depends=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
-def test_start_threshold(custom: Custom) -> None:
+def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
-    for charge, speed in ((custom.threshold - 5, 0.0), (custom.threshold + 5, custom.velocity)):
-        custom.robot.charge(charge)
-        situation = f"With a threshold of {custom.threshold} percent and a charge of {charge}"
-        expect_speed(custom.robot.speed_at(3.0), speed, situation)
+    for charge, speed in ((configured.threshold - 5, 0.0), (configured.threshold + 5, configured.velocity)):
+        configured.robot.charge(charge)
+        situation = f"With a threshold of {configured.threshold} percent and a charge of {charge}"
+        expect_speed(configured.robot.speed_at(3.0), speed, situation)
 
 
 @check(points=3, depends=("start_speed", "start_threshold"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
-def test_stops(custom: Custom, draw: random.Random, gallery: Gallery) -> None:
+def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
-    recording = drive(custom.robot, _towards_a_wall(draw), SECONDS).recording
+    recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
     end = ahead[-1]
-    sentence = f"With a safety distance of {custom.safety} m, it stood {end:.2f} m before the wall in the end."
+    sentence = f"With a safety distance of {configured.safety} m, it stood {end:.2f} m before the wall in the end."
     gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m")
-    verdict = temporal.always("gap > 0", recording.times.tolist(), {"gap": [x - custom.safety + NEAR for x in ahead]})
+    verdict = temporal.always(
+        "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + NEAR for x in ahead]}
+    )
     if verdict.violated_at is not None:
-        raise CheckFailed(f"It came nearer than {custom.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
-    expect(end < custom.safety + NEAR, sentence, fraction=0.5)
+        raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
+    expect(end < configured.safety + NEAR, sentence, fraction=0.5)
 
 
 @check(points=2, depends=("overrides",))

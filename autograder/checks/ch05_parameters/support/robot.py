@@ -10,10 +10,10 @@ from pathlib import Path
 from sensor_msgs.msg import BatteryState, LaserScan
 
 from autograder.checks import expect
-from autograder.checks.ch05_parameters.support.contract import EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
+from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.harness.drive import LISTENS, OFFERS
-from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared
+from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences
 
 BEAMS = 360
 SCAN_SECONDS = 0.1
@@ -92,6 +92,13 @@ class Robot(AutoHarness):
     def charge(self, percent: float) -> None:
         """Let the battery say its charge."""
         self.publish("/battery_state", BatteryState(percentage=percent / 100.0))
+
+
+def restore(robot: Robot) -> bool:
+    """Set the parameters that can be changed to the values of the contract; return whether the node has them."""
+    wanted = as_declared({name: CHANGEABLE[name] for name in CHANGEABLE if name in robot.initial}, robot.initial)
+    found = robot.parameters.values(*wanted)
+    return not differences(found, wanted) or robot.parameters.change(wanted).accepted
 
 
 def fleet_path(workspace: Workspace) -> Path:

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks.ch08_capstone.conftest import Stable
 from autograder.checks.ch08_capstone.hidden.drives import Drives
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
-from autograder.checks.ch08_capstone.support.system import System
+from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 
 @pytest.fixture
-def seeing(stable: Stable) -> System:
+def seeing(shared_system: SharedSystem) -> System:
     """The system for a check that needs the processor alone."""
-    return stable.system(PROCESSOR)
+    return shared_system.get(PROCESSOR)
 
 
 @pytest.fixture
-def driving(stable: Stable) -> System:
+def driving(shared_system: SharedSystem) -> System:
     """The system for a check that needs the processor and the controller."""
-    return stable.system(PROCESSOR, CONTROLLER)
+    return shared_system.get(PROCESSOR, CONTROLLER)
 
 
 @pytest.fixture(scope="session")
-def drives(stable: Stable, seed: int) -> Drives:
+def drives(shared_system: SharedSystem, seed: int) -> Drives:
     """The drives of this submission."""
-    return Drives(lambda: stable.system(PROCESSOR, CONTROLLER), seed)
+    return Drives(lambda: shared_system.get(PROCESSOR, CONTROLLER), seed)

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from autograder.checks.ch02_nodes.hidden import terrain
-from autograder.checks.ch08_capstone.hidden.tracks import Floats, Trouble, blocked
+from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
 from autograder.checks.ch08_capstone.support.system import System
 from autograder.harness import Stamped, drive
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
 RADIUS = 0.18  # m
 ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
-DARK = Trouble("dead", 3.0, 7.0)
-BLOCKED = Trouble("blocked", 9.5, 11.5)
+DARK = LidarFault("dead", 3.0, 7.0)
+BLOCKED = LidarFault("blocked", 9.5, 11.5)
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Drives:
         system = self._system()
         began = system.seconds
         done = drive(system.harness, simulation, seconds, **options)
-        return Driven(done.recording, system.seconds - began, began, tuple(system.said(began).commands))
+        return Driven(done.recording, system.seconds - began, began, tuple(system.messages(began).commands))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ ENDPOINTS = (
 )
 
 
-def expect_ends(graph: Node, name: str) -> None:
+def expect_endpoints(graph: Node, name: str) -> None:
     """Fail the check unless a node is there under its name, with all its ends; say what is there instead.
 
     Args:
@@ -50,11 +50,11 @@ def expect_ends(graph: Node, name: str) -> None:
     others = ", ".join(f"{space.rstrip('/')}/{other}" for other, space in there) or "none"
     expect((name, "/") in there, f"No node is called /{name}; there is: {others}.")
     wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
-    missing = [said for endpoint in wanted if (said := _say(graph, endpoint))]
+    missing = [said for endpoint in wanted if (said := _describe_fault(graph, endpoint))]
     expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(wanted)), 2))
 
 
-def _say(node: Node, wanted: Endpoint) -> str:
+def _describe_fault(node: Node, wanted: Endpoint) -> str:
     found = dict(_find(node, wanted.kind)(wanted.node, "/"))
     types = found.get(wanted.name)
     if types is None:

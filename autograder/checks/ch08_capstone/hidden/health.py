@@ -9,7 +9,7 @@ from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.nodes import OPEN
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import DEGRADED, FAILED, OK, SAID_WITHIN
-from autograder.checks.ch08_capstone.support.system import System, report_in_words
+from autograder.checks.ch08_capstone.support.system import System, describe_report
 from autograder.harness import Stamped
 
 check = group("step_2")
@@ -24,7 +24,7 @@ def test_health_levels(system: System) -> None:
     _expect_report(system.first.reports[-1:], FAILED, DEAD, "Before the first scan")
     began = system.seconds
     system.see(OPEN, 3.0)
-    reports = system.said(began).reports
+    reports = system.messages(began).reports
     _expect_report(reports[-1:], OK, set(), "With scans for 3 s", fraction=0.25)
     rate = system.harness.rate("/health", began)
     expect(1.6 <= rate <= 2.4, f"It published {rate:.1f} reports a second, instead of 2.", fraction=0.5)
@@ -61,6 +61,6 @@ def _expect_report(
     wanted = f"level {contract.LEVELS[level]}, silent: {', '.join(sorted(silent)) or 'none'}"
     expect(
         report.level == level and given == silent,
-        f"{situation}, health said {report_in_words(report)}; the contract asks {wanted}.",
+        f"{situation}, health said {describe_report(report)}; the contract asks {wanted}.",
         fraction=fraction,
     )

@@ -12,11 +12,16 @@ from std_srvs.srv import SetBool
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
-from autograder.checks.ch08_capstone.conftest import Stable
-from autograder.checks.ch08_capstone.hidden.graph import expect_ends
+from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PARAMETERS, PROCESSOR, TOLERANCE
-from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
+from autograder.checks.ch08_capstone.support.system import (
+    SharedSystem,
+    System,
+    expect_driving,
+    expect_still,
+    expect_turning,
+)
 
 check = group("step_2")
 BUILT = ("build", "clearance_message", "interface_package")
@@ -34,31 +39,31 @@ ENDS = (
 
 @check(points=1, depends=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
-def test_processor(stable: Stable) -> None:
+def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
-    expect_ends(stable.system(PROCESSOR).harness.node, PROCESSOR)
+    expect_endpoints(shared_system.get(PROCESSOR).harness.node, PROCESSOR)
 
 
 @check(points=1, depends=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
-def test_controller(stable: Stable) -> None:
+def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
-    expect_ends(stable.system(CONTROLLER).harness.node, CONTROLLER)
+    expect_endpoints(shared_system.get(CONTROLLER).harness.node, CONTROLLER)
 
 
 @check(points=1, depends=(*BUILT, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
-def test_monitor(stable: Stable) -> None:
+def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
-    expect_ends(stable.system(MONITOR).harness.node, MONITOR)
+    expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
 
 
 @check(points=2, depends=("processor", "monitor"), doc=contract.QOS_DOC)
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
-def test_qos(stable: Stable) -> None:
+def test_qos(shared_system: SharedSystem) -> None:
     """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
-    graph = stable.system(PROCESSOR, MONITOR).harness.node
+    graph = shared_system.get(PROCESSOR, MONITOR).harness.node
     for peer in graph.get_subscriptions_info_by_topic("/scan"):
         reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
         expect(not reliable, f"{peer.node_name} asks for reliable scans: it would get none from a lidar.", fraction=0.5)
@@ -98,7 +103,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
         )
     began = seeing.seconds
     seeing.see(OPEN, 1.0)
-    count = len(seeing.said(began).clearances)
+    count = len(seeing.messages(began).clearances)
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
 
 
@@ -175,7 +180,7 @@ def test_stops(driving: System) -> None:
     driving.see(OPEN)
     began = driving.seconds
     driving.wait(2.0)
-    late = driving.said(began + STALE + MARGIN).commands
+    late = driving.messages(began + STALE + MARGIN).commands
     expect_still(late, f"More than {STALE} s after the last scan", fraction=0.5)
     driving.see(OPEN)
     old = driving.see(OPEN, 1.5, age=1.0).commands
@@ -185,12 +190,12 @@ def test_stops(driving: System) -> None:
 @check(points=2, depends=("drives",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
-def test_enable(driving: System, stable: Stable) -> None:
+def test_enable(driving: System, shared_system: SharedSystem) -> None:
     """The service enable holds the robot still, and lets it go again."""
     try:
         _hold_and_release(driving)
     except CheckFailed:
-        stable.close()  # a robot that is still held would fail what follows
+        shared_system.close()  # a robot that is still held would fail what follows
         raise
 
 

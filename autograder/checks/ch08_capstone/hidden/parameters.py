@@ -98,7 +98,7 @@ def _data_timeout(system: System) -> None:
     _settled(system)
     began = system.seconds
     system.wait(1.2)
-    expect_driving(system.said(began + 0.7).commands, "with data 1.2 s old at most", 0.3)
+    expect_driving(system.messages(began + 0.7).commands, "with data 1.2 s old at most", 0.3)
 
 
 def _half_angle(system: System) -> None:
@@ -111,7 +111,7 @@ def _silence_timeout(system: System) -> None:
     system.see(OPEN, 1.0)
     began = system.seconds
     system.wait(0.9)
-    said = system.said(began + 0.4).reports
+    said = system.messages(began + 0.4).reports
     expect(bool(said) and said[-1].message.level == FAILED, "0.9 s after the last scan, health was not FAILED.")
 
 

@@ -17,7 +17,7 @@ TURNS = 0.05  # rad/s: anything slower is no turn
 
 
 @dataclass(frozen=True)
-class Trouble:
+class LidarFault:
     """A stretch of a drive, in seconds since its start, in which the lidar is dead or blocked."""
 
     name: str

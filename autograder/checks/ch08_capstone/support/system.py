@@ -11,12 +11,13 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
-from autograder.checks.ch02_nodes.support.robot import say
+from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
-from autograder.checks.ch08_capstone.support.messages import Types
-from autograder.harness import AutoHarness, Program, Stamped, Workspace
+from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
+from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
 from autograder.probes.installed import look
 from autograder.probes.parameters import NodeParameters
+from autograder.sandbox import Process
 
 SCAN_SECONDS = 0.1
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
@@ -25,8 +26,8 @@ ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
 
 
 @dataclass(frozen=True)
-class Said:
-    """What the system said during a stretch of time, each in the order in which it came."""
+class Received:
+    """The messages of the system during a stretch of time, in the order in which they came."""
 
     clearances: tuple[Stamped, ...]
     commands: tuple[Stamped, ...]
@@ -73,10 +74,13 @@ class System:
         self.harness.optional = frozenset(PROGRAMS) - frozenset(needed)
 
     def serves(self, needed: Collection[str]) -> bool:
-        """Return whether these programs are there, and none of all has ended."""
-        return self.harness.running.issuperset(needed) and all(
-            process.ending is None for process in self.harness.processes
-        )
+        """Return whether these programs are there."""
+        return self.harness.running.issuperset(needed)
+
+    @property
+    def processes(self) -> tuple[Process, ...]:
+        """The sandboxed programs."""
+        return self.harness.processes
 
     @property
     def seconds(self) -> float:
@@ -98,7 +102,7 @@ class System:
         """Return the parameters of a program's node."""
         return NodeParameters(self.harness, name_of(program))
 
-    def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Said:
+    def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Received:
         """Show a scan ten times a second; return what is said once there was time to react.
 
         Args:
@@ -109,7 +113,7 @@ class System:
         began = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.show(scan, age)
-        return self.said(began + SETTLED)
+        return self.messages(began + SETTLED)
 
     def show(self, scan: LaserScan, age: float = 0.0) -> None:
         """Show one scan and let 0.1 s pass."""
@@ -118,23 +122,46 @@ class System:
         self.harness.publish("/scan", scan)
         self.harness.run(SCAN_SECONDS)
 
-    def wait(self, seconds: float) -> Said:
+    def wait(self, seconds: float) -> Received:
         """Show nothing for a while; return what was said in that time."""
         began = self.seconds
         self.harness.run(seconds)
-        return self.said(began)
+        return self.messages(began)
 
-    def said(self, since: float, until: float = math.inf) -> Said:
+    def messages(self, since: float, until: float = math.inf) -> Received:
         """Return what was said after `since`, in seconds of ROS time, and up to `until`."""
         topics = ("/clearance", "/cmd_vel", "/health")
-        return Said(*(tuple(self.harness.messages(topic, since=since, until=until)) for topic in topics))
+        return Received(*(tuple(self.harness.messages(topic, since=since, until=until)) for topic in topics))
+
+
+class SharedSystem:
+    """Keeps one system for several checks, and starts it anew once one of its programs has ended."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self._needed: tuple[str, ...] = ()
+        self._shared = Shared(self._make, lambda system: system.serves(self._needed))
+
+    def get(self, *needed: str) -> System:
+        """Return a system in which these programs run; that others fail is no matter then."""
+        self._needed = needed
+        system = self._shared.get()
+        system.need(needed)
+        return system
+
+    def close(self) -> None:
+        """End the present system; the next check gets a new one."""
+        self._shared.close()
+
+    def _make(self) -> System:
+        return System(self._workspace, types(load_messages(self._workspace)), self._needed)
 
 
 def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should be told to stand still.")
     bad = next((c for c in commands if not (_near(c.message.linear.x, 0.0) and _near(c.message.angular.z, 0.0))), None)
-    did = "" if bad is None else say(bad.message)
+    did = "" if bad is None else describe_command(bad.message)
     expect(bad is None, f"{situation}, the robot {did}: it should stand still.", fraction=fraction)
 
 
@@ -142,7 +169,7 @@ def expect_driving(commands: Sequence[Stamped], situation: str, fastest: float, 
     """Fail the check unless every command drives forward, at most at `fastest` m/s."""
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
     bad = next((c for c in commands if not 0.0 < c.message.linear.x <= fastest + TOLERANCE), None)
-    did = "" if bad is None else say(bad.message)
+    did = "" if bad is None else describe_command(bad.message)
     expect(
         bad is None,
         f"{situation}, the robot {did}: it should drive forward, at most at {fastest:.2f} m/s.",
@@ -164,7 +191,7 @@ def expect_turning(
         ),
         None,
     )
-    did = "" if bad is None else say(bad.message)
+    did = "" if bad is None else describe_command(bad.message)
     expect(
         bad is None,
         f"{situation}, the robot {did}: it should turn {side} on the spot, at most at {fastest:.2f} rad/s.",
@@ -172,7 +199,7 @@ def expect_turning(
     )
 
 
-def report_in_words(report: Any) -> str:
+def describe_report(report: Any) -> str:
     """Put a report of the monitor into words."""
     level = LEVELS[report.level] if 0 <= report.level < len(LEVELS) else str(report.level)
     silent = ", ".join(str(topic)[:40] for topic in list(report.silent)[:5]) or "none"

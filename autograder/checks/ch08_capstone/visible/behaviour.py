@@ -63,7 +63,7 @@ def test_moves(system: System) -> None:
     system.see(OPEN)
     began = system.seconds
     system.wait(1.5)
-    expect_still(system.said(began + 1.0).commands, "A second after the last scan")
+    expect_still(system.messages(began + 1.0).commands, "A second after the last scan")
 
 
 @check(points=1, group="step_2", depends=("sees",), doc=contract.NODES_DOC)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from autograder.checks import Row, each, expect, group
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS, Question
-from autograder.checks.ch09_assessment.visible.sheet import answers, expect_letter
+from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
 from autograder.harness import Workspace
 
 

@@ -6,7 +6,6 @@ import math
 from random import Random
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch09_assessment.conftest import Start
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     COOL,
@@ -19,7 +18,7 @@ from autograder.checks.ch09_assessment.support.contract import (
     averages,
     decisions,
 )
-from autograder.checks.ch09_assessment.support.robot import NodeHarness, Types, near, refuses
+from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
 
 check = group("nodes")
@@ -68,7 +67,7 @@ def test_average(start: Start, draw: Random) -> None:
     readings = [round(draw.uniform(20.0, 80.0), 1) for _ in range(12)]
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
-        told = harness.tell(readings, first=7)
+        told = harness.send(readings, first=7)
     _expect_averages([message.celsius for message in told], readings, WINDOW)
     stamps = [message.stamp.sec for message in told]
     right = stamps == list(range(7, 7 + len(readings)))
@@ -81,7 +80,7 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
     """The parameter window says how many readings count; 0 and 101 are refused at the start."""
     window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
     with start(SMOOTHER, window=window) as harness:
-        _expect_averages([message.celsius for message in harness.tell(readings)], readings, window)
+        _expect_averages([message.celsius for message in harness.send(readings)], readings, window)
     for impossible in (0, 101):
         refused = refuses(workspace, types, SMOOTHER, window=impossible)
         expect(refused, f"smoother started with window {impossible}.", fraction=0.5)
@@ -93,7 +92,7 @@ def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
     first, second = round(draw.uniform(30.0, 40.0), 1), round(draw.uniform(50.0, 60.0), 1)
     with start(SMOOTHER) as harness:
-        told = harness.tell([first, math.nan, math.inf, -math.inf, second])
+        told = harness.send([first, math.nan, math.inf, -math.inf, second])
     seen = [round(message.celsius, 2) for message in told]
     shown = f"{first}, nan, inf, -inf, {second} °C became {seen}"
     wanted = [first, (first + second) / 2]
@@ -146,7 +145,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
     """A decision carries the stamp and the temperature that it was made of."""
     celsius = round(draw.uniform(20.0, 80.0), 1)
     with start(GUARD) as harness:
-        told = harness.tell([celsius], first=draw.randint(100, 999))
+        told = harness.send([celsius], first=draw.randint(100, 999))
         stamp = told[0].stamp.sec
     expect(stamp >= 100, f"The decision's stamp is {stamp} s, not that of the average.")
     given = told[0].celsius
@@ -171,7 +170,7 @@ def _expect_decisions(
     cool: float = COOL,
     fraction: float = 0.0,
 ) -> None:
-    seen = [bool(message.cooling) for message in harness.tell(temperatures)]
+    seen = [bool(message.cooling) for message in harness.send(temperatures)]
     expect(len(seen) == len(temperatures), f"{len(temperatures)} averages became {len(seen)} decisions.")
     wanted = decisions(temperatures, hot, cool)
     shown = ", ".join(f"{celsius:g}" for celsius in temperatures)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -66,7 +66,7 @@ class NodeHarness(AutoHarness):
         """Return what it has published."""
         return self.messages(self._out, since=since)
 
-    def tell(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
+    def send(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
         """Send temperatures, stamped with the seconds `first`, `first` + 1, ...; return the messages that came."""
         began, sent = self.seconds, list(temperatures)
         for second, celsius in enumerate(sent, first):
@@ -106,6 +106,9 @@ class NodeHarness(AutoHarness):
         told, heard = _TOPICS[self._name]
         _expect_topics(self._name, "publishes", publishes, heard)
         _expect_topics(self._name, "subscribes to", subscribes, told)
+
+
+Start = Callable[..., NodeHarness]  # takes a node's name and its parameters
 
 
 def near(one: float, other: float) -> bool:

@@ -2,48 +2,10 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
-from autograder.checks import CheckFailed, check, expect, hint
-from autograder.checks.ch09_assessment.support.contract import LETTERS, QUESTIONS, SHEET
+from autograder.checks import check, expect, hint
+from autograder.checks.ch09_assessment.support.contract import QUESTIONS
+from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
 from autograder.harness import Workspace
-
-MAX_BYTES = 64 * 1024
-_LINE = re.compile(r"""\s*(?P<question>\w+)\s*:\s*["']?(?P<answer>[^"'#]*?)["']?\s*(?:#.*)?""")
-
-
-def parse(text: str) -> dict[str, str]:
-    """Read the lines `question: answer`; answers in small letters, the last one where a question stands twice."""
-    lines = filter(None, map(_LINE.fullmatch, text.splitlines()))
-    return {line["question"].lower(): line["answer"].strip().lower() for line in lines}
-
-
-def answers(workspace: Workspace) -> dict[str, str]:
-    """Return a student's answers by question.
-
-    Raises:
-        CheckFailed: there is no sheet, or none that can be read.
-    """
-    path: Path = workspace.root / "src" / SHEET
-    if path.is_symlink() or not path.is_file():
-        raise CheckFailed(f"There is no ws/src/{SHEET}: run the cell that writes it.")
-    data = path.read_bytes()[: MAX_BYTES + 1]
-    expect(len(data) <= MAX_BYTES, f"{SHEET} is far larger than {len(QUESTIONS)} letters.")
-    text = data.decode(errors="replace")
-    expect("NotImplementedError" not in text, f"{SHEET} is still to be written: put letters in place of the raise.")
-    return parse(text)
-
-
-def expect_letter(given: dict[str, str], question: str) -> str:
-    """Return the letter that was given for a question; fail the check unless there is one of the four."""
-    expect(bool(given.get(question)), f"There is no answer to {question}: write a line `{question}: LETTER`.")
-    letter = given[question]
-    expect(
-        len(letter) == 1 and letter in LETTERS,
-        f"The answer to {question} is {letter[:40]!r}, instead of one letter of {', '.join(LETTERS)}.",
-    )
-    return letter
 
 
 @check(points=1, group="choices")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from autograder.checks import check, expect, hint
-from autograder.checks.ch09_assessment.conftest import Start
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     GUARD,
@@ -16,7 +15,7 @@ from autograder.checks.ch09_assessment.support.contract import (
     THERMOMETER,
 )
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
-from autograder.checks.ch09_assessment.support.robot import expect_executables, require_built
+from autograder.checks.ch09_assessment.support.robot import Start, expect_executables, require_built
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import look
@@ -56,7 +55,7 @@ def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the average of the newest readings."""
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
-        seen = [round(message.celsius, 1) for message in harness.tell([40.0, 50.0, 60.0])]
+        seen = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 60.0])]
     expect(seen == [40.0, 45.0, 50.0], f"40, 50, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
 
 
@@ -66,5 +65,5 @@ def test_decides(start: Start) -> None:
     """Question 3: guard switches the fan on when it is hot and off when it is cool."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
-        seen = [message.cooling for message in harness.tell([45.0, 65.0, 55.0, 45.0])]
+        seen = [message.cooling for message in harness.send([45.0, 65.0, 55.0, 45.0])]
     expect(seen == [False, True, True, False], f"45, 65, 55, 45 °C: cooling was {seen}.")

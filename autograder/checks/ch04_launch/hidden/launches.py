@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 from std_msgs.msg import String
 
-from autograder.checks.ch04_launch.hidden import given
+from autograder.checks.ch04_launch.hidden import included
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_values
 from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
 from autograder.harness import Workspace
@@ -15,10 +15,10 @@ from autograder.harness.launch import LaunchHarness
 from autograder.probes.launch_probe import Argument, shown_arguments, with_files
 
 CONFIG = "config/robot.yaml"
-GIVEN = {"like": given.LIKE_THE_REFERENCE, "wheels": given.WITH_ONE_NODE}
+INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
-class Shared:
+class Launches:
     """Starts each launch once, when it is first asked for, and ends all at the end.
 
     One robot is launched with other numbers in its parameters file. Two robots include a robot.launch.py of the
@@ -28,7 +28,7 @@ class Shared:
     def __init__(self, workspace: Workspace, inputs: Inputs) -> None:
         self._workspace, self._inputs = workspace, inputs
         self._stack = ExitStack()
-        self._labs: dict[str, LaunchHarness] = {}
+        self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
         self._arguments: dict[str, Argument] = {}
 
@@ -65,16 +65,16 @@ class Shared:
         self, file: str, arguments: Mapping[str, object], listens: Mapping[str, type], robot: str | None = None
     ) -> LaunchHarness:
         key = f"{file} {robot} {sorted(arguments.items())}"
-        if key not in self._labs:
+        if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
             harness = LaunchHarness(self._copy(file, robot), PACKAGE, file, words, listens=listens)
-            self._labs[key] = self._stack.enter_context(harness)
-        return self._labs[key]
+            self._harnesses[key] = self._stack.enter_context(harness)
+        return self._harnesses[key]
 
     def _copy(self, file: str, robot: str | None) -> Workspace:
         name = robot or file.partition(".")[0]
         if name not in self._copies:
-            files = {} if robot is None else {f"launch/{ROBOT}": GIVEN[robot]}
+            files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
                 files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)

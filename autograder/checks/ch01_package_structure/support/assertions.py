@@ -1,4 +1,4 @@
-"""Verdicts on one package, in words; both packages, and both the visible and the hidden checks, share them."""
+"""Assertions on the files of one package and on what was installed of it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from autograder.probes.manifest import Manifest
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
-def folder(workspace: Workspace, name: str) -> Path:
+def source_of(workspace: Workspace, name: str) -> Path:
     """Return the folder of a package's sources, where it should be if it is nowhere."""
     source = workspace.root / "src"
     return find_packages(source)[0].get(name, source / name)
@@ -34,7 +34,7 @@ def expect_built(builds: Mapping[str, Diagnosis], name: str) -> None:
 
 def expect_manifest(workspace: Workspace, name: str) -> Manifest:
     """Return a package's manifest; fail the check unless ROS takes it for a Python package of this name."""
-    found = manifest.read(folder(workspace, name))
+    found = manifest.read(source_of(workspace, name))
     expect(found.format == 3, f'package.xml says format="{found.format}"; the format of ROS 2 today is 3.')
     expect(found.name == name, f"package.xml names the package {found.name}, it should be {name}.")
     said = found.build_type or "none, and colcon takes it for CMake"

@@ -1,9 +1,9 @@
-"""The two robot.launch.py that the checks lay down for two_robots.launch.py to include."""
+"""The two robot.launch.py that the checks write for two_robots.launch.py to include."""
 
 from __future__ import annotations
 
 LIKE_THE_REFERENCE = '''
-"""The robot.launch.py that the checks of two_robots.launch.py lay down."""
+"""The robot.launch.py that the checks of two_robots.launch.py write."""
 
 from pathlib import Path
 

@@ -1,0 +1,13 @@
+"""Which robots report on the topic that they share."""
+
+from __future__ import annotations
+
+from autograder.checks.ch04_launch.support.contract import SHARED
+from autograder.harness.launch import LaunchHarness
+
+HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
+
+
+def reporting_robots(harness: LaunchHarness) -> set[str]:
+    """Return the names of the robots that have reported on the shared topic."""
+    return {str(message.data).split(" ", maxsplit=1)[0] for message in harness.messages(SHARED)}

@@ -1,0 +1,64 @@
+"""One harness for several checks: a program is started once, and again only where it is of no further use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from types import TracebackType
+from typing import Any, Generic, Protocol, TypeVar
+
+from autograder.sandbox import Process
+
+
+class Programs(Protocol):
+    """Programs in a harness, or in something built on one. They run inside its `with` block."""
+
+    @property
+    def processes(self) -> tuple[Process, ...]:
+        """The sandboxed programs."""
+
+    def __enter__(self) -> Any: ...
+
+    def __exit__(self, *ending: Any) -> Any: ...
+
+
+P = TypeVar("P", bound=Programs)
+
+
+class Shared(Generic[P]):
+    """Keeps one harness for several checks, and replaces it once one of its programs has ended.
+
+    It is a context manager: the end of the block ends the programs.
+
+    Args:
+        make: makes a harness, not yet entered.
+        usable: whether a harness whose programs run is fit for the next check; it is replaced when not.
+    """
+
+    def __init__(self, make: Callable[[], P], usable: Callable[[P], bool] = lambda _: True) -> None:
+        self._make, self._usable = make, usable
+        self._stack = ExitStack()
+        self._present: P | None = None
+
+    def __enter__(self) -> Shared[P]:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def get(self) -> P:
+        """Return a harness whose programs run. Raises what making and entering one raises."""
+        present = self._present
+        if present is None or any(process.ending for process in present.processes) or not self._usable(present):
+            self.close()
+            present = self._make()
+            self._stack.enter_context(present)
+            self._present = present
+        return present
+
+    def close(self) -> None:
+        """End the present harness; the next check gets a new one."""
+        self._present = None
+        self._stack.close()

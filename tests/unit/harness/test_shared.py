@@ -1,0 +1,74 @@
+"""One harness for several checks."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from autograder.harness import Shared
+from autograder.sandbox import Ending
+
+
+class Fake:
+    """Programs that end when they are told to."""
+
+    def __init__(self) -> None:
+        self.processes: Any = (SimpleNamespace(ending=None), SimpleNamespace(ending=None))
+        self.inside = False
+
+    def __enter__(self) -> Fake:
+        self.inside = True
+        return self
+
+    def __exit__(self, *ending: object) -> None:
+        self.inside = False
+
+
+def test_checks_get_the_same_harness_until_the_block_ends() -> None:
+    with Shared(Fake) as shared:
+        first = shared.get()
+        assert first.inside
+        assert shared.get() is first
+    assert not first.inside
+
+
+def test_a_harness_is_replaced_once_one_of_its_programs_has_ended() -> None:
+    with Shared(Fake) as shared:
+        first = shared.get()
+        first.processes[1].ending = Ending.EXITED
+        second = shared.get()
+    assert second is not first
+    assert not first.inside
+
+
+def test_a_harness_is_replaced_once_it_is_no_longer_usable() -> None:
+    unusable: list[Fake] = []
+    with Shared(Fake, lambda fake: fake not in unusable) as shared:
+        first = shared.get()
+        unusable.append(first)
+        assert shared.get() is not first
+
+
+def test_a_closed_harness_ends_and_the_next_check_gets_a_new_one() -> None:
+    with Shared(Fake) as shared:
+        first = shared.get()
+        shared.close()
+        assert not first.inside
+        assert shared.get() is not first
+
+
+def test_after_a_harness_that_does_not_start_the_next_check_tries_again() -> None:
+    broken = [True]
+
+    def make() -> Fake:
+        if broken:
+            broken.pop()
+            raise ValueError("it does not start")
+        return Fake()
+
+    with Shared(make) as shared:
+        with pytest.raises(ValueError, match="does not start"):
+            shared.get()
+        assert shared.get().inside
