@@ -17,7 +17,10 @@ PYTEST_ARGS ?=
 LAB_ARGS ?=
 VERIFY_ARGS ?=
 
-.PHONY: help setup demo test check lint lab tour classes bench verify real-launch lock clean
+PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
+LINTERS := lint-style lint-types lint-standins lint-imports
+
+.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -29,25 +32,40 @@ demo:           ## set up, grade the reference and flawed submissions, write .bu
 	@$(BOOTSTRAP)
 	@$(BIN)/autograder demo
 
-test:           ## set up, then every test: lint, types, doctor, pytest (WORKERS=4 PYTEST_ARGS=)
+test:           ## set up, then lint, types, doctor and every test but the nightly ones (WORKERS=4 PYTEST_ARGS=)
 	@$(BOOTSTRAP) --dev --browser
 	@$(MAKE) --no-print-directory lint
 	$(BIN)/autograder doctor
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder -m "not tour and not classes" $(PYTEST_ARGS)
+	$(PYTEST) -m "not nightly" $(PYTEST_ARGS)
 
-check:          ## the fast part of the tests
+check:          ## lint, types and the quick unit tests: a minute
 	@$(BOOTSTRAP) --dev
 	@$(MAKE) --no-print-directory lint
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder -m "not slow and not browser" $(PYTEST_ARGS)
+	$(PYTEST) tests/unit -m "not slow" $(PYTEST_ARGS)
+
+nightly:        ## the tests that take hours: each chapter's class and tour, launches by the hundred, the whole proof
+	@$(BOOTSTRAP) --dev --browser
+	$(PYTEST) -m nightly $(PYTEST_ARGS)
+	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
 LINTED := autograder sim tests assets nbgrader_config.py
 STANDINS := launch launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice
-lint:
+lint:           ## style, types and imports, all at once
+	@$(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync $(LINTERS)
+
+lint-style:
 	$(BIN)/ruff check $(LINTED)
 	$(BIN)/ruff format --check $(LINTED)
+
+lint-types:
 	$(BIN)/mypy
-	$(BIN)/mypy --config-file autograder/ros/standins/mypy.ini $(addprefix -p ,$(STANDINS))
+
+lint-standins:
+	$(BIN)/mypy --config-file autograder/ros/standins/mypy.ini --cache-dir .mypy_cache/standins \
+		$(addprefix -p ,$(STANDINS))
+
+lint-imports:
 	$(BIN)/lint-imports --no-cache --no-logo
 
 # The settings take away two of nbgrader's buttons: "Validate" would praise an unsolved notebook.
@@ -62,7 +80,7 @@ tour:           ## solve each chapter's release in JupyterLab, keep screenshots 
 
 classes:        ## a class of five hands in each chapter, graded through nbgrader and without
 	@$(BOOTSTRAP) --dev
-	$(BIN)/python -m pytest tests/e2e/test_classes.py -n $(WORKERS) --dist loadscope --no-loadscope-reorder $(PYTEST_ARGS)
+	$(PYTEST) tests/e2e/test_classes.py $(PYTEST_ARGS)
 
 bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev

@@ -1,7 +1,7 @@
 """A class of five hands in each chapter: nbgrader's gradebook and `autograder grade`, by one and by two, agree.
 
 Right answers, flawed ones and none are files; a student hands them in as a notebook that writes them. `make classes`
-takes every chapter.
+and `make nightly` take every chapter.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.e2e.classroom import Classroom
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.classes,
+    pytest.mark.nightly,
     pytest.mark.timeout(3600),  # a quarter of an hour on a busy machine; the bound is for a stuck grader
     # What nbgrader does with SQLAlchemy.
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
