@@ -10,12 +10,12 @@ from autograder.building import cmake_overlay
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import tail
-from autograder.sandbox import Ending, Mount, Sandbox, zygote
+from autograder.sandbox import Ending, Mount, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
 
-HOST, PRELOAD = Path(__file__).with_name("colcon_host.py"), Path(__file__).with_name("preload.py")
+HOST = Path(__file__).with_name("colcon_host.py")
 LOG_LINES = 40
 
 
@@ -43,14 +43,14 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, (HOST, zygote.HOST, *cmake_overlay.READ, *workspace.underlays)),
+            *map(Mount, (HOST, *cmake_overlay.READ, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
         environment=environment,
         limits=BUILD,
     )
-    with launch(command, spec, preload=PRELOAD) as process:
+    with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode
     if ending is not Ending.EXITED or status != 0:

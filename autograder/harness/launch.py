@@ -36,8 +36,7 @@ from autograder.sandbox.limits import LAUNCH
 from autograder.sandbox.procfs import measure
 from autograder.workspace import Workspace
 
-HOST = Path(__file__).with_name("launch_host")
-PRELOAD = HOST / "preload.py"
+HOST = Path(__file__).with_name("launch_host.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
@@ -75,7 +74,7 @@ def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Pro
         status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
     """
     command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
-    return launch(command, spec, pass_fds=() if status is None else (status,), preload=PRELOAD)
+    return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
 def sandbox(workspace: Workspace) -> Sandbox:

@@ -25,7 +25,6 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
-from autograder.probes import PRELOAD
 from autograder.sandbox import Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import CALLS
@@ -134,7 +133,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     order_read, order_write = os.pipe()
     command = [sys.executable, str(CALLER), str(order_read), str(write_fd)]
     try:
-        process = launch(command, spec, pass_fds=(write_fd, order_read), preload=PRELOAD)
+        process = launch(command, spec, pass_fds=(write_fd, order_read), profile="tests")
     finally:
         os.close(write_fd)
         os.close(order_read)

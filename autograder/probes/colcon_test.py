@@ -16,8 +16,6 @@ from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
 
-PRELOAD = Path(__file__).with_name("colcon_preload.py")
-
 
 def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
     """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in the built workspace.
@@ -49,7 +47,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     report = workspace.root / "build" / package / "pytest.xml"
     if _inside(report, workspace.root):
         report.unlink(missing_ok=True)
-    with launch(command, spec, preload=PRELOAD) as process:
+    with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
     claims = junit.read(report) if _inside(report, workspace.root) else None

@@ -6,31 +6,20 @@ When pytest has ended, its exit status and its report, a file of JUnit XML, go t
 the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears for their
 claim.
 
-Many such runs are made for one submission, most of them short. A third of one's time went into looking for garbage
-among pytest's own modules, while they were loaded and when the interpreter took everything down again: neither is done.
-Nor is the generator of messages imported, which a message's module does if it can. Where this process has the launch
-packages from its zygote, what the tests launch is forked, too.
+Where this process was forked with the launch packages, what the tests launch is forked, too. The generator of messages
+is not imported, which a message's module does if it can.
 """
 
 from __future__ import annotations
 
-import atexit
 import gc
-import importlib
 import os
 import sys
 from pathlib import Path
-from typing import Any
 
-gc.disable()
+import pytest
 
-import pytest  # noqa: E402
-
-gc.freeze()
-gc.enable()
 sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
-
-ZYGOTE_HOST = Path(__file__).parents[1] / "sandbox" / "zygote_host"
 
 
 class Reversed:
@@ -42,24 +31,8 @@ class Reversed:
         items.reverse()
 
 
-def leave() -> None:
-    """End the process at the end of its exit functions: threads have been waited for, only its modules are left."""
-    os._exit(0)
-
-
-def open_nursery() -> Any:
-    """Let what tests launch be forked; in the processes of that, return what is to be run."""
-    sys.path.insert(0, str(ZYGOTE_HOST))
-    nursery = importlib.import_module("nursery")
-    del sys.path[0]
-    for name in [name for name in sys.modules if name.partition(".")[0] == "autograder"]:
-        del sys.modules[name]  # none of it is there for a student's tests
-    return nursery.open_here(forget=("launch", "launch_ros", "standin_notice"))
-
-
 def main() -> None:
     """Run pytest with the arguments of the command line."""
-    atexit.register(leave)  # first of all, so that it is called last
     answer, go, backwards = (int(argument) for argument in sys.argv[1:4])
     report = Path(sys.argv[4])
     arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]
@@ -74,7 +47,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     sys.path.pop(0)  # this file's folder is none of the tests' business
-    if program := open_nursery() if "launch" in sys.modules else None:
-        exec(*program)
-    else:
-        main()
+    if fork_children := globals().get("fork_children"):  # given by `prefork`
+        fork_children()
+    main()

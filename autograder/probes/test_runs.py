@@ -30,16 +30,15 @@ from pathlib import Path
 import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.harness.launch import PRELOAD as LAUNCH_PRELOAD
 from autograder.intake import take_source
-from autograder.probes import PRELOAD, junit
+from autograder.probes import junit
 from autograder.probes.junit import Claims
 from autograder.probes.memory import Memory
 from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
-from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, zygote
+from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
 from autograder.sandbox.launcher import current_tier, launch
 from autograder.sandbox.limits import TEST_RUN
 from autograder.workspace import Workspace
@@ -135,7 +134,7 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, 
         limits: what the run may use.
         network: whether it shares the grader's loopback.
     """
-    mounts = (*workspace.sandbox().mounts, Mount(STANDINS), Mount(zygote.HOST), *map(Mount, readable))
+    mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
     plain = workspace.sandbox(limits)
     environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     return replace(plain, mounts=mounts, environment=environment, network=network)
@@ -196,7 +195,7 @@ def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) 
             [*command, *arguments],
             spec,
             pass_fds=(answer_write, go_read),
-            preload=LAUNCH_PRELOAD if launches else PRELOAD,
+            profile="launch" if launches else "tests",
         )
     finally:
         os.close(answer_write)

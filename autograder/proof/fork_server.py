@@ -14,27 +14,20 @@ from __future__ import annotations
 import gc
 import json
 import os
-import runpy
 import subprocess
 import sys
 import traceback
 from pathlib import Path
 from typing import TextIO
 
-from autograder import probes
-from autograder.building import colcon
 from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.grading import worker
 from autograder.grading.job import MEMORY, Job
-from autograder.harness import launch
-from autograder.lockstep import stepper
-from autograder.probes import colcon_test
+from autograder.prefork.profiles import PROFILES
 from autograder.sandbox.launcher import warm_up
 
 OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
-# All that a submission's programs are forked from: what a child warms up ends with it.
-PRELOADS = (colcon.PRELOAD, stepper.PRELOAD, probes.PRELOAD, launch.PRELOAD, colcon_test.PRELOAD)
 
 
 def serve(scratch: Path, orders: TextIO, replies: TextIO) -> None:
@@ -83,9 +76,9 @@ def main() -> None:
     """Serve in the folder and on the descriptors that the command line names."""
     scratch, orders, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     worker.prepare()
-    for preload in PRELOADS:
-        warm_up(preload)
-    runpy.run_path(str(probes.PRELOAD))  # a worker needs most of that, too
+    for profile in PROFILES:  # a server that a child warmed up would end with it
+        warm_up(profile)
+    PROFILES["tests"].load()  # a worker needs most of that, too
     gc.collect()
     gc.freeze()  # what the children share is not theirs to look through
     with os.fdopen(orders) as lines, os.fdopen(replies, "w") as answers:

@@ -9,25 +9,24 @@ import signal
 import socket
 import subprocess
 import threading
-from pathlib import Path
 
+from autograder.prefork.client import HOLDER, TIMEOUT, ForkError, ForkServer
+from autograder.prefork.protocol import Request
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import bubblewrap, cgroup
 from autograder.sandbox.cgroup import ControlGroup
-from autograder.sandbox.exceptions import ZygoteError
 from autograder.sandbox.process import Process
 from autograder.sandbox.spec import INTERPRETER, Sandbox
 from autograder.sandbox.tiers import Tier
-from autograder.sandbox.zygote import HOLDER, PATIENCE, Zygote
 
 TIER_VARIABLE = "AUTOGRADER_TIER"
 
-# Where a zygote finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
+# Where a fork server finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
 _SEARCHED = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
 
 _lock = threading.Lock()
 _log = logging.getLogger(__name__)
-_zygotes: dict[Path, Zygote | None] = {}  # by what they import; None where programs could not be forked
+_servers: dict[str, ForkServer | None] = {}  # by their profiles; None where programs could not be forked
 
 
 def current_tier() -> Tier:
@@ -45,31 +44,29 @@ def heed_interrupts() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def launch(
-    command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), preload: Path | None = None
-) -> Process:
+def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), profile: str | None = None) -> Process:
     """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can.
 
     Args:
         command: what is run.
         spec: the sandbox.
         pass_fds: descriptors that it inherits.
-        preload: for a Python script, what the interpreter may have imported from which it is forked (see `zygote`).
+        profile: for a Python script, what the interpreter from which it is forked has imported (`prefork.profiles`).
     """
-    if preload is not None and current_tier() is Tier.BUBBLEWRAP:
-        process = _forked(command[1:], spec, pass_fds, preload)
+    if profile is not None and current_tier() is Tier.BUBBLEWRAP:
+        process = _forked(command[1:], spec, pass_fds, profile)
         if process is not None:
             return process
     return _started(command, spec, cgroup.make(spec.limits.tasks), pass_fds)
 
 
-def warm_up(preload: Path) -> None:
-    """Let a zygote begin its imports, if there is none yet that has them."""
+def warm_up(profile: str) -> None:
+    """Let the fork server of a profile begin its imports, if there is none yet."""
     with _lock:
-        if preload not in _zygotes:
+        if profile not in _servers:
             kept = {name: os.environ[name] for name in _SEARCHED if name in os.environ}
-            zygote = _zygotes[preload] = Zygote(preload, {"PATH": os.defpath, **INTERPRETER, **kept})
-            atexit.register(zygote.close)
+            server = _servers[profile] = ForkServer(profile, {"PATH": os.defpath, **INTERPRETER, **kept})
+            atexit.register(server.close)
 
 
 def _started(
@@ -95,26 +92,34 @@ def _started(
     )
 
 
-def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], preload: Path) -> Process | None:
-    """Fork a program from a zygote; None where that cannot be, and it has not begun."""
-    warm_up(preload)
-    zygote = _zygotes[preload]
-    if zygote is None:
+def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
+    """Fork a program; None where that cannot be, and it has not begun."""
+    warm_up(profile)
+    server = _servers[profile]
+    if server is None:
         return None
     group = cgroup.make(spec.limits.tasks)
-    line, theirs = socket.socketpair()
-    with line:
+    status, theirs = socket.socketpair()
+    with status:
         with theirs:
             process = _started(HOLDER, spec, group, stdin=theirs.fileno(), held=True)
         try:
-            line.settimeout(PATIENCE)
-            if not line.recv(1):
-                raise ZygoteError(f"the sandbox was not made: {process.output}")
-            folder = str(group.folder) if group else ""
-            process.entered(zygote.spawn(command, spec, process.innermost(), folder, line.fileno(), pass_fds))
-        except (ZygoteError, TimeoutError) as error:
+            status.settimeout(TIMEOUT)
+            if not status.recv(1):
+                raise ForkError(f"the sandbox was not made: {process.output}")
+            request = Request(
+                command,
+                dict(spec.environment),
+                str(spec.workdir),
+                bubblewrap.resources(spec.limits),
+                process.innermost(),
+                str(group.folder) if group else "",
+                list(pass_fds),
+            )
+            process.entered(server.spawn(request, status.fileno()))
+        except (ForkError, TimeoutError) as error:
             process.kill()
-            _zygotes[preload] = None
+            _servers[profile] = None
             _log.warning("programs are started one by one, which takes longer: %s", error)
             return None
     return process

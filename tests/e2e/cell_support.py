@@ -38,12 +38,13 @@ def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUB
 
 
 def is_forked(process: Process) -> bool:
-    """Return whether a sandboxed program was forked from a zygote; of one that has ended, nobody can say it was not."""
+    """Return whether a sandboxed program is a fork server's; of one that has ended, nobody can say it was not."""
     try:
-        words = Path(f"/proc/{process.innermost()}/cmdline").read_bytes()
+        parent = Path(f"/proc/{process.innermost()}/stat").read_text().rpartition(")")[2].split()[1]
+        words = Path(f"/proc/{parent}/cmdline").read_bytes()
     except OSError:
         return True
-    return b"zygote_host" in words or not words
+    return b"autograder.prefork" in words
 
 
 def main() -> None:

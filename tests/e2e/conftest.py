@@ -15,7 +15,6 @@ from autograder.building.build import build
 from autograder.harness import Workspace
 from autograder.layout import SOLUTIONS
 from autograder.packages import find_packages
-from autograder.probes import PRELOAD
 from autograder.ros import environment
 from autograder.sandbox import Mount, Sandbox
 from autograder.sandbox.launcher import launch
@@ -27,7 +26,7 @@ def forked(scratch: Path) -> bool:
     program = scratch / "program.py"
     program.write_text("import signal\nsignal.pause()")
     spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
-    with launch([sys.executable, str(program)], spec, preload=PRELOAD) as process:
+    with launch([sys.executable, str(program)], spec, profile="tests") as process:
         return is_forked(process)
 
 

@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.lockstep.stepper import PRELOAD
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup
 from autograder.sandbox.launcher import launch, warm_up
 from autograder.sandbox.limits import GIB, MIB
@@ -43,7 +42,7 @@ def run(code: str, spec: Sandbox) -> Process:
         return launch([sys.executable, "-I", "-c", code], spec)
     program = spec.workdir / ".program.py"
     program.write_text(code)
-    process = launch([sys.executable, str(program)], spec, preload=PRELOAD)
+    process = launch([sys.executable, str(program)], spec, profile="lockstep")
     assert is_forked(process)
     return process
 
@@ -54,7 +53,7 @@ def inside(scratch: Path, code: str, limits: dict[str, Any], network: bool = Fal
     home.mkdir()
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=network, limits=Limits(**limits))
     if os.environ[WAY] == "forked":
-        warm_up(PRELOAD)
+        warm_up("lockstep")
     before = _processes()
     with run(code, spec) as process:
         process.wait(limits["wall_seconds"] + 60)

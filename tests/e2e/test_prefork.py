@@ -7,24 +7,20 @@ import logging
 import os
 import signal
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from autograder import probes
-from autograder.building import colcon
-from autograder.harness.launch import PRELOAD as LAUNCHES
-from autograder.lockstep import stepper
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
-from autograder.sandbox import Limits, Mount, Process, Sandbox
-from autograder.sandbox.launcher import launch
+from autograder.sandbox import Limits, Mount, Process, Sandbox, launcher
+from autograder.sandbox.launcher import launch, warm_up
 from autograder.sandbox.spec import INTERPRETER
 from tests.e2e.cell_support import in_cell, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-LOCKSTEP, PROBES = stepper.PRELOAD, probes.PRELOAD
 LONG = 120.0
 
 # What a process can find out about its place and its rights.
@@ -51,6 +47,8 @@ report = {
     "descriptors": {n: kind(n) for n in descriptors if os.path.exists(f"/proc/self/fd/{n}")},
     "inheritable": [n for n in descriptors if os.path.exists(f"/proc/self/fd/{n}") and os.get_inheritable(n)],
     "cwd": os.getcwd(),
+    "command line": read("/proc/self/cmdline").rstrip("\\0"),
+    "grader's modules": [name for name in sys.modules if name.startswith(("autograder", "prefork"))],
     "host": socket.gethostname(),
     "uid map": read("/proc/self/uid_map").split(),
     "own files": os.access("/proc/self/mem", os.R_OK),
@@ -75,22 +73,22 @@ def workplace(scratch: Path, **options: Any) -> Sandbox:
     return Sandbox(home, mounts=(Mount(home, writable=True),), environment={**ros, **INTERPRETER, **own}, **options)
 
 
-def start(spec: Sandbox, code: str, preload: Path | None, *arguments: str, **options: Any) -> Process:
-    """Run code as a script, forked from what `preload` names or, without it, started."""
+def start(spec: Sandbox, code: str, profile: str | None, *arguments: str, **options: Any) -> Process:
+    """Run code as a script, forked from a profile or, without it, started."""
     script = spec.workdir / "program.py"
     script.write_text(code)
-    process = launch([sys.executable, str(script), *arguments], spec, preload=preload, **options)
-    assert preload is None or is_forked(process)
+    process = launch([sys.executable, str(script), *arguments], spec, profile=profile, **options)
+    assert profile is None or is_forked(process)
     return process
 
 
 def reports(scratch: Path, network: bool) -> list[Any]:
     """Return what a started and a forked program find out, and in which of the worker's namespaces they are."""
     found = []
-    for preload in (None, LOCKSTEP):
+    for profile in (None, "lockstep"):
         spec = workplace(scratch, network=network)
         code = REPORT + "print(json.dumps(report), flush=True)\nsignal.pause()"
-        with start(spec, code, preload, "one", "two") as process:
+        with start(spec, code, profile, "one", "two") as process:
             while not process.output.endswith("\n") and not process.wait(0.05):
                 pass
             ours, theirs = (Path(f"/proc/{pid}/ns") for pid in ("self", process.innermost()))
@@ -136,13 +134,10 @@ ring = Thing("in a ring")
 ring.ring, last = ring, Thing("last")
 print("said", end="; ")
 """
-HELD = """
-import json
-class Thing:
-    def __del__(self):
-        print("destroyed")
-thing = Thing()
-json.held = lambda: thing  # by a module that a forked program has inherited
+OPENED = """
+import rclpy, weakref
+rclpy.init()
+weakref.finalize(rclpy.utilities.get_default_context(), print, "closed").atexit = False
 """
 ENDS = {
     "plain": "print('done')",
@@ -163,7 +158,7 @@ ENDS = {
     "a library's": "import ctypes\nctypes.CDLL(None).printf(b'from C')",
     "left open": LEFT_OPEN,
     "destroyed": DESTROYED,
-    "held": HELD,
+    "opened": OPENED,
     "node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('left')\nnode.me = node\nprint(node.get_name())",
     "left behind": "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(600)\nprint('over')",
 }
@@ -179,8 +174,8 @@ def endings(scratch: Path) -> dict[str, list[Any]]:
     found: dict[str, list[Any]] = {}
     for name, code in ENDS.items():
         found[name] = []
-        for preload in (None, PROBES):
-            with start(workplace(scratch), code, preload) as process:
+        for profile in (None, "tests"):
+            with start(workplace(scratch), code, profile) as process:
                 assert process.wait(LONG), name
                 assert process.ending is not None
                 last = in_any_order(process.output.splitlines()[-1:])
@@ -196,10 +191,10 @@ def test_a_forked_program_ends_as_a_started_one_does() -> None:
     assert found["killed"][1][1] == 128 + 9
 
 
-def imports(scratch: Path, preload: str, code: str) -> list[str]:
+def imports(scratch: Path, profile: str, code: str) -> list[str]:
     """Return what code prints in a started and in a forked program."""
     said = []
-    for way in (None, Path(preload)):
+    for way in (None, profile):
         with start(workplace(scratch), code, way) as process:
             assert process.wait(LONG)
             said.append(process.output)
@@ -207,74 +202,33 @@ def imports(scratch: Path, preload: str, code: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("preload", "code"),
+    ("profile", "code"),
     [
-        (PROBES, "import rclpy\nprint([n for n in dir(rclpy)])\nimport rclpy.node\nprint(dir(rclpy))"),
-        (PROBES, "import numpy\nprint(dir(numpy))"),
-        (PROBES, "import pytest\nprint(dir(pytest))"),
-        (PROBES, "import rclpy\nrclpy.node.Node"),
-        (LOCKSTEP, "import sensor_msgs\nsensor_msgs.msg.LaserScan"),
-        (LOCKSTEP, "import std_srvs\nstd_srvs.srv"),
-        (PROBES, "import std_msgs.msg\nstd_msgs.srv"),
-        (PROBES, "from geometry_msgs.msg import Twist\nimport sensor_msgs\nsensor_msgs.msg"),
-        (LAUNCHES, "import rclpy\nrclpy.executors"),
-        (colcon.PRELOAD, "import setuptools\nsetuptools.no_such_thing"),
+        ("tests", "import rclpy\nprint([n for n in dir(rclpy)])\nimport rclpy.node\nprint(dir(rclpy))"),
+        ("tests", "import numpy\nprint(dir(numpy))"),
+        ("tests", "import pytest\nprint(dir(pytest))"),
+        ("tests", "import rclpy\nrclpy.node.Node"),
+        ("lockstep", "import sensor_msgs\nsensor_msgs.msg.LaserScan"),
+        ("lockstep", "import std_srvs\nstd_srvs.srv"),
+        ("tests", "import std_msgs.msg\nstd_msgs.srv"),
+        ("tests", "from geometry_msgs.msg import Twist\nimport sensor_msgs\nsensor_msgs.msg"),
+        ("launch", "import rclpy\nrclpy.executors"),
+        ("colcon", "import setuptools\nsetuptools.no_such_thing"),
     ],
 )
-def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(preload: Path, code: str) -> None:
-    started, forked = in_cell(imports, str(preload), code)
+def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(profile: str, code: str) -> None:
+    started, forked = in_cell(imports, profile, code)
     assert forked.splitlines()[-1] == started.splitlines()[-1]
 
 
-# Which modules there are before and after an import, and whether each is an attribute of its package.
-BROUGHT = """
-import json, sys
-
-def there():
-    names = [name for name, module in sys.modules.items() if module is not None]
-    return {n: getattr(sys.modules.get(n.rpartition(".")[0]), n.rpartition(".")[2], None) is not None for n in names}
-
-before = there()
-%s
-print(json.dumps([before, there()]))
-"""
-
-
-@pytest.mark.parametrize("preload", [LOCKSTEP, PROBES, LAUNCHES], ids=["lockstep", "probes", "launches"])
-@pytest.mark.parametrize(
-    "code",
-    [
-        "import rclpy",
-        "import rclpy.node",
-        "from rclpy.action import ActionServer",
-        "from rclpy.executors import MultiThreadedExecutor",
-        "import std_srvs",
-        "import sensor_msgs.msg",
-        "from nav_msgs.srv import GetPlan",
-        "import numpy",
-    ],
-)
-def test_an_import_brings_what_it_brings_elsewhere(preload: Path, code: str) -> None:
-    started, forked = in_cell(imports, str(preload), BROUGHT % code)
-    (_, wanted), (before, after) = json.loads(started), json.loads(forked)
-    assert {name: after.get(name) for name in wanted} == wanted
-    assert set(after) - set(before) <= set(wanted)
-
-
-@pytest.mark.parametrize("name", ["sensor_msgs.msg", "rclpy.node"])
-def test_a_module_that_was_ready_is_a_module_like_any_other(name: str) -> None:
-    code = f"""
-import importlib, importlib.util, inspect, sys
-found = importlib.util.find_spec({name!r})
-print(found.origin, found.has_location, found.submodule_search_locations, {name!r} in sys.modules)
-module = importlib.import_module({name!r})
-print(module.__spec__.name, type(module.__spec__.loader).__name__, module.__file__, len(inspect.getsource(module)))
-del sys.modules[{name!r}]
-again = importlib.import_module({name!r})
-print(again is module, importlib.reload(again) is again, dir(again) == dir(module))
-"""
-    started, forked = in_cell(imports, str(PROBES), code)
+def test_a_program_that_fails_says_so_as_a_started_one_does() -> None:
+    code = "def drive(speed):\n    raise ValueError('too fast')\ntry:\n    drive(2)\nfinally:\n    print('over')"
+    started, forked = in_cell(imports, "lockstep", code)
     assert forked == started
+    assert "Traceback" in forked
+    started, forked = in_cell(imports, "lockstep", "this is no Python")
+    assert forked == started
+    assert "SyntaxError" in forked
 
 
 def shadows(scratch: Path, name: str) -> list[str]:
@@ -285,8 +239,8 @@ def shadows(scratch: Path, name: str) -> list[str]:
     spec, said = workplace(scratch), []
     program = spec.workdir / "program.py"
     program.write_text(f"import os, sys\nimport {name}\nprint(sys.argv[1:], os.getcwd()[-4:], sorted(os.environ))")
-    for preload in (None, LOCKSTEP):
-        with launch([sys.executable, str(program), "one"], spec, preload=preload) as process:
+    for profile in (None, "lockstep"):
+        with launch([sys.executable, str(program), "one"], spec, profile=profile) as process:
             assert process.wait(LONG)
             said.append(process.output)
     return said
@@ -302,7 +256,7 @@ def test_a_module_of_the_students_comes_first_as_it_does_for_them(name: str) -> 
 def draws(scratch: Path) -> list[str]:
     """Return what two forked programs draw."""
     code = "import random, numpy\nprint(random.random(), numpy.random.default_rng().random(), numpy.random.random())"
-    return [imports(scratch, str(PROBES), code)[1] for _ in range(2)]
+    return [imports(scratch, "tests", code)[1] for _ in range(2)]
 
 
 def test_forked_programs_do_not_share_their_chances() -> None:
@@ -328,7 +282,7 @@ def remembered(scratch: Path) -> list[str]:
     """Give a word to a program, and look for it in that one's memory and in that of the next."""
     said = []
     for words in (["[w]ord-of-mine", "word-of-mine " * 4000], ["[w]ord-of-mine"]):  # a pattern is not its own match
-        with start(workplace(scratch), SEARCH, LOCKSTEP, *words) as process:
+        with start(workplace(scratch), SEARCH, "lockstep", *words) as process:
             assert process.wait(LONG)
             said.append(process.output)
     return said
@@ -340,27 +294,26 @@ def test_a_forked_program_has_nothing_of_an_earlier_one_in_its_memory() -> None:
     assert other == 0
 
 
-def late(scratch: Path) -> list[Any]:
-    """Fork from what takes longer to import than the program may take; return whether it was, and how it ended."""
-    slow = scratch / "slow.py"
-    slow.write_text("import threading; threading.Event().wait(2.0)")
+def late(scratch: Path) -> str:
+    """Fork from a server that takes longer than the program may; return how the program ended."""
+    warm_up("lockstep")
+    server = launcher._servers["lockstep"]
+    assert server is not None
+    os.kill(server.pid, signal.SIGSTOP)
+    threading.Timer(2.0, os.kill, [server.pid, signal.SIGCONT]).start()
     spec = workplace(scratch, limits=Limits(wall_seconds=1.0))
-    (spec.workdir / "program.py").write_text("import signal; signal.pause()")
-    with launch([sys.executable, str(spec.workdir / "program.py")], spec, preload=slow) as process:
-        forked = is_forked(process)
+    with start(spec, "import signal; signal.pause()", "lockstep") as process:
         process.wait(LONG)
     assert process.ending is not None
-    return [forked, process.ending.value]
+    return process.ending.value
 
 
-def test_the_imports_of_the_zygote_are_not_of_the_program_s_time() -> None:
-    assert in_cell(late) == [True, "wall_time"]
+def test_the_imports_of_the_server_are_not_of_the_program_s_time() -> None:
+    assert in_cell(late) == "wall_time"
 
 
 def without(scratch: Path) -> list[Any]:
-    """Fork from what cannot be imported, twice; return what came of the programs, and what was said."""
-    broken = scratch / "broken.py"
-    broken.write_text("import nothing_of_that_name")
+    """Fork from a profile that cannot be loaded, twice; return what came of the programs, and what was said."""
     said: list[str] = []
     handler = logging.Handler()
     handler.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
@@ -368,7 +321,7 @@ def without(scratch: Path) -> list[Any]:
     spec, ends = workplace(scratch), []
     (spec.workdir / "program.py").write_text("print('here')")
     for _ in range(2):
-        with launch([sys.executable, str(spec.workdir / "program.py")], spec, preload=broken) as process:
+        with launch([sys.executable, str(spec.workdir / "program.py")], spec, profile="no such profile") as process:
             assert process.wait(LONG)
             ends.append([process.returncode, process.output])
     return [ends, said]

@@ -13,37 +13,29 @@ import pytest
 
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes import PRELOAD
 from autograder.ros import environment
-from autograder.sandbox import Mount, Sandbox, zygote
+from autograder.sandbox import Sandbox
 from autograder.sandbox.launcher import launch
 from tests.e2e.cell_support import in_cell
-from tests.e2e.test_zygote import ENDS, LONG, REPORT, in_any_order, workplace
+from tests.e2e.test_prefork import ENDS, LONG, REPORT, in_any_order, workplace
 
 pytestmark = pytest.mark.usefixtures("forks")
 
-# Runs what it finds in `asked.json`, with or without a nursery, and prints what became of it.
-PARENT = f"""
+# Runs what it finds in `asked.json`, and prints what became of it.
+PARENT = """
 import json, os, subprocess, sys
 
-nursery = program = None
-if sys.argv[1] == "forks":
-    sys.path.insert(1, {str(zygote.HOST)!r})
-    import nursery
-    sys.path.pop(1)
-    program = nursery.open_here()
-if program:
-    exec(*program)
-else:
-    found = {{}}
-    for name, command, options in json.load(open("asked.json")):
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, **options)
-        except OSError as error:
-            found[name] = [repr(error)]
-        else:
-            found[name] = [done.returncode, done.stdout, done.stderr.splitlines()[-1:]]
-    print(json.dumps(found))
+if "fork_children" in globals():
+    fork_children()
+found = {}
+for name, command, options in json.load(open("asked.json")):
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, **options)
+    except OSError as error:
+        found[name] = [repr(error)]
+    else:
+        found[name] = [done.returncode, done.stdout, done.stderr.splitlines()[-1:]]
+print(json.dumps(found))
 """
 FAMILY = """
 import json, os, pathlib, signal, sys
@@ -65,26 +57,21 @@ def program(folder: Path, name: str, code: str, first: str = f"#!{sys.executable
 
 
 def both(scratch: Path, asked: list[tuple[str, list[str], dict[str, Any]]], spec: Sandbox) -> list[dict[str, Any]]:
-    """Return what becomes of commands that a program starts, without a nursery and with one."""
+    """Return what becomes of commands that a started and a forked program start."""
     parent = spec.workdir / "parent.py"
     parent.write_text(PARENT)
     (spec.workdir / "asked.json").write_text(json.dumps(asked))
     found = []
-    for way in ("starts", "forks"):
-        with launch([sys.executable, str(parent), way], spec, preload=PRELOAD) as process:
+    for profile in (None, "launch"):
+        with launch([sys.executable, str(parent)], spec, profile=profile) as process:
             assert process.wait(LONG)
             assert process.returncode == 0, process.output
             found.append(json.loads(process.output))
     return found
 
 
-def place(scratch: Path) -> Sandbox:
-    spec = workplace(scratch)
-    return Sandbox(spec.workdir, (*spec.mounts, Mount(zygote.HOST)), (), spec.environment, spec.network)
-
-
 def reports(scratch: Path) -> list[dict[str, Any]]:
-    spec = place(scratch)
+    spec = workplace(scratch)
     (spec.workdir / "below").mkdir()
     report = program(spec.workdir, "report", REPORT + "print(json.dumps(report))")
     family = program(spec.workdir, "family", FAMILY)
@@ -108,7 +95,7 @@ def test_a_program_that_is_forked_for_another_finds_itself_where_a_started_one_d
     for found in (started, forked):
         for name in ("plain", "environment"):
             report = found[name] = json.loads(found[name][1])
-            del report["rights"]["NSpid"], report["rights"]["SigCgt"], report["oom"]
+            del report["rights"]["NSpid"], report["rights"]["SigCgt"], report["oom"], report["leads"]
         for name in ("family", "session", "by the interpreter", "relative", "no environment"):
             found[name] = json.loads(found[name][1])
     shown = forked["family"][0]
@@ -121,7 +108,7 @@ def test_a_program_that_is_forked_for_another_finds_itself_where_a_started_one_d
 
 
 def endings(scratch: Path) -> list[dict[str, Any]]:
-    spec = place(scratch)
+    spec = workplace(scratch)
     codes = {name: code for name, code in ENDS.items() if name != "left behind"}  # its output never ends
     asked = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
     no_rights = spec.workdir / "no rights"

@@ -1,0 +1,46 @@
+"""`ros2` in a sandbox, with a process that outlives it and sees what it has left behind.
+
+    python launch_host.py DESCRIPTOR WORDS-OF-ROS2...
+
+When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
+first child; whatever loses its parent becomes another one. If DESCRIPTOR is a dash, this process becomes `ros2` itself.
+Where it was forked, the Python programs that a launch starts are forked, too.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import runpy
+import signal
+import sys
+from typing import NoReturn
+
+PR_SET_CHILD_SUBREAPER = 36
+
+
+def hold(child: int, descriptor: int) -> NoReturn:
+    """Tell the end of a child, and stay."""
+    _, status = os.waitpid(child, 0)
+    os.write(descriptor, f"{os.waitstatus_to_exitcode(status)}\n".encode())
+    while True:
+        signal.pause()
+
+
+def main() -> None:
+    """Hold a child, or be it."""
+    descriptor = sys.argv.pop(1)
+    if descriptor != "-":
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        child = os.fork()
+        if child:
+            hold(child, int(descriptor))
+        os.close(int(descriptor))
+    if fork_children := globals().get("fork_children"):  # given by `prefork`
+        fork_children()
+    del sys.path[0]  # this file's folder is none of the launch's business
+    runpy.run_module("autograder.ros.ros2", run_name="__main__", alter_sys=True)
+
+
+if __name__ == "__main__":
+    main()

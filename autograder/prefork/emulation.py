@@ -1,0 +1,138 @@
+"""What execve(2) and the start of Python do, done to a forked interpreter: it becomes that of another program."""
+
+from __future__ import annotations
+
+import builtins
+import ctypes
+import importlib
+import os
+import re
+import sys
+import sysconfig
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from types import CodeType, ModuleType, TracebackType
+from typing import Any
+
+Program = tuple[CodeType, dict[str, Any]]
+
+_ARG_START = 45  # among the fields of /proc/self/stat behind the name, before _ARG_END, proc_pid_stat(5)
+
+
+def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], **given: Any) -> Program:
+    """Make this interpreter like one that was started with a command line; return its code and its globals.
+
+    Args:
+        command: what follows `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
+        environment: all environment variables.
+        base: where Python finds modules without any PYTHONPATH, and whether that is there outside the sandbox.
+        given: more globals of the program.
+    """
+    code: CodeType | None = None
+
+    def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        while trace and trace.tb_frame.f_code is not code:  # what has called the program is no part of it
+            trace = trace.tb_next
+        sys.__excepthook__(kind, error.with_traceback(trace), trace)
+
+    sys.excepthook = show
+    loaded = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    os.environ.clear()
+    ctypes.CDLL(None).clearenv()  # libraries that were loaded have set some, of which `os` does not know
+    os.environ.update(environment)
+    words = [*command]
+    while words[0] == "-W":
+        action, _, message = words[1].partition(":")
+        warnings.filterwarnings(action, message)  # type: ignore[arg-type]
+        words = words[2:]
+    if words[0] == "-c":
+        file, folder, source = None, "", words.pop(1).encode()
+    else:
+        path = Path(words[0]).absolute()
+        file, folder = (path / "__main__.py", str(path)) if path.is_dir() else (path, str(path.parent))
+        source = file.read_bytes()
+    _find_modules(command, folder, base)
+    set_command_line([sys.executable, *command])
+    sys.argv[:] = words
+    sys.orig_argv[:] = [sys.executable, *command]
+    _load_libraries(part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in loaded)
+    main = sys.modules["__main__"] = ModuleType("__main__")
+    main.__dict__.update(__builtins__=builtins, __annotations__={}, **given)
+    if file:
+        main.__dict__.update(__file__=str(file), __cached__=None)
+    code = compile(source, str(file or "<string>"), "exec", dont_inherit=True)
+    return code, main.__dict__
+
+
+def forget(words: Iterable[str]) -> None:
+    """Unload the modules of packages whose names begin with one of these words."""
+    for name in [name for name in sys.modules if re.split("[._]", name)[0] in words]:
+        del sys.modules[name]
+
+
+def set_command_line(words: Sequence[str]) -> None:
+    """Let /proc/self/cmdline say `words`, as much of them as there is room for."""
+    start, end = map(int, Path("/proc/self/stat").read_text().rpartition(")")[2].split()[_ARG_START:][:2])
+    text = b"".join(os.fsencode(word) + b"\0" for word in words)[: end - start - 1]
+    ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
+
+
+def _find_modules(command: Sequence[str], first: str, base: Mapping[str, bool]) -> None:
+    """Set `sys.path` as the command line and PYTHONPATH have it.
+
+    A program that would have another module than the one that is loaded is started instead.
+    """
+    given = os.environ.get("PYTHONPATH")  # an empty part of which is the working folder
+    modules = [*dict.fromkeys(str(Path(part).absolute()) for part in given.split(os.pathsep))] if given else []
+    sys.modules.pop("sitecustomize", None)
+    if _shadowed(modules):
+        os.execve(sys.executable, [sys.executable, *command], os.environ)
+    sys.path[:] = [*modules, *(path for path, there in base.items() if not there or Path(path).exists())]
+    sys.path_importer_cache.clear()  # it knows the folders of the outside
+    if any(Path(module, "sitecustomize.py").exists() for module in modules):
+        importlib.import_module("sitecustomize")
+        importlib.reload(sysconfig)  # colcon's sitecustomize sets another prefix
+    sys.path.insert(0, first)
+
+
+def _shadowed(folders: Sequence[str]) -> bool:
+    """Return whether a folder has a module of its own that is called as one that is loaded from elsewhere."""
+    loaded = {name.partition(".")[0] for name in sys.modules}
+    return any(
+        (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)
+        for folder in folders
+        if Path(folder).is_dir()
+        for entry in Path(folder).iterdir()
+    )
+
+
+def _is_module(entry: Path) -> bool:
+    return entry.suffix in (".py", ".pyc", ".so") or (entry / "__init__.py").exists()
+
+
+def _is_from(folder: str, name: str) -> bool:
+    spec = getattr(sys.modules.get(name), "__spec__", None)
+    return spec is not None and Path(spec.origin or "").is_relative_to(folder)
+
+
+def _load_libraries(folders: Iterable[str]) -> None:
+    """Load the libraries of the sandbox's own packages.
+
+    The dynamic linker has read LD_LIBRARY_PATH when this process was started, and looks nowhere else. It does take what
+    is loaded already. A library that needs another one of them is tried again.
+    """
+    waiting = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
+    while waiting:
+        left = [path for path in waiting if not _loads(path)]
+        if len(left) == len(waiting):
+            return
+        waiting = left
+
+
+def _loads(path: Path) -> bool:
+    try:
+        ctypes.CDLL(str(path))
+    except OSError:
+        return False
+    return True

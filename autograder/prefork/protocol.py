@@ -1,0 +1,45 @@
+"""What the grader asks of a fork server: one program, as data that crosses a socket.
+
+The server answers twice, with the program's process id and with "entered"; or once, with why it has "failed".
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+MAX_BYTES = 1024 * 1024
+MAX_FDS = 16
+
+
+@dataclass(frozen=True)
+class Request:
+    """One program to fork.
+
+    Attributes:
+        command: its script and arguments.
+        environment: all its environment variables.
+        workdir: its working folder.
+        limits: the kernel's limits on it, soft and hard, by their names in `resource`.
+        holder: the process in the sandbox that holds the program's place.
+        group: the folder of the sandbox's control group; empty where it has none.
+        fds: the numbers of the descriptors that the program gets. The request comes with them, and before them with
+            the one on which the holder waits for the program's exit status.
+    """
+
+    command: list[str]
+    environment: dict[str, str]
+    workdir: str
+    limits: dict[str, tuple[int, int]]
+    holder: int
+    group: str
+    fds: list[int]
+
+    def to_bytes(self) -> bytes:
+        """Return the request as JSON."""
+        return json.dumps(asdict(self)).encode()
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Request:
+        """Read a request from its JSON."""
+        return cls(**json.loads(data))

@@ -1,1 +1,0 @@
-"""The process that programs are forked from; run as a script, so that none of the grader's modules is in it."""
