@@ -1,7 +1,7 @@
 """The course as a new student takes it: a chapter's release in JupyterLab, the answer typed in, the check turned green.
 
-`make test` takes the first chapter and one with a robot that drives; `make tour` and `make nightly` take them all. Screenshots of each
-chapter's pictures and of its check stay in `.build/screenshots`.
+`make test` takes the first chapter and one with a robot that drives; `make tour` and `make nightly` take them all.
+Screenshots of each chapter's pictures and of its check stay in `.build/screenshots`.
 """
 
 from __future__ import annotations
