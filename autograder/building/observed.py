@@ -14,6 +14,7 @@ from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.packages import find_packages
 from autograder.result import Build
+from autograder.unwritten import explain
 from autograder.workspace import Workspace
 
 
@@ -51,8 +52,11 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     """
     source = workspace.root / "src"
     if not may_fail:
-        require_packages(source, packages)
-        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+        try:
+            require_packages(source, packages)
+            return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+        except StudentError as error:
+            raise StudentError(explain(error.diagnosis, source, *packages)) from None
     if together := _at_once(workspace, packages):
         return Observed(together, dict.fromkeys(packages, OK))
     builds: list[Build] = []
@@ -64,7 +68,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
             diagnoses[name] = OK
         except StudentError as error:
             builds.append(Build(False, 0.0, log=error.diagnosis.detail))
-            diagnoses[name] = error.diagnosis
+            diagnoses[name] = explain(error.diagnosis, source, name)
     require_contained(workspace.install)  # a build that failed was not looked at yet
     seen = tuple(sorted({name for each in builds for name in each.packages}))
     log = "\n".join(filter(None, (each.log for each in builds)))

@@ -9,10 +9,11 @@ import nbformat
 from nbformat import NotebookNode
 
 from autograder.course.solution_markers import without_marks, without_scheme
+from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 # What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
 # the node that runs into it ends, and what it ended with is this sentence.
-CODE_STUB = "# YOUR CODE HERE\nraise NotImplementedError('this part of the exercise is still to be written')"
+CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 
 
 class Form(str, Enum):

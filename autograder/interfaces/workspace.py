@@ -14,6 +14,7 @@ from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
 from autograder.interfaces.exceptions import DefinitionError, GenerationError
 from autograder.interfaces.loading import load
 from autograder.packages import find_packages
+from autograder.unwritten import explain
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
     from autograder.workspace import Workspace
@@ -28,9 +29,12 @@ def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None)
     """
     source = workspace.root / "src"
     packages, broken = find_packages(source)
-    if package not in packages and broken:
-        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
-    return load(_build(packages, package, cache, ()))
+    try:
+        if package not in packages and broken:
+            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
+        return load(_build(packages, package, cache, ()))
+    except StudentError as error:
+        raise StudentError(explain(error.diagnosis, source, package)) from None
 
 
 def _build(packages: dict[str, Path], package: str, cache: Cache | None, above: tuple[str, ...]) -> Path:

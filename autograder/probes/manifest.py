@@ -10,6 +10,7 @@ from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ign
 
 from autograder.checks import CheckFailed
 from autograder.packages import MANIFEST, MAX_MANIFEST
+from autograder.unwritten import find_stub
 
 PLACEHOLDER = "TODO"
 
@@ -50,7 +51,7 @@ def read(package: Path) -> Manifest:
     """Read the manifest of the package in a folder.
 
     Raises:
-        CheckFailed: there is none, or ROS would refuse it; says why.
+        CheckFailed: there is none, it is still to be written, or ROS would refuse it; says why.
     """
     path = package / MANIFEST
     if path.is_symlink() or not path.is_file():
@@ -69,8 +70,10 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     """Read a manifest's text; `where` names it in messages.
 
     Raises:
-        CheckFailed: ROS would refuse it; says why.
+        CheckFailed: it is still to be written, or ROS would refuse it; says why.
     """
+    if find_stub(text, where):
+        raise CheckFailed(f"{where} is still to be written.")
     # No manifest needs a document type, and one can make a small file huge.
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import AlreadyLoadedError, Cache, build, load, load_from
@@ -123,3 +124,10 @@ def test_a_wrong_definition_is_the_students_to_mend(tmp_path: Path, line: str, w
 def test_a_missing_package_is_named(tmp_path: Path) -> None:
     with pytest.raises(StudentError, match=r"ghost_msgs is missing: src holds my_robot_interfaces\."):
         load_from(_workspace(tmp_path), "ghost_msgs", cache=Cache(tmp_path / "cache"))
+
+
+def test_a_definition_that_is_still_to_be_written_is_said_to_be_so(tmp_path: Path) -> None:
+    workspace = _workspace(tmp_path)
+    (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(CODE_STUB)
+    with pytest.raises(StudentError, match=r"msg/RobotStatus\.msg is still to be written"):
+        load_from(workspace, PACKAGE, cache=Cache(tmp_path / "cache"))

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.building.observed import build_workspace
+from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
 from autograder.ros import activate
@@ -95,3 +96,14 @@ def test_the_error_that_is_quoted_is_of_the_package_that_failed(workspace: Works
     (folder / "setup.py").write_text("raise NotImplementedError('not yet')\n")
     sentence = build_workspace(workspace, ("bad",), may_fail=True).diagnosis.sentence
     assert "The first error: error: can't copy 'resource/bad'" in sentence
+
+
+@pytest.mark.parametrize("may_fail", [True, False])
+def test_a_package_that_is_still_to_be_written_is_said_to_be_so(workspace: Workspace, may_fail: bool) -> None:
+    (workspace.root / "src/bad/setup.py").write_text(CODE_STUB)
+    try:
+        found = build_workspace(workspace, ("bad",), may_fail=may_fail).diagnosis
+    except StudentError as error:
+        found = error.diagnosis
+    assert found.kind is Kind.UNFINISHED
+    assert found.sentence.startswith("src/bad/setup.py is still to be written")

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import CheckFailed
+from autograder.course.forms import CODE_STUB
 from autograder.layout import SOLUTIONS
 from autograder.probes import manifest
 
@@ -59,6 +60,7 @@ def test_a_manifest_without_a_build_type_says_so() -> None:
         ("<version>0.1.0</version>", "<version>one</version>", "version conventions"),
         ("</description>", "", "not well-formed|mismatched|invalid XML"),
         (TEXT, "", "invalid XML|no element"),
+        ("<name>lamp</name>", CODE_STUB, "^lamp/package.xml is still to be written"),
         ('<package format="3">', '<!DOCTYPE a [<!ENTITY b "c">]><package format="3">', "which no manifest needs"),
     ],
 )

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder.checks import CheckFailed
-from autograder.diagnosis import OK, Diagnosis
+from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.harness import Workspace
 from autograder.packages import find_packages
+from autograder.unwritten import explain
 
 
 def source_of(workspace: Workspace, package: str) -> Path:
@@ -21,7 +22,8 @@ def source_of(workspace: Workspace, package: str) -> Path:
     found, broken = find_packages(source)
     folder = found.get(package)
     if folder is None:
-        raise CheckFailed(broken.get(source / package, f"There is no package {package} in src."))
+        sentence = broken.get(source / package, f"There is no package {package} in src.")
+        raise CheckFailed(explain(Diagnosis(Kind.MISSING_PACKAGE, sentence), source, package).sentence)
     return folder
 
 

@@ -25,6 +25,7 @@ from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
 from autograder.time_record import LOCKSTEP
+from autograder.unwritten import explain
 
 STEP = 0.1  # s between two messages
 HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
@@ -151,7 +152,8 @@ def source_of(workspace: Workspace, package: str) -> Path:
     source = workspace.root / "src"
     found, broken = find_packages(source)
     if package not in found:
-        raise CheckFailed(broken.get(source / package, f"There is no package {package} in ws/src."))
+        sentence = broken.get(source / package, f"There is no package {package} in ws/src.")
+        raise CheckFailed(explain(Diagnosis(Kind.MISSING_PACKAGE, sentence), source, package).sentence)
     return found[package]
 
 
