@@ -178,9 +178,14 @@ def each(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
     Args:
         check: declares each check, with the row's points and page.
         rows: the table.
+
+    Raises:
+        GraderError: pytest would take the body itself for a test.
     """
 
     def declare_each(body: F) -> F:
+        if body.__name__.startswith("test"):
+            raise GraderError(f"body {body.__name__!r}: its name must not start with 'test', its checks' names do")
         for row in rows:
             declare = check(points=row.points, doc=row.doc)
             body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))

@@ -105,6 +105,14 @@ def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_
     assert seen == [("near", 4, "r2"), ("farther", 7, "r2")]
 
 
+def test_the_body_of_a_table_must_not_look_like_a_test() -> None:
+    with pytest.raises(GraderError, match="body 'tests_all': its name must not start with 'test'"):
+
+        @each(group("g"), ())
+        def tests_all(row: Row) -> None:
+            """A body."""
+
+
 def test_a_check_must_be_a_pytest_function() -> None:
     with pytest.raises(GraderError, match="'turns': its name must start with 'test_'"):
 

@@ -117,6 +117,6 @@ LINES = (
 
 
 @each(group("function", depends=RIGHT), LINES)
-def tests_object_to_a_broken_line(line: Line, examination: Examination) -> None:
+def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)
