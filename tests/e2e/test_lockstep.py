@@ -110,6 +110,7 @@ run(lambda: rclpy.spin(Both()))
 """,
 }
 STEPS = 60
+STEP_NS = 100_000_000  # the period of the programs' timers
 
 
 def trace(scratch: Path, program: str, runs: int) -> list[Any]:
@@ -131,7 +132,7 @@ def trace(scratch: Path, program: str, runs: int) -> list[Any]:
             for number in range(STEPS):
                 harness.publish("/also", String(data=f"also {number}"))
                 harness.publish("/heard", String(data=f"message {number}"))
-                harness.step(harness.tick_ns)
+                harness.step(STEP_NS)
             status = harness.quit()
         said = [(round(stamped.seconds, 3), stamped.message.data) for stamped in harness.messages("/said")]
         traces.append({"said": said, "status": status})
@@ -165,9 +166,9 @@ def test_a_busy_machine_changes_nothing() -> None:
 def test_data_comes_before_timers_and_timers_fire_at_their_time() -> None:
     (run,) = in_cell(trace, PROGRAMS["rclpy.spin"], 1)
     for step in range(STEPS):
-        time = round((step + 1) * 0.1, 3)
+        time = round((step + 1) * STEP_NS / 1e9, 3)
         at = [text for seconds, text in run["said"] if seconds == time]
-        now = 100 * 10**9 + (step + 1) * 10**8
+        now = 100 * 10**9 + (step + 1) * STEP_NS
         assert at == [
             f"echo heard message {step} {step} {now - 1}",
             f"echo tick message {step} {step + 1} {now}",
