@@ -84,6 +84,7 @@ classes:        ## a class of five hands in each chapter, graded through nbgrade
 
 bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev
+	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-bench.lock
 	@$(BIN)/python -m tests.benchmarks
 
 verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
@@ -96,12 +97,13 @@ real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (
 
 # Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
 COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \
-	--no-emit-index-url --no-annotate --no-header pyproject.toml
+	--no-emit-index-url --no-annotate --no-header $(LOCK_ARGS)
 lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upgrade for newer versions)
 	@$(PYTHON) -m venv .build/lock
 	@.build/lock/bin/pip install -qq uv
-	$(COMPILE) $(LOCK_ARGS) -o requirements.lock
-	$(COMPILE) $(LOCK_ARGS) --all-extras -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml -o requirements.lock
+	$(COMPILE) pyproject.toml --all-extras -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) --group bench -c requirements-dev.lock -o requirements-bench.lock
 
 clean:          ## remove what is made, .venv too
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

@@ -144,8 +144,15 @@ def import_cost() -> tuple[float, float]:
     return seconds, megabytes
 
 
-def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS) -> dict[str, float]:
-    """Measure everything; `rounds` rounds of `places` poses each, and loops of some simulated seconds."""
+def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS, *, compare: bool = True) -> dict[str, float]:
+    """Measure everything, the fastest of several rounds.
+
+    Args:
+        rounds: how often everything is measured.
+        places: poses of a round.
+        seconds: simulated seconds of each loop.
+        compare: whether ir-sim, which only `make bench` installs, is measured too.
+    """
     small, large = room(40, 4.0), room(10_000, 0.4)
     random = np.random.default_rng(2)
     poses = [Pose(*random.uniform(-9, 9, 2).tolist(), float(random.uniform(-3, 3))) for _ in range(places)]
@@ -157,8 +164,9 @@ def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS) -> dic
         "sim.scan360_10k_numba_us": (caster(large, FAR_360, "numba"), 20),
         "sim.observe360_numpy_us": (observer(small, "numpy"), 10),
         "sim.observe360_numba_us": (observer(small, "numba"), 50),
-        "sim.scan360_irsim_us": (ir_sim(small), 1),
     }
+    if compare:
+        subjects["sim.scan360_irsim_us"] = (ir_sim(small), 1)
     loops = {f"sim.loop_{engine}_rtf": loop(small, engine, seconds) for engine in ("numpy", "numba")}
     closet = World.from_segments(box(1.0, 1.0).tolist(), name="a closet")  # a robot soon leans on its wall
     loops |= {f"sim.contact_{engine}_rtf": loop(closet, engine, seconds, turn=0.0) for engine in ("numpy", "numba")}
@@ -174,8 +182,9 @@ def figures(rounds: int = 15, places: int = 15, seconds: float = SECONDS) -> dic
             drive()
             fastest[name] = min(fastest[name], time.perf_counter() - begin)
     results = {**best, **{name: seconds / spent for name, spent in fastest.items()}}
-    results["sim.irsim_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numba_us"]
-    results["sim.irsim_numpy_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numpy_us"]
+    if compare:
+        results["sim.irsim_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numba_us"]
+        results["sim.irsim_numpy_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numpy_us"]
     results["sim.index_cost_ratio"] = results["sim.scan360_10k_numba_us"] / results["sim.scan360_numba_us"]
     costs = [import_cost() for _ in range(min(rounds, 5))]
     results["sim.import_s"] = min(cost[0] for cost in costs)

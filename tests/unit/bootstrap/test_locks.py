@@ -1,4 +1,4 @@
-"""The two locks pin everything with hashes, agree with each other, and tie the project to no package source."""
+"""The locks pin everything with hashes, agree with each other, and tie the project to no package source."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).parents[3]
-BASE, DEV = "requirements.lock", "requirements-dev.lock"
+BASE, DEV, BENCH = "requirements.lock", "requirements-dev.lock", "requirements-bench.lock"
 ENTRY = r"[a-z0-9-]+==[^\s;]+( ; [^\\]+?)?( +--hash=sha256:[0-9a-f]{64})+"
 
 
@@ -38,14 +38,14 @@ def names(lock: str) -> set[str]:
     return {pin.partition("==")[0] for pin in pins(lock)}
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH])
 def test_a_lock_holds_nothing_but_exact_pins_with_hashes(lock: str) -> None:
     odd = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
     assert odd == []
-    assert len(entries(lock)) > 100
+    assert len(entries(lock)) > (10 if lock == BENCH else 100)
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH])
 def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
     assert (
         re.findall(r"(?im)^.*(?:://|@ |--index|--extra-index|--find-links|^-[a-z]).*$", (ROOT / lock).read_text()) == []
@@ -56,11 +56,18 @@ def test_what_the_tests_run_on_is_what_users_run_on() -> None:
     assert pins(BASE) <= pins(DEV)
 
 
+def test_the_benchmarks_add_to_what_the_tests_run_on_and_change_none_of_it() -> None:
+    assert {pin for pin in pins(BENCH) if pin.partition("==")[0] in names(DEV)} <= pins(DEV)
+    assert not any(name.startswith("ros-") for name in names(BENCH))
+
+
 def test_every_dependency_of_the_project_is_pinned() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    data = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    project = data["project"]
     for lock, asked in (
         (BASE, project["dependencies"]),
         (DEV, [line for extra in project["optional-dependencies"].values() for line in extra]),
+        (BENCH, data["dependency-groups"]["bench"]),
     ):
         missing = {canonicalize_name(Requirement(line).name) for line in asked} - names(lock)
         assert missing == set(), f"{lock} is older than pyproject.toml: run `make lock`"
