@@ -13,9 +13,8 @@ from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.points import set_points, wrong_points
-from autograder.course.survey import PAGE, Survey
-from autograder.course.sync import Chapter, chapters, stale
-from autograder.course.sync import sync as bring_in
+from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
+from autograder.course.tables import PAGE, course_page
 from autograder.exceptions import UsageError
 from autograder.layout import CHAPTERS, SOLUTIONS
 from autograder.proof import guide
@@ -38,7 +37,7 @@ def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     for chapter in _chosen(names, root):
         try:
-            changed = bring_in(chapter, solutions)
+            changed = sync_chapter(chapter, solutions)
             notebook = chapter.read()
             if any(map(is_graded, notebook.cells)) and set_points(
                 chapter.path.name, notebook, suites.hidden(chapter.assignment).checks
@@ -77,7 +76,7 @@ def _chosen(names: tuple[str, ...], root: Path) -> list[Chapter]:
 def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
     """Return everything that is wrong with a chapter."""
     notebook, name = chapter.read(), chapter.path.name
-    found = [*stale(chapter, solutions), *broken_rules(name, notebook)]
+    found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         try:
             found += wrong_points(name, notebook, suites.hidden(chapter.assignment).checks)
@@ -89,8 +88,8 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
 @course.command()
 def tables() -> None:
     """Write the pages for instructors: what is taught where, which checks judge it, and what proves them."""
-    survey = Survey.of_the_course()
-    for finding in survey.coverage.findings:
+    page, problems = course_page()
+    for finding in problems:
         click.echo(str(finding))
-    PAGE.write_text(survey.page(), encoding="utf-8")
+    PAGE.write_text(page, encoding="utf-8")
     guide.PAGE.write_text(guide.guide(), encoding="utf-8")

@@ -1,8 +1,8 @@
-"""The course's own tool: it brings the reference solutions into the notebooks, and looks after the notebooks.
+"""Keeps the notebooks and the reference solutions equal, checks the notebooks and executes them.
 
-`solutions/` is the single source. A notebook's cell or file that comes from it says so in its metadata; `sync` writes
-it, `check` finds what has gone stale, `run_notebook` executes a notebook as the author, the grader or a student
-has it, `run_notebooks` several at once.
+`solutions/` is the single source. The metadata of a cell or a notebook names the files that it copies. `sync_chapter`
+writes the copies, and `find_outdated` compares them. `run_notebook` executes one form of a notebook: the source, the
+solved or the released one. `run_notebooks` executes several at once.
 """
 
 from autograder.course.cells import is_solution, origin
@@ -12,8 +12,8 @@ from autograder.course.findings import Finding
 from autograder.course.forms import CODE_STUB, Form, in_form
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.points import set_points, wrong_points
-from autograder.course.solution_markers import with_holes, without_licence
-from autograder.course.sync import Chapter, chapters, stale, sync
+from autograder.course.solution_markers import mark_functions, strip_licence
+from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 
 __all__ = [
     "CODE_STUB",
@@ -24,15 +24,15 @@ __all__ = [
     "Form",
     "broken_rules",
     "chapters",
+    "find_outdated",
     "in_form",
     "is_solution",
+    "mark_functions",
     "origin",
     "run_notebook",
     "run_notebooks",
     "set_points",
-    "stale",
-    "sync",
-    "with_holes",
-    "without_licence",
+    "strip_licence",
+    "sync_chapter",
     "wrong_points",
 ]

@@ -1,17 +1,17 @@
-"""What a notebook says about where its cells and files come from.
+"""Reads the course's own metadata of notebooks and cells.
 
-In a cell's metadata, for a file that the cell writes into the student's workspace:
+The metadata of a cell that writes a file into the student's workspace:
 
     {"course": {"source": "my_robot_package/my_robot_package/nodes/robot_controller.py",
                 "target": "ws/src/my_robot_package/my_robot_package/nodes/robot_controller.py",
                 "hide": ["RobotController.control_loop"]}}
 
-For a file that is not Python, or has no functions, `cut` names the lines around what the student writes:
+A file that is not Python, or has no functions, has `cut`: the lines around each part that the student writes:
 
     {"course": {"source": "square_dance/package.xml", "target": "ws/src/square_dance/package.xml",
                 "cut": [["<export>", "</export>"]]}}
 
-In the notebook's metadata, for files of the chapter's folder that equal the reference's:
+The metadata of a notebook names the files of the chapter's folder that are copies of the reference's:
 
     {"course": {"given": {"ws/src/my_robot_package/setup.cfg": "my_robot_package/setup.cfg"}}}
 
@@ -28,17 +28,18 @@ from typing import Any
 from nbformat import NotebookNode
 
 from autograder.course.exceptions import CourseError
-from autograder.course.solution_markers import with_cuts, with_holes, without_licence
+from autograder.course.solution_markers import mark_functions, mark_lines, strip_licence
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a cell's text comes from.
+    """The reference file that a cell copies.
 
     Attributes:
-        source: the reference's file, in `solutions/`.
-        target: the file that the cell writes, in the chapter's folder.
-        hide: functions whose bodies the student writes; none for a cell that only shows and writes a file.
+        source: path of the reference file, below `solutions/`.
+        target: path of the file that the cell writes, below the chapter's folder.
+        hide: qualified names of the functions whose bodies the student writes. It is empty where the student only runs
+            the cell.
         cut: the lines before and after each part that the student writes, in a file without functions.
     """
 
@@ -47,26 +48,26 @@ class Origin:
     hide: tuple[str, ...]
     cut: tuple[tuple[str, str], ...] = ()
 
-    def text(self, solutions: Path) -> str:
-        """Return what the cell must hold.
+    def expected_text(self, solutions: Path) -> str:
+        """Return the source that the cell must have.
 
         Raises:
-            CourseError: the reference's file is missing, or what is to be hidden is not in it.
+            CourseError: the reference file is missing, or a function or line to hide is not in it.
         """
-        text = without_licence(read(solutions, self.source))
+        text = strip_licence(read_solution(solutions, self.source))
         try:
-            text = with_holes(text, self.hide) if self.hide else text
-            text = with_cuts(text, self.cut) if self.cut else text
+            text = mark_functions(text, self.hide) if self.hide else text
+            text = mark_lines(text, self.cut) if self.cut else text
         except CourseError as error:
             raise CourseError(f"{self.source}: {error}") from error
         return f"%%writefile {self.target}\n{text.rstrip()}"
 
 
 def origin(cell: NotebookNode) -> Origin | None:
-    """Return where a code cell comes from, or None when it was written in the notebook.
+    """Return the reference file that a code cell copies, or None if it copies none.
 
     Raises:
-        CourseError: its metadata is not as this module's docstring says.
+        CourseError: the cell's metadata has not the form that this module's docstring shows.
     """
     course = metadata(cell)
     if "source" not in course:
@@ -80,23 +81,23 @@ def origin(cell: NotebookNode) -> Origin | None:
     if hide and cut:
         raise CourseError('a cell hides functions by "hide" or lines by "cut", not both')
     pairs = tuple((str(before), str(after)) for before, after in cut)
-    return Origin(inside(course["source"]), inside(course.get("target")), tuple(hide), pairs)
+    return Origin(relative_path(course["source"]), relative_path(course.get("target")), tuple(hide), pairs)
 
 
 def _is_pair(value: object) -> bool:
     return isinstance(value, list) and len(value) == 2 and all(isinstance(line, str) for line in value)
 
 
-def given(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
-    """Return the chapter's files that equal the reference's: target to source.
+def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
+    """Return the chapter's files that are copies of reference files, as target to source.
 
     Raises:
-        CourseError: the metadata is not as this module's docstring says.
+        CourseError: the notebook's metadata has not the form that this module's docstring shows.
     """
     pairs = metadata(notebook).get("given", {})
     if not isinstance(pairs, Mapping):
         raise CourseError(f"\"given\" must map the chapter's files to the reference's, not be {pairs!r}")
-    return {inside(target): inside(source) for target, source in pairs.items()}
+    return {relative_path(target): relative_path(source) for target, source in pairs.items()}
 
 
 def group(cell: NotebookNode) -> str | None:
@@ -112,17 +113,17 @@ def group(cell: NotebookNode) -> str | None:
 
 
 def is_graded(cell: NotebookNode) -> bool:
-    """Say whether nbgrader takes points from this cell."""
+    """Return whether nbgrader takes points from this cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("grade"))
 
 
-def is_manual(cell: NotebookNode) -> bool:
-    """Say whether students write in this cell and a person gives the points, in nbgrader's formgrader."""
+def is_manually_graded(cell: NotebookNode) -> bool:
+    """Return whether students write in this cell and a person gives the points in nbgrader's formgrader."""
     return is_graded(cell) and is_solution(cell)
 
 
 def is_solution(cell: NotebookNode) -> bool:
-    """Say whether students write in this cell."""
+    """Return whether students write in this cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("solution"))
 
 
@@ -138,11 +139,11 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     return course
 
 
-def inside(path: object) -> PurePosixPath:
-    """Return a path that stays inside its folder.
+def relative_path(path: object) -> PurePosixPath:
+    """Return a relative path that stays inside its folder.
 
     Raises:
-        CourseError: it is no path, or an absolute one, or one that leaves the folder.
+        CourseError: `path` is not a string, is empty or absolute, or leaves the folder.
     """
     if not isinstance(path, str) or not path:
         raise CourseError(f'"source" and "target" must be paths, not {path!r}')
@@ -152,8 +153,8 @@ def inside(path: object) -> PurePosixPath:
     return pure
 
 
-def read(solutions: Path, source: PurePosixPath) -> str:
-    """Return the text of one of the reference's files.
+def read_solution(solutions: Path, source: PurePosixPath) -> str:
+    """Return the text of a reference file.
 
     Raises:
         CourseError: there is no such file.

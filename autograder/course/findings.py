@@ -1,4 +1,4 @@
-"""One thing that is wrong with a notebook, told so that its author finds it."""
+"""A problem in a notebook, with the place where its author finds it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """Something to mend.
+    """A problem in a notebook.
 
     Attributes:
         notebook: the notebook's file name.
-        cell: the id of the cell, or None when it is not about one cell.
+        cell: the id of the cell, or None if the problem concerns no single cell.
         message: what is wrong and what to do.
     """
 

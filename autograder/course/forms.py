@@ -8,7 +8,7 @@ from enum import Enum
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.solution_markers import without_marks, without_scheme
+from autograder.course.solution_markers import strip_mark_schemes, strip_markers
 from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 # What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
@@ -32,7 +32,7 @@ def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     made: NotebookNode = copy.deepcopy(notebook)
     if form is Form.SOLVED:
         for cell in made.cells:
-            cell.source = without_scheme(without_marks(cell.source))
+            cell.source = strip_mark_schemes(strip_markers(cell.source))
     elif form is Form.RELEASED:
         made = _released(made)
     nbformat.validate(made)

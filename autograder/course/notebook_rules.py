@@ -1,4 +1,4 @@
-"""What every committed notebook must be: without outputs, valid for nbgrader, and readable by everyone."""
+"""The rules for committed notebooks: no outputs, valid nbgrader metadata, headings in order, alternative texts."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from collections.abc import Iterator
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.cells import group, is_graded, is_manual
+from autograder.course.cells import group, is_graded, is_manually_graded
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.course.solution_markers import BEGIN_SCHEME as MARK_SCHEME
 
 _FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
-_HEADING = re.compile(r"^(#{1,6}) +(?!BEGIN |END )\S", re.MULTILINE)  # marks of nbgrader's look like headings
+_HEADING = re.compile(r"^(#{1,6}) +(?!BEGIN |END )\S", re.MULTILINE)  # nbgrader's markers look like headings
 _IMAGE = re.compile(r"!\[(?P<alt>[^\]]*)\]\((?P<target>[^)]*)\)")
 _IMG = re.compile(r"<img\b[^>]*>", re.IGNORECASE)
 _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
 
 
 def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
-    """Find what must not be in a source notebook, or is missing from it.
+    """Return the rules that a source notebook breaks.
 
     Args:
-        name: the notebook's file name, for the findings.
+        name: file name of the notebook, for the findings.
         notebook: the notebook as it would be committed.
     """
-    # Before validation, which repairs ids on its own.
+    # This comes before the validation, which replaces repeated ids.
     repeated = [cell_id for cell_id, count in Counter(cell.get("id") for cell in notebook.cells).items() if count > 1]
     if repeated:
         return [Finding(name, cell_id, "more than one cell has this id") for cell_id in repeated]
@@ -44,16 +44,18 @@ def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
 
 def images_without_alt(executed: NotebookNode) -> list[str]:
     """Return the ids of the cells of an executed notebook that show an image without alternative text."""
-    return [cell.id for cell in executed.cells if any(_is_mute(output) for output in cell.get("outputs", []))]
+    return [
+        cell.id for cell in executed.cells if any(_lacks_alternative_text(output) for output in cell.get("outputs", []))
+    ]
 
 
-def _is_mute(output: NotebookNode) -> bool:
+def _lacks_alternative_text(output: NotebookNode) -> bool:
     data, metadata = output.get("data", {}), output.get("metadata", {})
     html = "".join(data.get("text/html", ""))
     if any(not _ALT.search(tag) for tag in _IMG.findall(html)):
         return True
     images = [kind for kind in data if kind.startswith("image/")]
-    # JupyterLab shows the HTML where there is one; otherwise an image's text is in its metadata.
+    # JupyterLab shows the HTML if there is any. Otherwise the metadata hold the alternative text of an image.
     return not html and any(not str(metadata.get(kind, {}).get("alt", "")).strip() for kind in images)
 
 
@@ -119,12 +121,12 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         except CourseError as error:
             yield cell.id, str(error)
             continue
-        if is_graded(cell) and not is_manual(cell) and (not found.get("locked") or named is None):
+        if is_graded(cell) and not is_manually_graded(cell) and (not found.get("locked") or named is None):
             yield cell.id, 'a grade cell is locked and names its group of checks: {"course": {"group": ...}}'
-        if is_manual(cell):
+        if is_manually_graded(cell):
             yield from ((cell.id, message) for message in _manual(cell, named))
         if MARK_SCHEME in cell.source and not found.get("locked"):
-            yield cell.id, "holds a mark scheme but is not locked: autograding could not bring it back"
+            yield cell.id, "holds a mark scheme but is not locked: lock it, so that autograding can restore it"
         if "BEGIN SOLUTION" in cell.source and not found.get("solution"):
             yield cell.id, "holds a solution but is not marked as a solution cell"
 
@@ -132,7 +134,7 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
 def _manual(cell: NotebookNode, named: str | None) -> Iterator[str]:
     marks = cell.metadata.nbgrader
     if marks.get("locked"):
-        yield "students answer in this cell: it must not be locked"
+        yield "is locked, but students answer in it: unlock it"
     if not marks.get("points"):
         yield "a manually graded cell needs points above 0"
     if named is not None:

@@ -1,6 +1,6 @@
-"""Holds the points of a notebook's grade cells and those of its hidden suite together.
+"""Compares the points of a notebook's grade cells with those of its hidden suite, and sets them.
 
-Cells to which a person gives the points are no business of the suite's.
+The suite has no points for the cells that a person grades.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from nbformat import NotebookNode
 
 from autograder.checks import Check
-from autograder.course.cells import group, is_graded, is_manual
+from autograder.course.cells import group, is_graded, is_manually_graded
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 
@@ -25,18 +25,26 @@ def points_by_group(checks: Sequence[Check]) -> dict[str, float]:
 
 
 def wrong_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
-    """Find grade cells whose points or group differ from the suite's, and groups without a cell.
+    """Return the grade cells whose points or group differ from the suite's, and the groups without a cell.
 
     Args:
         name: the notebook's file name, for the findings.
-        notebook: the notebook.
-        checks: its suite's manifest.
+        notebook: the notebook to compare.
+        checks: the hidden checks of its suite.
     """
     return [finding for finding, _ in _wrong(name, notebook, points_by_group(checks))]
 
 
 def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bool:
-    """Give each grade cell its group's points; say whether one changed.
+    """Set the points of each grade cell to the sum of its group, in place.
+
+    Args:
+        name: the notebook's file name, for the errors.
+        notebook: the notebook to change.
+        checks: the hidden checks of its suite.
+
+    Returns:
+        Whether the points of a cell changed.
 
     Raises:
         CourseError: a cell names no group of the suite, two name one group, or a group has no cell.
@@ -53,11 +61,11 @@ def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bo
 
 
 def _wrong(name: str, notebook: NotebookNode, points: dict[str, float]) -> list[tuple[Finding, NotebookNode | None]]:
-    """Return findings, each with its cell where setting that cell's points mends it."""
+    """Return findings. A finding has its cell if setting the points of that cell is the remedy, and None otherwise."""
     wrong: list[tuple[Finding, NotebookNode | None]] = []
     seen: set[str] = set()
     for cell in notebook.cells:
-        if not is_graded(cell) or is_manual(cell):
+        if not is_graded(cell) or is_manually_graded(cell):
             continue
         named, cell_id = group(cell), cell.get("id", "without id")
         if named is None or named not in points:

@@ -1,6 +1,7 @@
-"""The students' bundle: released notebooks, the simulator, and the half of the autograder that students run.
+"""Writes the students' bundle: released notebooks, the simulator, and the part of the autograder that students run.
 
-No hidden check, no solution and no proof of the grader is in it. It is a project of its own: `make lab` works in it.
+The bundle holds no hidden check, no solution and no proof of the grader. It is a project of its own: `make lab` works
+in it.
 """
 
 from __future__ import annotations
@@ -16,54 +17,58 @@ from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
 
-# What a release is made of, beside the chapters; folders are taken whole.
-PARTS = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", ".devcontainer")
-FRONT = layout.ROOT / "assets" / "students"  # its README and its Makefile
-# What students get of a chapter's checks.
-SHARED = frozenset({"__init__.py", "conftest.py", "support", "visible"})
-# The instructors' half, as paths in the bundle.
+# Files and whole folders that are copied beside the chapters.
+COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", ".devcontainer")
+STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
+# The entries of a chapter's folder of checks that students get.
+STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
+# Parts for instructors only, as paths in the bundle.
 _PACKAGES = ("proof", "course", "nbgrader", "export", "feedback")
 _VERBS = ("course", "demo", "export", "grade", "notebooks", "release", "verify")
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
 
 
 def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
-    """Write the students' bundle of these chapters, all without any, to the new folder `out`; return their names.
+    """Write the students' bundle to the new folder `out`, and return the names of its chapters.
+
+    Args:
+        out: the folder to make.
+        names: the chapters that the bundle holds; all of them if there are none.
 
     Raises:
-        UsageError: `out` exists, or there is no such chapter. Nothing is written then.
+        UsageError: `out` exists, or a chapter does not exist. Nothing is written then.
     """
     if out.exists():
-        raise UsageError(f"{out} exists: give a folder that is still to be made")
-    there = {chapter.assignment: chapter for chapter in chapters()}
-    if unknown := set(names) - set(there):
-        raise UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(there)}")
+        raise UsageError(f"{out} exists already: name a folder that does not exist yet")
+    known = {chapter.assignment: chapter for chapter in chapters()}
+    if unknown := set(names) - set(known):
+        raise UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(known)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
-        made = Path(scratch) / out.name
-        chosen = [there[name] for name in names or there]
-        _copy_parts(made)
+        bundle = Path(scratch) / out.name
+        chosen = [known[name] for name in names or known]
+        _copy_parts(bundle)
         for chapter in chosen:
-            _release(chapter, made / "chapters" / chapter.assignment)
-        shutil.copytree(FRONT, made, dirs_exist_ok=True)
-        made.rename(out)
+            _release(chapter, bundle / "chapters" / chapter.assignment)
+        shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
+        bundle.rename(out)
     return [chapter.assignment for chapter in chosen]
 
 
-def _copy_parts(made: Path) -> None:
-    for part in PARTS:
-        source, target = layout.ROOT / part, made / part
+def _copy_parts(bundle: Path) -> None:
+    for part in COPIED:
+        source, target = layout.ROOT / part, bundle / part
         if source.is_dir():
             shutil.copytree(source, target, ignore=layout.NOT_COPIED)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
     for withheld in WITHHELD:
-        path = made / withheld
+        path = bundle / withheld
         shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for chapter in (made / layout.CHECKS.relative_to(layout.ROOT)).glob("ch*"):
+    for chapter in (bundle / layout.CHECKS.relative_to(layout.ROOT)).glob("ch*"):
         for path in chapter.iterdir():
-            if path.name not in SHARED:
+            if path.name not in STUDENT_CHECKS:
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 

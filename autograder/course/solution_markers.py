@@ -1,7 +1,7 @@
-"""Marks answers as nbgrader solution regions: a release keeps contracts and loses answers.
+"""Writes nbgrader's solution markers around answers. nbgrader removes the text between them from a release.
 
-In Python it is the bodies of named functions, found by `ast`; in any text it is the lines between two named ones. What
-is named and not there is an error rather than a leaked answer.
+In Python the answers are the bodies of named functions, which `ast` finds. In any other text they are the lines between
+two named lines. A name that is not in the text is an error, because the answer would otherwise be released.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ END_SCHEME = "### END MARK SCHEME"
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def with_holes(text: str, hide: Sequence[str]) -> str:
-    """Return Python source with the bodies of the functions in `hide` between solution marks.
+def mark_functions(text: str, hide: Sequence[str]) -> str:
+    """Return Python source with solution markers around the bodies of the functions in `hide`.
 
-    Signature, decorators and docstring stay outside: they are the contract that the student sees.
+    Signature, decorators and docstring stay outside the markers, because the student needs them.
 
     Args:
-        text: the module's source.
-        hide: qualified names: `main`, `RobotController.control_loop`, ...
+        text: source of a module.
+        hide: qualified names, such as `main` or `RobotController.control_loop`.
 
     Raises:
-        CourseError: the source does not parse or already has marks, or a name is not there, is there twice, or has no
-            docstring or no body on lines of its own, or two of them overlap.
+        CourseError: the source does not parse or already has markers; a function is missing or occurs twice, has no
+            docstring or no body on lines of its own; or two of the functions overlap.
     """
     if BEGIN in text or END in text:
-        raise CourseError("the source already holds solution marks; they belong in notebooks only")
+        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
     try:
         functions = list(_functions(ast.parse(text)))
     except SyntaxError as error:
@@ -56,22 +56,24 @@ def with_holes(text: str, hide: Sequence[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_cuts(text: str, cuts: Sequence[tuple[str, str]]) -> str:
-    """Return text of any kind with the lines between pairs of lines between solution marks.
+def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
+    """Return text with solution markers around the lines between each pair of lines.
 
     Args:
-        text: a file's text.
-        cuts: for each region the line before it and the line after it, without indentation; each stands exactly once.
-            An empty string is the file's start or end.
+        text: text of a file of any kind.
+        cuts: the line before and the line after each region, without indentation. Each line occurs once in the text.
+            An empty string stands for the start or the end of the file.
 
     Raises:
-        CourseError: the text already has marks, a line is not there or is there twice, or a region is empty or lies in
+        CourseError: the text already has markers, a line is missing or occurs twice, or a region is empty or overlaps
             another one.
     """
     if BEGIN in text or END in text:
-        raise CourseError("the source already holds solution marks; they belong in notebooks only")
+        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
     lines = text.splitlines()
-    regions = sorted((_place(lines, before, -1) + 1, _place(lines, after, len(lines))) for before, after in cuts)
+    regions = sorted(
+        (_line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))) for before, after in cuts
+    )
     if any(first >= end for first, end in regions):
         raise CourseError(f"there is nothing to hide between these lines: {cuts!r}")
     if any(one[1] > other[0] for one, other in pairwise(regions)):
@@ -83,13 +85,13 @@ def with_cuts(text: str, cuts: Sequence[tuple[str, str]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def without_marks(text: str) -> str:
-    """Return the text without the lines that mark solutions: what a student who solved it would have."""
+def strip_markers(text: str) -> str:
+    """Return the text without solution markers, as a student who solved it has it."""
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
 
 
-def without_scheme(text: str) -> str:
-    """Return the text without mark schemes, which are for those who mark."""
+def strip_mark_schemes(text: str) -> str:
+    """Return the text without mark schemes, which students do not get."""
     kept, inside = [], False
     for line in text.split("\n"):
         inside = inside or line.strip() == BEGIN_SCHEME
@@ -98,8 +100,8 @@ def without_scheme(text: str) -> str:
     return "\n".join(kept)
 
 
-def without_licence(text: str) -> str:
-    """Return Python source without the comment block that it starts with; the repository's copy keeps it."""
+def strip_licence(text: str) -> str:
+    """Return Python source without the copyright comment at its start."""
     lines = text.splitlines(keepends=True)
     if not (lines and lines[0].startswith("# Copyright")):
         return text
@@ -107,8 +109,8 @@ def without_licence(text: str) -> str:
     return "".join(lines[body:]).lstrip("\n")
 
 
-def _place(lines: Sequence[str], wanted: str, default: int) -> int:
-    """Return the index of the one line that reads so, the default for an empty string."""
+def _line_index(lines: Sequence[str], wanted: str, default: int) -> int:
+    """Return the index of the line `wanted`, or the default for an empty string."""
     if not wanted:
         return default
     found = [index for index, line in enumerate(lines) if line.strip() == wanted]
@@ -131,8 +133,8 @@ def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]
 def _region(name: str, function: Function) -> tuple[int, int, int]:
     """Return the first and last line of a function's body after its docstring (from 1), and its indentation."""
     if ast.get_docstring(function, clean=False) is None:
-        raise CourseError(f"function {name!r} has no docstring; a hidden function needs one, it is the contract")
-    # A comment above the first statement may give the answer away: the region starts right after the contract.
+        raise CourseError(f"function {name!r} has no docstring: write one, students see it in place of the body")
+    # The region starts right after the docstring: a comment above the first statement may hold a part of the answer.
     first = _end(function.body[0]) + 1
     last = max(_end(statement) for statement in function.body)
     if last < first:

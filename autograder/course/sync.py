@@ -1,4 +1,4 @@
-"""Brings the reference solutions into the notebooks, and finds the cells and files that have gone stale."""
+"""Copies the reference solutions into the notebooks, and finds the cells and files that differ from them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.cells import given, origin, read
+from autograder.course.cells import given_files, origin, read_solution
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.layout import CHAPTERS, SOLUTIONS
@@ -21,18 +21,18 @@ SHOWN_LINES = 12
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter's folder; the notebook in it has the folder's name."""
+    """The folder of a chapter. Its notebook has the same name."""
 
     folder: Path
 
     @property
     def assignment(self) -> str:
-        """Return nbgrader's name for it."""
+        """The name that nbgrader uses."""
         return self.folder.name
 
     @property
     def path(self) -> Path:
-        """Return the notebook's path."""
+        """The path of the notebook."""
         return self.folder / f"{self.folder.name}.ipynb"
 
     def read(self) -> NotebookNode:
@@ -42,11 +42,11 @@ class Chapter:
             CourseError: there is none, or it is not a notebook.
         """
         if not self.path.is_file():
-            raise CourseError(f"{self.folder.name}: a chapter's folder holds a notebook of its own name")
+            raise CourseError(f"{self.folder.name}: the folder has no notebook {self.folder.name}.ipynb: create it")
         text = self.path.read_text(encoding="utf-8")
         try:
             with warnings.catch_warnings():
-                # nbformat would hand out new ids; grades and findings hang on the old ones.
+                # nbformat would assign new ids, but grades and findings refer to the old ones.
                 warnings.simplefilter("error", nbformat.warnings.DuplicateCellId)
                 warnings.simplefilter("error", nbformat.warnings.MissingIDFieldWarning)
                 notebook: NotebookNode = nbformat.reads(text, as_version=nbformat.NO_CONVERT)
@@ -64,72 +64,74 @@ class Chapter:
 
 
 def write_notebook(path: Path, notebook: NotebookNode) -> None:
-    """Write a notebook in nbformat's own form, the one that diffs well."""
+    """Write a notebook as nbformat does, indented and with a final newline."""
     path.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
 
 
 def chapters(root: Path = CHAPTERS) -> list[Chapter]:
-    """Return the chapters in their order."""
+    """Return the chapters below `root`, sorted by name."""
     return [Chapter(path.parent) for path in sorted(root.glob("*/*.ipynb")) if path.stem == path.parent.name]
 
 
-def stale(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
-    """Find the cells and files that differ from the reference, or whose metadata is wrong."""
+def find_outdated(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
+    """Return the cells and files that differ from the reference, and those with wrong metadata."""
     notebook = chapter.read()
     return [finding for finding, _ in _differences(chapter, notebook, solutions)]
 
 
-def sync(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
-    """Bring a chapter up to date; return what had been stale.
+def sync_chapter(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
+    """Copy the reference into a chapter, and return the cells and files that differed.
 
     Raises:
-        CourseError: something is wrong that copying cannot mend; nothing is written then.
+        CourseError: the metadata are wrong, or a reference file is missing. Nothing is written then.
     """
     notebook = chapter.read()
     differences = list(_differences(chapter, notebook, solutions))
-    for finding, mend in differences:
-        if mend is None:
+    for finding, correction in differences:
+        if correction is None:
             raise CourseError(str(finding))
-    for _, mend in differences:
-        if mend is not None:
-            mend.apply()
+    for _, correction in differences:
+        if correction is not None:
+            correction.apply()
     if any(finding.cell is not None for finding, _ in differences):
         chapter.write(notebook)
     return [finding for finding, _ in differences]
 
 
 @dataclass(frozen=True)
-class _Mend:
+class _Correction:
     """The text that a cell or a file should have."""
 
-    to: NotebookNode | Path
+    target: NotebookNode | Path
     text: str
 
     def apply(self) -> None:
-        if isinstance(self.to, Path):
-            self.to.parent.mkdir(parents=True, exist_ok=True)
-            self.to.write_text(self.text, encoding="utf-8")
+        if isinstance(self.target, Path):
+            self.target.parent.mkdir(parents=True, exist_ok=True)
+            self.target.write_text(self.text, encoding="utf-8")
         else:
-            self.to.source = self.text
+            self.target.source = self.text
 
 
-def _differences(chapter: Chapter, notebook: NotebookNode, solutions: Path) -> Iterator[tuple[Finding, _Mend | None]]:
-    """Yield what is wrong, with the mend where copying is one."""
+def _differences(
+    chapter: Chapter, notebook: NotebookNode, solutions: Path
+) -> Iterator[tuple[Finding, _Correction | None]]:
+    """Yield the findings, each with its correction, or None where a copy corrects nothing."""
     name = chapter.path.name
     for cell in notebook.cells:
         cell_id = cell.get("id", "without id")
         try:
             source = origin(cell)
-            expected = None if source is None else source.text(solutions)
+            expected = None if source is None else source.expected_text(solutions)
         except CourseError as error:
             yield Finding(name, cell_id, str(error)), None
             continue
         if expected is not None and source is not None and cell.source != expected:
             message = f"differs from solutions/{source.source}; run `autograder course sync`"
-            yield Finding(name, cell_id, message + _diff(cell.source, expected)), _Mend(cell, expected)
+            yield Finding(name, cell_id, message + _diff(cell.source, expected)), _Correction(cell, expected)
     try:
-        pairs = given(notebook)
-        texts = {target: read(solutions, source) for target, source in pairs.items()}
+        pairs = given_files(notebook)
+        texts = {target: read_solution(solutions, source) for target, source in pairs.items()}
     except CourseError as error:
         yield Finding(name, None, str(error)), None
         return
@@ -140,11 +142,11 @@ def _differences(chapter: Chapter, notebook: NotebookNode, solutions: Path) -> I
             what = "is missing" if current is None else "differs"
             message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
             message += "run `autograder course sync`"
-            yield Finding(name, None, message + _diff(current or "", text)), _Mend(path, text)
+            yield Finding(name, None, message + _diff(current or "", text)), _Correction(path, text)
 
 
 def _diff(current: str, expected: str) -> str:
-    """Show the first lines that differ."""
+    """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
     shown = list(lines)[2:]
     more = [f"... and {len(shown) - SHOWN_LINES} more lines"] if len(shown) > SHOWN_LINES else []

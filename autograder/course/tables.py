@@ -1,10 +1,16 @@
-"""The course's tables for instructors, in Markdown: what is taught where, and which checks judge it."""
+"""Writes the instructors' page in Markdown: where the course covers the syllabus, and which checks test it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from autograder.course.syllabus import Coverage, Place, Syllabus
+from autograder.checks import suites
+from autograder.course.findings import Finding
+from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
+from autograder.course.sync import chapters
+from autograder.layout import CHAPTERS
+
+PAGE = CHAPTERS / "README.md"
 
 HEAD = """# The course, chapter by chapter
 
@@ -13,13 +19,25 @@ notebooks' metadata, the hidden checks and `assets/syllabus.yaml`; a test holds 
 """
 
 
-def page(syllabus: Syllabus, covered: Coverage, titles: dict[str, str]) -> str:
-    """Return the instructors' page.
+def course_page() -> tuple[str, tuple[Finding, ...]]:
+    """Return the instructors' page of the course, and the problems found in its notebooks and syllabus."""
+    syllabus, have_suites = Syllabus.read(), suites.graded()
+    notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
+    covered = find_coverage(
+        syllabus,
+        [(name, book, suites.hidden(name).checks if name in have_suites else ()) for name, book in notebooks.items()],
+    )
+    titles = {name: book.cells[0].source.splitlines()[0].removeprefix("# ") for name, book in notebooks.items()}
+    return page(syllabus, covered, titles), covered.findings
+
+
+def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str]) -> str:
+    """Return the instructors' page as Markdown.
 
     Args:
-        syllabus: what has to be held.
-        covered: where it is held.
-        titles: each chapter's title, by name and in order.
+        syllabus: the entries to cover.
+        covered: the locations that cover them.
+        titles: title of each chapter by its name, in order.
     """
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
@@ -33,23 +51,23 @@ def page(syllabus: Syllabus, covered: Coverage, titles: dict[str, str]) -> str:
             "## Objectives\n",
             *_table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
             "## The chapter's contents\n",
-            *_table(("what", "where"), [(syllabus.items[key], _where(held)) for key, held in covered.items.items()]),
+            *_table(("what", "where"), [(syllabus.items[key], _where(found)) for key, found in covered.items.items()]),
             "## What the chapter gets wrong\n",
             *_table(
                 ("#", "the chapter", "here", "where"),
-                [(str(n), *syllabus.errata[n], _where(held)) for n, held in covered.errata.items()],
+                [(str(n), *syllabus.errata[n], _where(found)) for n, found in covered.errata.items()],
             ),
         ]
     )
 
 
-def _points(covered: Coverage, name: str) -> float:
-    """Return a chapter's points; a group of checks may serve two objectives, and counts once."""
+def _points(covered: SyllabusCoverage, name: str) -> float:
+    """Return a chapter's points. A check that serves two objectives counts once."""
     checks = {check.id: check.points for row in covered.rows if row.chapter == name for check in row.checks}
     return sum(checks.values())
 
 
-def _objectives(syllabus: Syllabus, covered: Coverage) -> Iterator[tuple[str, ...]]:
+def _objectives(syllabus: Syllabus, covered: SyllabusCoverage) -> Iterator[tuple[str, ...]]:
     for key, text in syllabus.objectives.items():
         for row in covered.rows:
             if row.objective == key:
@@ -57,8 +75,8 @@ def _objectives(syllabus: Syllabus, covered: Coverage) -> Iterator[tuple[str, ..
                 yield text, row.chapter, row.exercise, checks
 
 
-def _where(places: Sequence[Place]) -> str:
-    return "; ".join(f"{place.chapter}: {place.heading}" for place in places)
+def _where(locations: Sequence[Location]) -> str:
+    return "; ".join(f"{location.chapter}: {location.heading}" for location in locations)
 
 
 def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]] | Iterator[tuple[str, ...]]) -> Iterator[str]:

@@ -81,7 +81,7 @@ def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
 
 def test_a_folder_that_exists_is_not_written_to(tmp_path: Path) -> None:
     result = run("--out", str(tmp_path))
-    assert "exists: give a folder that is still to be made" in str(result.exception)
+    assert "exists already: name a folder that does not exist yet" in str(result.exception)
     assert list(tmp_path.iterdir()) == []
 
 

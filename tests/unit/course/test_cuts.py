@@ -10,7 +10,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.course import CourseError, Form, in_form
 from autograder.course.cells import origin
-from autograder.course.solution_markers import with_cuts, without_marks
+from autograder.course.solution_markers import mark_lines, strip_markers
 
 MANIFEST = """<package>
   <name>a</name>
@@ -23,7 +23,7 @@ MANIFEST = """<package>
 
 
 def test_the_lines_between_two_lines_are_marked_with_their_indentation() -> None:
-    marked = with_cuts(MANIFEST, [("<package>", "<export>"), ("<export>", "</export>")])
+    marked = mark_lines(MANIFEST, [("<package>", "<export>"), ("<export>", "</export>")])
     assert marked.splitlines()[:5] == [
         "<package>",
         "  # BEGIN SOLUTION",
@@ -32,12 +32,12 @@ def test_the_lines_between_two_lines_are_marked_with_their_indentation() -> None
         "  # END SOLUTION",
     ]
     assert marked.count("BEGIN SOLUTION") == 2
-    assert without_marks(marked) == MANIFEST
+    assert strip_markers(marked) == MANIFEST
 
 
 def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
-    assert with_cuts("a\nb\n", [("", "")]) == "# BEGIN SOLUTION\na\nb\n# END SOLUTION\n"
-    assert with_cuts("a\nb\n", [("a", "")]) == "a\n# BEGIN SOLUTION\nb\n# END SOLUTION\n"
+    assert mark_lines("a\nb\n", [("", "")]) == "# BEGIN SOLUTION\na\nb\n# END SOLUTION\n"
+    assert mark_lines("a\nb\n", [("a", "")]) == "a\n# BEGIN SOLUTION\nb\n# END SOLUTION\n"
 
 
 @pytest.mark.parametrize(
@@ -48,12 +48,12 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
         ("a\nb\n", [("a", "b")], "nothing to hide"),
         ("a\nb\nc\n", [("c", "a")], "nothing to hide"),
         ("a\nb\nc\nd\n", [("a", "d"), ("b", "")], "inside each other"),
-        ("# BEGIN SOLUTION\na\n", [("", "")], "already holds solution marks"),
+        ("# BEGIN SOLUTION\na\n", [("", "")], "holds solution markers"),
     ],
 )
 def test_a_cut_that_does_not_fit_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:
     with pytest.raises(CourseError, match=words):
-        with_cuts(text, cuts)
+        mark_lines(text, cuts)
 
 
 def _cell(**course: object) -> NotebookNode:
@@ -66,7 +66,7 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(tmp_
     cell = _cell(cut=[["<package>", "</package>"]])
     source = origin(cell)
     assert source is not None
-    cell.source = source.text(tmp_path)
+    cell.source = source.expected_text(tmp_path)
     cell.metadata["nbgrader"] = {
         **{"grade": False, "locked": False, "solution": True, "task": False},
         **{"grade_id": "b", "schema_version": 3},

@@ -111,7 +111,7 @@ def old_format() -> NotebookNode:
         (half_a_cell(), "is not valid nbformat"),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader={**manual("m", 1), "locked": True})),
-            "cell 'm': students answer in this cell: it must not be locked",
+            "cell 'm': is locked, but students answer in it: unlock it",
         ),
         (
             notebook(prose("# T", "t"), prose(ANSWER, "m", nbgrader=manual("m", 0))),

@@ -6,8 +6,8 @@ import ast
 
 import pytest
 
-from autograder.course import CODE_STUB, CourseError, with_holes, without_licence
-from autograder.course.solution_markers import without_marks
+from autograder.course import CODE_STUB, CourseError, mark_functions, strip_licence
+from autograder.course.solution_markers import strip_markers
 
 MODULE = '''"""A module."""
 
@@ -47,7 +47,7 @@ class Robot:
 
 
 def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
-    marked = with_holes(MODULE, ["half", "Robot.move"])
+    marked = mark_functions(MODULE, ["half", "Robot.move"])
     assert '    """Return half of x."""\n    # BEGIN SOLUTION\n    # The answer.\n    return x / 2\n    #' in marked
     assert (
         '        """\n        # BEGIN SOLUTION\n        for _ in range(2):\n            self.x = half(\n'
@@ -57,11 +57,11 @@ def test_only_the_bodies_of_the_named_functions_are_marked() -> None:
 
 
 def test_taking_the_marks_away_gives_the_source_back() -> None:
-    assert without_marks(with_holes(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
+    assert strip_markers(mark_functions(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
 
 
 def test_the_marked_source_means_the_same() -> None:
-    assert ast.dump(ast.parse(with_holes(MODULE, ["half", "Robot.look"]))) == ast.dump(ast.parse(MODULE))
+    assert ast.dump(ast.parse(mark_functions(MODULE, ["half", "Robot.look"]))) == ast.dump(ast.parse(MODULE))
 
 
 def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
@@ -78,7 +78,7 @@ def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
         ("def f():\n    '''F.'''\n", ["f"], "nothing to hide"),
         ("def f(): '''F.'''; return 1\n", ["f"], "nothing to hide"),
         ("def f(:\n", ["f"], "does not parse"),
-        ("# BEGIN SOLUTION\n", [], "already holds solution marks"),
+        ("# BEGIN SOLUTION\n", [], "holds solution markers"),
         (
             "def f():\n    '''F.'''\n    def g():\n        '''G.'''\n        return 1\n    return g\n",
             ["f", "f.g"],
@@ -88,13 +88,13 @@ def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
 )
 def test_what_cannot_be_hidden_is_named(text: str, hide: list[str], message: str) -> None:
     with pytest.raises(CourseError, match=message):
-        with_holes(text, hide)
+        mark_functions(text, hide)
 
 
 def test_the_licence_stays_in_the_repository() -> None:
     licence = "# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
-    assert without_licence(licence + MODULE) == MODULE
+    assert strip_licence(licence + MODULE) == MODULE
 
 
 def test_a_comment_that_is_no_licence_stays() -> None:
-    assert without_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"
+    assert strip_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"

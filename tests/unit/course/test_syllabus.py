@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder.checks import Check, Visibility
-from autograder.course.survey import PAGE, Survey
-from autograder.course.syllabus import Place, Syllabus, coverage
-from autograder.course.tables import page
+from autograder.course.syllabus import Location, Syllabus, find_coverage
+from autograder.course.tables import PAGE, course_page, page
 from autograder.proof import guide
 
 from .notebooks import code, notebook, prose
@@ -26,21 +25,21 @@ def made(**course: object):  # type: ignore[no-untyped-def]
 
 
 def messages(*chapters: object) -> list[str]:
-    return [finding.message for finding in coverage(SYLLABUS, chapters).findings]  # type: ignore[arg-type]
+    return [finding.message for finding in find_coverage(SYLLABUS, chapters).findings]  # type: ignore[arg-type]
 
 
 def test_places_are_found_by_the_heading_above_them() -> None:
-    covered = coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
-    assert covered.items == {"basic_node.py": [Place("02_nodes", "Write it")], "Q1": []}
-    assert covered.errata == {7: [Place("02_nodes", "Write it")]}
+    covered = find_coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+    assert covered.items == {"basic_node.py": [Location("02_nodes", "Write it")], "Q1": []}
+    assert covered.errata == {7: [Location("02_nodes", "Write it")]}
     assert [(row.exercise, row.checks) for row in covered.rows] == [("Write it", (CHECK,))]
 
 
 def test_what_no_notebook_holds_is_named() -> None:
     assert messages(("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])) == [
-        "no notebook holds 'Q1': What is setup.py?"
+        "no notebook covers 'Q1': What is setup.py?"
     ]
-    assert "no hidden check holds 'nodes': Write nodes" in messages(("02_nodes", made(), []))
+    assert "no hidden check covers 'nodes': Write nodes" in messages(("02_nodes", made(), []))
 
 
 @pytest.mark.parametrize(
@@ -62,7 +61,7 @@ def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
 
 
 def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
-    covered = coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
+    covered = find_coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
     text = page(SYLLABUS, covered, {"02_nodes": "A | B"})
     assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 |" in text
     assert "| Write nodes | 02_nodes | Write it | `named` |" in text
@@ -70,10 +69,10 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
 
 
 def test_the_course_holds_everything_and_its_pages_are_up_to_date() -> None:
-    survey = Survey.of_the_course()
-    assert [str(finding) for finding in survey.coverage.findings] == []
-    for path, text in ((PAGE, survey.page()), (guide.PAGE, guide.guide())):
-        assert path.read_text(encoding="utf-8") == text, f"{path.name} is stale: autograder course tables"
+    written, findings = course_page()
+    assert [str(finding) for finding in findings] == []
+    for path, text in ((PAGE, written), (guide.PAGE, guide.guide())):
+        assert path.read_text(encoding="utf-8") == text, f"{path.name} is out of date: run `autograder course tables`"
 
 
 def test_the_syllabus_names_all_that_the_chapter_has() -> None:

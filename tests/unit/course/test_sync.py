@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from autograder.course import Chapter, CourseError, chapters, stale, sync
+from autograder.course import Chapter, CourseError, chapters, find_outdated, sync_chapter
 
 from .notebooks import chapter, code, notebook, prose, solution
 
@@ -31,7 +31,7 @@ def small(tmp_path: Path, **course: Any) -> Chapter:
 
 def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    assert [finding.cell for finding in sync(made, solutions)] == ["node"]
+    assert [finding.cell for finding in sync_chapter(made, solutions)] == ["node"]
     assert made.read().cells[1].source == (
         "%%writefile ws/src/pkg/node.py\n"
         'def main():\n    """Run."""\n    # BEGIN SOLUTION\n    return 0\n    # END SOLUTION'
@@ -40,17 +40,17 @@ def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: 
 
 def test_sync_twice_changes_nothing(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    sync(made, solutions)
+    sync_chapter(made, solutions)
     before = made.path.read_bytes()
-    assert sync(made, solutions) == []
+    assert sync_chapter(made, solutions) == []
     assert made.path.read_bytes() == before
 
 
 def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    sync(made, solutions)
+    sync_chapter(made, solutions)
     (solutions / "pkg/node.py").write_text(NODE.replace("return 0", "return 1"))
-    (found,) = stale(made, solutions)
+    (found,) = find_outdated(made, solutions)
     assert str(found).startswith(
         "01_small.ipynb, cell 'node': differs from solutions/pkg/node.py; run `autograder course sync`"
     )
@@ -60,19 +60,19 @@ def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path
 
 def test_a_cell_that_hides_nothing_shows_the_file(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path, hide=[])
-    sync(made, solutions)
+    sync_chapter(made, solutions)
     assert made.read().cells[1].source == f"%%writefile ws/src/pkg/node.py\n{NODE}".rstrip()
 
 
 def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(prose("# A title", "title"), given={"ws/src/pkg/setup.cfg": "pkg/setup.cfg"}))
-    (missing,) = stale(made, solutions)
+    (missing,) = find_outdated(made, solutions)
     assert "the given file ws/src/pkg/setup.cfg is missing" in str(missing)
-    sync(made, solutions)
+    sync_chapter(made, solutions)
     assert (made.folder / "ws/src/pkg/setup.cfg").read_text() == "[develop]\n"
-    assert stale(made, solutions) == []
+    assert find_outdated(made, solutions) == []
     (made.folder / "ws/src/pkg/setup.cfg").write_text("[install]\n")
-    (differs,) = stale(made, solutions)
+    (differs,) = find_outdated(made, solutions)
     assert "the given file ws/src/pkg/setup.cfg differs" in str(differs)
 
 
@@ -92,27 +92,27 @@ def test_metadata_that_copying_cannot_mend_is_an_error_and_writes_nothing(
 ) -> None:
     made = small(tmp_path, **course)
     before = made.path.read_bytes()
-    (found,) = stale(made, solutions)
+    (found,) = find_outdated(made, solutions)
     assert message in str(found)
     with pytest.raises(CourseError, match=r"01_small\.ipynb, cell 'node'"):
-        sync(made, solutions)
+        sync_chapter(made, solutions)
     assert made.path.read_bytes() == before
 
 
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
-    (found,) = stale(made, solutions)
+    (found,) = find_outdated(made, solutions)
     assert '"given" must map' in found.message
 
 
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
-    (found,) = stale(made, solutions)
+    (found,) = find_outdated(made, solutions)
     assert 'metadata\'s "course" must be a mapping' in found.message
 
 
 def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
-    with pytest.raises(CourseError, match="01_small: a chapter's folder holds a notebook of its own name"):
+    with pytest.raises(CourseError, match=r"01_small: the folder has no notebook 01_small\.ipynb: create it"):
         Chapter(tmp_path / "01_small").read()
 
 
