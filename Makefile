@@ -71,7 +71,7 @@ lint-imports:
 # The settings take away two of nbgrader's buttons: "Validate" would praise an unsolved notebook.
 lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_ARGS=)
 	@$(BOOTSTRAP)
-	@JUPYTER_CONFIG_PATH=$(CURDIR)/assets/students/jupyter $(WITH_ROS) jupyter lab --ServerApp.root_dir=chapters \
+	@env -u PYTHONDONTWRITEBYTECODE JUPYTER_CONFIG_PATH=$(CURDIR)/assets/students/jupyter $(WITH_ROS) jupyter lab --ServerApp.root_dir=chapters \
 		$(if $(filter 0,$(shell id -u)),--allow-root) $(LAB_ARGS)
 
 tour:           ## solve each chapter's release in JupyterLab, keep screenshots in .build/screenshots

@@ -6,6 +6,7 @@ import re
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.lockstep.protocol import Crash, Deadlock
+from autograder.lockstep.tracebacks import own_frames
 from autograder.sandbox import Ending, Process
 
 _LINES = 25
@@ -37,23 +38,24 @@ _LIMITS = {
 
 def diagnose_crash(crash: Crash) -> Diagnosis:
     """Return the diagnosis of a reported exception; syntax errors and unwritten exercises have their own."""
+    trace = tail(own_frames(crash.traceback))
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,
             f"Python cannot read your file: {crash.message}. Mend that line, then run the file again.",
-            tail(crash.traceback),
+            trace,
         )
     if crash.type == "NotImplementedError":
-        frames = _FRAME.findall(crash.traceback)
+        frames = _FRAME.findall(trace)
         where = f", in {frames[-1]}" if frames else ""
         sentence = f"A part of the exercise is still to be written{where}: put your code in place of the raise."
-        return Diagnosis(Kind.UNFINISHED, sentence, tail(crash.traceback))
+        return Diagnosis(Kind.UNFINISHED, sentence, trace)
     kind, what = _PHASES[crash.phase]
     reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
     return Diagnosis(
         kind,
         f"{what}: {reason}. The last lines of the traceback say where.",
-        tail(crash.traceback),
+        trace,
     )
 
 

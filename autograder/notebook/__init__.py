@@ -53,6 +53,8 @@ def ros() -> None:
     """
     if not grading():
         writefile.register(get_ipython())
+        # Where it is set, setuptools warns, and colcon shows a block "stderr" for a build without a fault.
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     given = os.environ.get("ROS_DOMAIN_ID")
     activate(domain=Domain().number if given is None else int(given))
 

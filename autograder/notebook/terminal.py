@@ -76,14 +76,12 @@ class _Terminal:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
         self._shown = 0
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
-        # setuptools warns in red where no byte code is written; that would be ours to explain.
-        variables = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         self._process = subprocess.Popen(
             ["bash", "-c", _SOURCED, str(workspace.resolve() / "install" / "local_setup.bash"), command],
             stdin=subprocess.DEVNULL,
             stdout=self._file,
             stderr=subprocess.STDOUT,
-            env={**variables, "PATH": path, "PYTHONUNBUFFERED": "1"},
+            env={**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1"},
             start_new_session=True,
         )
 

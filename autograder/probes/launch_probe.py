@@ -13,6 +13,7 @@ from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
+from autograder.lockstep.tracebacks import with_source_paths
 from autograder.workspace import Workspace
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
@@ -246,7 +247,8 @@ def require_written(output: str) -> None:
     first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
     if first is not None:
         sentence = "A part of the launch file is still to be written: put your code in place of the raise."
-        raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, "\n".join(lines[max(first - 1, 0) : first + 2])))
+        detail = with_source_paths("\n".join(lines[max(first - 1, 0) : first + 2]))
+        raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, detail))
 
 
 def with_files(workspace: Workspace, name: str, package: str, files: Mapping[str, str]) -> Workspace:

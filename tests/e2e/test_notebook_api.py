@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
 
-from autograder.notebook import CheckReport, DriveReport, Notice, check, drive
+from autograder.layout import SOLUTIONS
+from autograder.notebook import CheckReport, DriveReport, Notice, check, drive, ros
 from autograder.notebook.driving import FAULTS
+from autograder.notebook.terminal import shell
 from autograder.proof.mutants import mutants, write_mutant, write_reference
 
 PACKAGE = "my_robot_package"
@@ -77,3 +80,28 @@ def test_a_package_that_is_not_there_is_a_calm_sentence(right: Path) -> None:
     notice = drive("no_such_package", "robot_controller", seconds=1, workspace=right)
     assert isinstance(notice, Notice)
     assert "The package no_such_package is missing: src holds my_robot_package" in notice.sentence
+
+
+def test_colcon_shows_no_stderr_for_a_build_without_a_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # as some machines have it
+    ros()
+    shutil.copytree(SOLUTIONS / "square_dance", tmp_path / "src/square_dance")
+    shell(f"cd {tmp_path} && colcon --log-level error build", workspace=tmp_path)
+    said = capsys.readouterr().out
+    assert "1 package finished" in said
+    assert "stderr" not in said
+
+
+def test_a_crash_is_shown_by_the_students_own_files(tmp_path: Path) -> None:
+    _mutant("drives_blind", tmp_path)
+    path = next(tmp_path.rglob("robot_controller.py"))
+    text = path.read_text()
+    path.write_text(text.replace("rclpy.spin(node)", "node.no_such_method()"))
+    line = text[: text.index("rclpy.spin(node)")].count("\n") + 1
+    notice = drive(PACKAGE, "robot_controller", seconds=1, workspace=tmp_path)
+    assert isinstance(notice, Notice)
+    shown = f'  File "ws/src/{path.relative_to(tmp_path / "src")}", line {line}, in main'
+    assert notice.detail.splitlines()[1] == shown
+    assert "autograder" not in notice.detail
