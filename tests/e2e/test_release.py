@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -44,6 +45,13 @@ def test_what_tools_left_behind_is_not_in_it(bundle: Path) -> None:
     assert left == []
     names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
     assert layout.NOT_COPIED(str(bundle), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
+
+
+def test_each_make_target_that_it_names_is_in_its_makefile(bundle: Path) -> None:
+    texts = [path for path in bundle.rglob("*") if path.suffix in (".py", ".md", ".ipynb")]
+    named = {name for path in texts for name in re.findall(r"`make ([a-z-]+)`", path.read_text())}
+    targets = set(re.findall(r"^([a-z-]+):", (bundle / "Makefile").read_text(), re.MULTILINE))
+    assert {"setup", "real-launch"} <= named <= targets
 
 
 def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
