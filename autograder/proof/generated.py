@@ -1,4 +1,4 @@
-"""Mutants that nobody chose: operators laid on what the student writes, and a sample of what comes out."""
+"""Generates mutants: applies the operators to the code that students write, and draws a sample."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from autograder.checks import suites
 from autograder.course import Chapter, is_solution, origin
 from autograder.proof.operators import changes
 
-SAMPLE = 20  # of an assignment's: enough to see what a suite overlooks, few enough for a coffee
+SAMPLE_SIZE = 20  # mutants of an assignment; a larger sample finds hardly more, and takes longer to grade
 
 
 @dataclass(frozen=True)
-class Generated:
-    """A mutant made by an operator.
+class GeneratedMutant:
+    """A mutant that an operator made.
 
     Attributes:
         id: module, function, operator and number, such as `robot_controller.control_loop.compare.1`.
-        file: its path below `src`.
-        text: the file's whole new text.
-        reason: why it may survive, from the suite's `survivors.yaml`; empty for most.
+        file: path of the changed file, below `src`.
+        text: whole new text of the file.
+        reason: the reason why it may survive, from `survivors.yaml` of the suite. It is empty for most mutants.
     """
 
     id: str
@@ -34,16 +34,16 @@ class Generated:
     reason: str = ""
 
 
-def generated(assignment: str, *, most: int = SAMPLE) -> list[Generated]:
-    """Return a sample of an assignment's generated mutants, always the same one for the same reference."""
+def generated_mutants(assignment: str) -> list[GeneratedMutant]:
+    """Return a sample of the mutants that the operators make of an assignment, always the same for one reference."""
     path = suites.hidden(assignment).folder / "survivors.yaml"
     reasons: dict[str, str] = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
     found = list(_all(assignment, reasons))
-    drawn = sorted(found, key=lambda made: hashlib.sha256(made.id.encode()).digest())[:most]
-    return [made for made in found if made in drawn]
+    drawn = sorted(found, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())[:SAMPLE_SIZE]
+    return [mutant for mutant in found if mutant in drawn]
 
 
-def _all(assignment: str, reasons: dict[str, str]) -> Iterator[Generated]:
+def _all(assignment: str, reasons: dict[str, str]) -> Iterator[GeneratedMutant]:
     for file, functions in _written_by_students(assignment):
         text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
         module = file.rpartition("/")[2].removesuffix(".py")
@@ -51,16 +51,16 @@ def _all(assignment: str, reasons: dict[str, str]) -> Iterator[Generated]:
         for change in changes(text, functions):
             count[change.function, change.operator] += 1
             name = f"{module}.{change.function}.{change.operator}.{count[change.function, change.operator]}"
-            yield Generated(name, file, change.apply(text), reasons.get(name, ""))
+            yield GeneratedMutant(name, file, change.apply(text), reasons.get(name, ""))
 
 
 def _written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None]]:
-    """Yield the Python files of the reference that students write, with the functions that they write of them."""
+    """Yield (path, functions) of each Python file of which students write functions. None stands for all functions."""
     packages = suites.hidden(assignment).packages
     for cell in Chapter(layout.chapter(assignment)).read().cells:
-        source = origin(cell) if is_solution(cell) else None
-        if source is None or source.source.suffix != ".py" or source.source.parts[0] not in packages:
+        copied = origin(cell) if is_solution(cell) else None
+        if copied is None or copied.source.suffix != ".py" or copied.source.parts[0] not in packages:
             continue
-        if source.source.name == "setup.py" or source.source.parts[1] in ("launch", "test"):
+        if copied.source.name == "setup.py" or copied.source.parts[1] in ("launch", "test"):
             continue
-        yield str(source.source), frozenset(source.hide) - {"main"} if source.hide else None
+        yield str(copied.source), frozenset(copied.hide) - {"main"} if copied.hide else None

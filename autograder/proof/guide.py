@@ -1,4 +1,4 @@
-"""The instructors' guide to the hidden checks: each one's sentence, and the errors that prove that it can fail."""
+"""Writes the instructors' guide: the sentence of each hidden check, and the mutants that fail it."""
 
 from __future__ import annotations
 

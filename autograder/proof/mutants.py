@@ -1,6 +1,6 @@
-"""Mutants: the reference solution with one realistic student error each, to prove what the checks see.
+"""Mutants: copies of the reference solution with one realistic student error each.
 
-A suite's `mutants.yaml` says how each is made from the reference and which checks it loses.
+The file `mutants.yaml` of a suite holds the edits of each mutant and the checks that it loses.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from autograder.exceptions import GraderError
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of one file of the reference.
+    """One change of a file of the reference.
 
     Attributes:
-        file: its path below `src`.
-        find: a text that stands exactly once in the file, or None when the change is of the whole file.
-        replace: what it becomes; None for a file that is deleted.
+        file: path of the file, below `src`.
+        find: text to replace, which occurs exactly once in the file. None replaces the whole file.
+        replace: the new text. None deletes the file.
     """
 
     file: str
@@ -38,13 +38,13 @@ class Mutant:
     """A flawed version of the reference solution.
 
     Attributes:
-        id: its name.
+        id: name of the mutant.
         title: the error in words.
-        edits: how it is made.
-        loses: ids of every check that does not pass.
-        diagnosis: what the result says of bringing its node to life.
-        demo: whether the demonstration grades it.
-        slow: whether grading it waits for a time-out.
+        edits: changes of the reference.
+        loses: ids of the checks that do not pass.
+        diagnosis: diagnosis that the result has.
+        demo: whether `make demo` grades it.
+        slow: whether grading waits for a time-out.
     """
 
     id: str
@@ -60,7 +60,7 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
     """Return an assignment's mutants.
 
     Raises:
-        GraderError: the file names a check that the suite does not have.
+        GraderError: `mutants.yaml` names a check that the suite does not have.
     """
     suite = suites.hidden(assignment)
     known = frozenset(check.id for check in suite.checks)
@@ -77,8 +77,13 @@ def write_reference(sources: tuple[str, ...], folder: Path) -> None:
 def write_mutant(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None:
     """Write a mutant as a source tree, `folder`/src.
 
+    Args:
+        mutant: the mutant to write.
+        sources: packages and folders of the reference to copy, by their names below `solutions/`.
+        folder: the folder that gets `src`.
+
     Raises:
-        GraderError: an edit no longer fits the reference; the message names it.
+        GraderError: the text to replace does not occur exactly once in the reference.
     """
     write_reference(sources, folder)
     for edit in mutant.edits:
@@ -95,12 +100,13 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
         return
     text = path.read_text()
     if text.count(edit.find) != 1:
-        raise GraderError(f"mutant {mutant.id}: {edit.find!r} stands {text.count(edit.find)} times in {edit.file}")
+        occurs = f"{edit.find!r} occurs {text.count(edit.find)} times in {edit.file}"
+        raise GraderError(f"mutant {mutant.id}: {occurs}: mend the edit in mutants.yaml")
     path.write_text(text.replace(edit.find, edit.replace))
 
 
 def _edit(entry: dict[str, Any], file: str) -> Edit:
-    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`, each with a `file` of its own if need be."""
+    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. An entry without `file` changes the given one."""
     file = entry.get("file", file)
     if entry.get("delete"):
         return Edit(file, None, None)
@@ -110,7 +116,9 @@ def _edit(entry: dict[str, Any], file: str) -> Edit:
 def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
     loses = known if entry["loses"] == "all" else frozenset(entry["loses"])
     if not loses <= known:
-        raise GraderError(f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}")
+        raise GraderError(
+            f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}: mend `loses` in mutants.yaml"
+        )
     return Mutant(
         id=entry["id"],
         title=entry["title"],

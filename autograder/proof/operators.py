@@ -1,6 +1,6 @@
-"""Mutation operators: one small change of a Python source, at one place, as a student's slip might be.
+"""Mutation operators. Each changes a Python source at one place, like a slip of a student.
 
-Changes are made in the text, by the positions that `ast` gives, so that everything else stays as it is.
+They change the text at the positions that `ast` gives, so that the rest of the text stays the same.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ OPPOSITE |= {"in": "not in", "not in": "in"}
 ARITHMETIC = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
 ENDPOINTS = {"create_publisher": 1, "create_subscription": 1, "create_service": 1, "create_client": 1}
 SWAPPED = {"min": "max", "max": "min", "any": "all", "all": "any", "ceil": "floor", "floor": "ceil"}
-SILENT = {"debug", "info", "warning", "error", "fatal", "ParameterDescriptor"}  # words for people: no check reads them
+CALLS_FOR_PEOPLE = {"debug", "info", "warning", "error", "fatal", "ParameterDescriptor"}  # no check reads their texts
 
 
 @dataclass(frozen=True)
@@ -24,46 +24,46 @@ class Change:
     """A change of a text.
 
     Attributes:
-        operator: what kind of slip it is.
-        function: the qualified name of the function that it is in.
-        start: where the replaced part begins, an offset in characters.
-        end: where it ends.
-        put: what comes in its place.
+        operator: name of the mutation operator.
+        function: qualified name of the changed function.
+        start: offset of the replaced part, in characters.
+        end: offset of its end, in characters.
+        replacement: the new text.
     """
 
     operator: str
     function: str
     start: int
     end: int
-    put: str
+    replacement: str
 
     def apply(self, text: str) -> str:
         """Return the changed text."""
-        return text[: self.start] + self.put + text[self.end :]
+        return text[: self.start] + self.replacement + text[self.end :]
 
 
 def changes(text: str, functions: frozenset[str] | None = None) -> list[Change]:
-    """Return every change of a source, in the order of the text.
+    """Return every change that the operators make of a source, in the order of the text.
 
     Args:
-        text: the source.
-        functions: qualified names of the functions to change; all but `main` when None.
+        text: source of a module.
+        functions: qualified names of the functions to change. None changes all but `main`.
     """
     starts = [0]
     for line in text.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
     found = [
-        Change(operator, name, _offset(text, starts, place, False), _offset(text, starts, place, True), put)
+        Change(operator, name, _offset(text, starts, place, False), _offset(text, starts, place, True), replacement)
         for name, function in _functions(ast.parse(text))
         if (name in functions if functions is not None else name != "main")
         for node in _own_nodes(function)
-        for operator, place, put in _slips(node, text)
+        for operator, place, replacement in _mutations(node, text)
     ]
     return sorted(found, key=lambda change: (change.start, change.operator))
 
 
-def _slips(node: ast.AST, text: str) -> Iterator[tuple[str, ast.AST, str]]:
-    """Yield (operator, the node whose text is replaced, the new text)."""
+def _mutations(node: ast.AST, text: str) -> Iterator[tuple[str, ast.AST, str]]:
+    """Yield (operator, node to replace, new text)."""
     if isinstance(node, ast.Compare):
         yield from _comparisons(node, text)
     elif isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
@@ -86,7 +86,7 @@ def _slips(node: ast.AST, text: str) -> Iterator[tuple[str, ast.AST, str]]:
 
 
 def _comparisons(node: ast.Compare, text: str) -> Iterator[tuple[str, ast.AST, str]]:
-    """Yield the comparison with each of its operators, one after the other, turned round."""
+    """Yield the comparison once for each of its operators, with that operator inverted."""
     operands = [_text(text, operand) for operand in (node.left, *node.comparators)]
     for changed in range(len(node.ops)):
         symbols = [SYMBOLS[type(op)] for op in node.ops]
@@ -106,7 +106,7 @@ def _calls(node: ast.Call, text: str) -> Iterator[tuple[str, ast.AST, str]]:
 
 
 def _own_nodes(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function's body without what only people read."""
+    """Yield the nodes of a function's body, without docstrings, nested functions and log calls."""
     pending = list(ast.iter_child_nodes(function))
     while pending:
         node = pending.pop(0)
@@ -114,7 +114,7 @@ def _own_nodes(function: ast.AST) -> Iterator[ast.AST]:
             continue  # a docstring
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.arguments):
             continue
-        if isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in SILENT:
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in CALLS_FOR_PEOPLE:
             continue
         yield node
         pending = [*ast.iter_child_nodes(node), *pending]
@@ -134,7 +134,7 @@ def _text(text: str, node: ast.AST) -> str:
 
 
 def _offset(text: str, starts: list[int], node: ast.AST, end: bool) -> int:
-    """Return where a node begins or ends; `ast` counts columns in bytes of UTF-8."""
+    """Return the offset of a node's start or end in characters; `ast` counts columns in bytes of UTF-8."""
     line: int = getattr(node, "end_lineno" if end else "lineno")
     column: int = getattr(node, "end_col_offset" if end else "col_offset")
     whole = text[starts[line - 1] : starts[line]]

@@ -1,4 +1,4 @@
-"""Grading the submissions of the proof, and judging the grader by them."""
+"""Grades the submissions of the proof and compares each result with the expected one."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ SUBMISSION = "submission"
 def prove(
     proof: Sequence[Case], *, seed: int, out: Path, lanes: Lanes, on_claim: Callable[[Claim], None] = lambda claim: None
 ) -> tuple[Claim, ...]:
-    """Grade the submissions of a proof, all lanes at work until there are no more.
+    """Grade the submissions of a proof on all lanes.
 
     Args:
-        proof: from `cases`, of one assignment or of several.
-        seed: every hidden input is drawn from it.
-        out: `out`/ASSIGNMENT/NAME gets each submission's result.
-        lanes: where they are graded.
-        on_claim: called for each claim as it comes, in any order.
+        proof: submissions of one or several assignments, from `cases`.
+        seed: seed of every hidden input.
+        out: folder of the results; each submission's result goes to `out`/ASSIGNMENT/NAME.
+        lanes: workers that grade.
+        on_claim: function that is called with each claim as soon as it is known, in any order.
 
     Returns:
         The claims, in the order of `proof`.
     """
 
-    def judged(case: Case) -> Claim:
+    def graded(case: Case) -> Claim:
         with tempfile.TemporaryDirectory(prefix="proof-") as name:
             result = grade_submission(
-                _written(case, Path(name) / case.name),
+                _write(case, Path(name) / case.name),
                 case.assignment,
                 student=case.name,
                 seed=seed,
@@ -44,15 +44,15 @@ def prove(
                 scope=case.scope,
                 run_job=lanes,
             ).result
-        return Claim(case.assignment, case.kind, case.name, result, case.judge(result), case.reason)
+        return Claim(case.assignment, case.kind, case.name, result, case.verify(result), case.reason)
 
-    claims = map_parallel(judged, _mixed(proof), jobs=lanes.count, on_done=on_claim)
+    claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}
     return tuple(found[case.assignment, case.name] for case in proof)
 
 
-def _mixed(proof: Sequence[Case]) -> list[Case]:
-    """Return the order to grade in, all assignments side by side: while some wait, the others have the processor."""
+def _interleaved(proof: Sequence[Case]) -> list[Case]:
+    """Return the cases with the assignments interleaved: while some wait, others use the processor."""
     counts, seen = Counter(case.assignment for case in proof), Counter[str]()
     places = []
     for case in proof:
@@ -61,7 +61,7 @@ def _mixed(proof: Sequence[Case]) -> list[Case]:
     return [case for _, case in sorted(zip(places, proof, strict=True), key=lambda pair: pair[0])]
 
 
-def _written(case: Case, folder: Path) -> Path:
-    """Write a case; return where its submission lies."""
+def _write(case: Case, folder: Path) -> Path:
+    """Write a case to `folder`, and return the path of its submission."""
     case.write(folder)
     return folder / SUBMISSION if (folder / SUBMISSION).is_dir() else folder

@@ -1,28 +1,33 @@
-"""What a proof comes to, in numbers."""
+"""Counts the claims of a proof and decides whether the proof holds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from autograder.proof.claims import Claim, Kind, graded, lost
+from autograder.proof.claims import CaseKind, Claim, is_graded, lost_checks
 
-ENOUGH = 0.9  # of the generated mutants that no reason excuses
+MIN_KILLED = 0.9  # share of the generated mutants, without the survivors that have a reason
 
 
 def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
-    """Count what was proved.
+    """Count the claims of each kind.
 
-    `reference`, `release` and `variants` are percentages, the worst of their kind; `mutants_missed` lost nothing that
-    they name, `mutants_wrong_check` lost something else or are diagnosed otherwise; `generated` leaves out the
-    survivors that have a reason.
+    Args:
+        claims: the claims of a proof.
+        seconds: wall time of the proof.
+
+    Returns:
+        `reference` (the least), `release` (the highest) and `variants` (all) are percentages. `mutants_missed` counts
+        the mutants that lost no check. `mutants_wrong_check` counts those that lost other checks than they name, or
+        have another diagnosis. `generated` leaves out the survivors with a reason.
     """
-    mutants, generated = _of(claims, Kind.MUTANT), _counted(claims)
-    missed = [claim for claim in mutants if not (graded(claim.result) and lost(claim.result))]
-    attacks = _of(claims, Kind.ATTACK)
+    mutants, generated = _of(claims, CaseKind.MUTANT), _unexcused(claims)
+    missed = [claim for claim in mutants if not (is_graded(claim.result) and lost_checks(claim.result))]
+    attacks = _of(claims, CaseKind.ATTACK)
     return {
-        "reference": min(_percents(claims, Kind.REFERENCE), default=None),
-        "release": max(_percents(claims, Kind.RELEASE), default=None),
-        "variants": _percents(claims, Kind.VARIANT),
+        "reference": min(_percents(claims, CaseKind.REFERENCE), default=None),
+        "release": max(_percents(claims, CaseKind.RELEASE), default=None),
+        "variants": _percents(claims, CaseKind.VARIANT),
         "mutants": len(mutants),
         "mutants_missed": len(missed),
         "mutants_wrong_check": sum(not claim.holds for claim in mutants if claim not in missed),
@@ -35,21 +40,21 @@ def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
 
 
 def holds(claims: Sequence[Claim]) -> bool:
-    """Return whether the proof stands: every claim holds, and enough of the generated mutants are killed."""
-    generated = _counted(claims)
+    """Return whether every claim holds. Of the generated mutants, `MIN_KILLED` must hold."""
+    generated = _unexcused(claims)
     killed = sum(claim.holds for claim in generated)
-    others = [claim for claim in claims if claim.kind is not Kind.GENERATED]
-    return all(claim.holds for claim in others) and killed >= ENOUGH * len(generated)
+    others = [claim for claim in claims if claim.kind is not CaseKind.GENERATED]
+    return all(claim.holds for claim in others) and killed >= MIN_KILLED * len(generated)
 
 
-def _of(claims: Iterable[Claim], kind: Kind) -> list[Claim]:
+def _of(claims: Iterable[Claim], kind: CaseKind) -> list[Claim]:
     return [claim for claim in claims if claim.kind is kind]
 
 
-def _counted(claims: Iterable[Claim]) -> list[Claim]:
-    """Return the generated mutants, without the survivors that a reason excuses."""
-    return [claim for claim in _of(claims, Kind.GENERATED) if claim.holds or not claim.reason]
+def _unexcused(claims: Iterable[Claim]) -> list[Claim]:
+    """Return the generated mutants without the survivors that have a reason."""
+    return [claim for claim in _of(claims, CaseKind.GENERATED) if claim.holds or not claim.reason]
 
 
-def _percents(claims: Iterable[Claim], kind: Kind) -> list[float]:
+def _percents(claims: Iterable[Claim], kind: CaseKind) -> list[float]:
     return [claim.result.percent for claim in _of(claims, kind)]

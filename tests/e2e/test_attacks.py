@@ -38,7 +38,7 @@ def _everything_written(out: Path) -> str:
 
 
 def _grade(attack: Attack, folder: Path) -> Graded:
-    attack.make(folder / "work")
+    attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
     return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=folder / "out")
@@ -53,7 +53,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     graded = _grade(attack, tmp_path)
     result = graded.result
-    assert not attack.judge(result), (tmp_path / "out" / "grader.log").read_text()
+    assert not attack.verify(result), (tmp_path / "out" / "grader.log").read_text()
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")

@@ -18,7 +18,7 @@ from autograder.course import Chapter
 from autograder.export import load
 from autograder.layout import chapter
 from autograder.proof.cases import cases
-from autograder.proof.claims import Kind, as_named, nothing
+from autograder.proof.claims import CaseKind, verify_mutant, verify_zero
 from autograder.proof.mutants import Mutant, mutants, write_mutant
 from autograder.result import Result
 from tests.e2e.classroom import Classroom
@@ -31,7 +31,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
 ]
 
-Judge = Callable[[Result], str]
+Verifier = Callable[[Result], str]
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Pupil:
 
     name: str
     write: Callable[[Path], None] | None
-    judge: Judge
+    verify: Verifier
 
 
 @dataclass(frozen=True)
@@ -56,12 +56,12 @@ class Graded:
 def pupils(assignment: str) -> Iterator[Pupil]:
     """Yield the class: the reference, the right answers of another style, two mutants, and an untouched notebook."""
     for case in cases(assignment, quick=True):
-        if case.kind in (Kind.REFERENCE, Kind.VARIANT):
-            yield Pupil(case.name, case.write, case.judge)
+        if case.kind in (CaseKind.REFERENCE, CaseKind.VARIANT):
+            yield Pupil(case.name, case.write, case.verify)
     for mutant in two_mutants(assignment):
         write = partial(write_mutant, mutant, suites.hidden(assignment).sources)
-        yield Pupil(mutant.id, write, partial(as_named, mutant))
-    yield Pupil("untouched", None, nothing)
+        yield Pupil(mutant.id, write, partial(verify_mutant, mutant))
+    yield Pupil("untouched", None, verify_zero)
 
 
 def two_mutants(assignment: str) -> list[Mutant]:
@@ -102,7 +102,7 @@ def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
 
 def test_each_answer_gets_the_mark_that_is_claimed_of_it(graded: Graded) -> None:
     assert len(graded.pupils) >= 4
-    wrong = {pupil.name: pupil.judge(graded.serial[pupil.name]) for pupil in graded.pupils}
+    wrong = {pupil.name: pupil.verify(graded.serial[pupil.name]) for pupil in graded.pupils}
     assert set(wrong.values()) == {""}, wrong
 
 

@@ -60,7 +60,7 @@ def test_an_edit_that_does_not_stand_exactly_once_is_refused(tmp_path: Path, fin
     times = text.count(find)
     assert times != 1
     flawed = Mutant("a", "t", (Edit("my_robot_package/setup.py", find, ""),), frozenset())
-    with pytest.raises(GraderError, match=f"mutant a: '{find}' stands {times} times in my_robot_package/setup.py"):
+    with pytest.raises(GraderError, match=f"mutant a: '{find}' occurs {times} times in my_robot_package/setup.py"):
         write_mutant(flawed, ("my_robot_package",), tmp_path / "out")
 
 

@@ -11,7 +11,7 @@ from typing import Any, cast
 import pytest
 
 from autograder.grading.job import Job
-from autograder.proof import Case, Kind, prove
+from autograder.proof import Case, CaseKind, prove
 from autograder.proof.lanes import Lanes
 from autograder.result import Result
 from autograder.sandbox import Tier
@@ -45,15 +45,15 @@ class OneByOne(NoGrader):
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
-    def judge(result: Result) -> str:
+    def verify(result: Result) -> str:
         return f"{result.assignment} is {result.status.value}"
 
-    return Case(assignment, Kind.REFERENCE, "reference", write, judge)
+    return Case(assignment, CaseKind.REFERENCE, "reference", write, verify)
 
 
 def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
     claims = prove(proof, seed=1, out=out, lanes=cast(Lanes, NoGrader()), **options)
-    return [claim.wrong for claim in claims]
+    return [claim.mismatch for claim in claims]
 
 
 def test_submissions_of_several_chapters_may_have_one_name(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ import pytest
 
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import OK
-from autograder.proof import Claim, Kind, cases, holds, summary
-from autograder.proof.claims import as_named, full, killed, nothing
-from autograder.proof.generated import generated
+from autograder.proof import CaseKind, Claim, cases, holds, summary
+from autograder.proof.claims import verify_full_marks, verify_killed, verify_mutant, verify_zero
+from autograder.proof.generated import generated_mutants
 from autograder.proof.mutants import mutants
 from autograder.result import CheckResult, Result
 
@@ -42,43 +42,43 @@ def result(*lost: str) -> Result:
     )
 
 
-def claim(kind: Kind, wrong: str = "", reason: str = "", *lost: str) -> Claim:
-    return Claim(ASSIGNMENT, kind, "x", result(*lost), wrong, reason)
+def claim(kind: CaseKind, mismatch: str = "", reason: str = "", *lost: str) -> Claim:
+    return Claim(ASSIGNMENT, kind, "x", result(*lost), mismatch, reason)
 
 
 def test_a_right_answer_has_every_point() -> None:
-    assert full(result()) == ""
-    assert full(result("nan")) == "loses nan"
+    assert verify_full_marks(result()) == ""
+    assert verify_full_marks(result("nan")) == "loses nan"
 
 
 def test_a_release_gains_nothing() -> None:
-    assert nothing(result(*(check.id for check in SUITE.checks))) == ""
-    assert nothing(result("nan")).startswith("it scores")
+    assert verify_zero(result(*(check.id for check in SUITE.checks))) == ""
+    assert verify_zero(result("nan")).startswith("it scores")
 
 
 def test_a_mutant_loses_what_it_names_and_no_other() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
-    assert as_named(mutant, result(*mutant.loses)) == ""
-    assert as_named(mutant, result("nan")) == "also loses nan; keeps minus_inf"
+    assert verify_mutant(mutant, result(*mutant.loses)) == ""
+    assert verify_mutant(mutant, result("nan")) == "also loses nan; keeps minus_inf"
 
 
 def test_a_generated_mutant_that_loses_nothing_survives() -> None:
-    assert killed(result("nan")) == ""
-    assert "survives" in killed(result())
+    assert verify_killed(result("nan")) == ""
+    assert "survives" in verify_killed(result())
 
 
 def test_the_summary_counts_each_kind() -> None:
     claims = [
-        claim(Kind.REFERENCE),
-        claim(Kind.RELEASE, "", "", *(check.id for check in SUITE.checks)),
-        claim(Kind.VARIANT),
-        claim(Kind.MUTANT, "", "", "nan"),
-        claim(Kind.MUTANT, "also loses blind", "", "nan", "blind"),
-        claim(Kind.MUTANT, "keeps nan"),
-        claim(Kind.GENERATED, "", "", "nan"),
-        claim(Kind.GENERATED, "survives"),
-        claim(Kind.GENERATED, "survives", "the same behaviour"),
-        claim(Kind.ATTACK, "gains nan"),
+        claim(CaseKind.REFERENCE),
+        claim(CaseKind.RELEASE, "", "", *(check.id for check in SUITE.checks)),
+        claim(CaseKind.VARIANT),
+        claim(CaseKind.MUTANT, "", "", "nan"),
+        claim(CaseKind.MUTANT, "also loses blind", "", "nan", "blind"),
+        claim(CaseKind.MUTANT, "keeps nan"),
+        claim(CaseKind.GENERATED, "", "", "nan"),
+        claim(CaseKind.GENERATED, "survives"),
+        claim(CaseKind.GENERATED, "survives", "the same behaviour"),
+        claim(CaseKind.ATTACK, "gains nan"),
     ]
     assert summary(claims, 12.34) == {
         "reference": 100.0,
@@ -97,18 +97,18 @@ def test_the_summary_counts_each_kind() -> None:
 
 @pytest.mark.parametrize(("killed_of_ten", "stands"), [(10, True), (9, True), (8, False)])
 def test_nine_in_ten_generated_mutants_are_enough(killed_of_ten: int, stands: bool) -> None:
-    claims = [claim(Kind.GENERATED, "" if i < killed_of_ten else "survives") for i in range(10)]
+    claims = [claim(CaseKind.GENERATED, "" if i < killed_of_ten else "survives") for i in range(10)]
     assert holds(claims) is stands
 
 
-@pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.GENERATED])
-def test_every_other_claim_has_to_hold(kind: Kind) -> None:
-    assert not holds([claim(Kind.REFERENCE), claim(kind, "wrong")])
+@pytest.mark.parametrize("kind", [kind for kind in CaseKind if kind is not CaseKind.GENERATED])
+def test_every_other_claim_has_to_hold(kind: CaseKind) -> None:
+    assert not holds([claim(CaseKind.REFERENCE), claim(kind, "wrong")])
 
 
 def test_the_whole_proof_holds_every_kind_and_names_each_submission_once() -> None:
     found = cases(ASSIGNMENT)
-    assert {case.kind for case in found} >= set(Kind) - {Kind.VARIANT}
+    assert {case.kind for case in found} >= set(CaseKind) - {CaseKind.VARIANT}
     assert len({case.name for case in found}) == len(found)
 
 
@@ -126,6 +126,6 @@ def test_each_check_has_three_mutants(assignment: str) -> None:
 
 
 def test_a_generated_mutant_is_a_different_file_and_always_the_same() -> None:
-    first = generated(ASSIGNMENT)
-    assert first == generated(ASSIGNMENT)
+    first = generated_mutants(ASSIGNMENT)
+    assert first == generated_mutants(ASSIGNMENT)
     assert len({made.text for made in first}) == len(first) > 10
