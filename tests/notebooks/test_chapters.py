@@ -50,6 +50,14 @@ def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
 
 
 @each_chapter
+def test_no_text_speaks_of_a_book_that_the_student_has_not_met(chapter: Chapter) -> None:
+    texts = [cell.source for cell in chapter.read().cells]
+    assert [text for text in texts if re.search(r"\b[Tt]he (printed )?chapter\b", text)] == []
+    met = "call it *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
+    assert met or not any("textbook" in text for text in texts)
+
+
+@each_chapter
 def test_a_given_package_installs_only_executables_that_the_chapter_has(chapter: Chapter) -> None:
     written = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
     there = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
