@@ -17,6 +17,8 @@ from autograder.checks import suites
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError
 
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same, ten times as fast where it was compiled
+
 
 @dataclass(frozen=True)
 class Edit:
@@ -64,7 +66,7 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
     """
     suite = suites.hidden(assignment)
     known = frozenset(check.id for check in suite.checks)
-    data = yaml.safe_load((suite.folder / "mutants.yaml").read_text())
+    data = yaml.load((suite.folder / "mutants.yaml").read_text(), LOADER)
     return tuple(_mutant(entry, data["file"], known) for entry in data["mutants"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import subprocess
@@ -61,21 +62,31 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Terminal:
     """A sourced workspace with every package of `solutions/`, as colcon built them; `log/build.txt` has its words.
 
     Packages of messages, which take by far the longest, are built as the grader builds them, and kept where it keeps
-    them. The others are built as a student does it.
+    them. The others are built as a student does it. The workers of a run share the workspace: the first one builds it.
     """
-    root = tmp_path_factory.mktemp("reference")
+    base = tmp_path_factory.getbasetemp()
+    root = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "reference-workspace"
+    ros = environment.find()
+    variables = {**os.environ, **ros.variables(log_dir=root / "log/ros"), "PATH": environment.path_with_scripts()}
+    variables.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns where it is set
+    terminal = Terminal(root, variables)
+    with root.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (root / "log/build.txt").is_file():
+            _build_reference(terminal, ros, tmp_path_factory.mktemp("scratch"))
+    return terminal.source()
+
+
+def _build_reference(terminal: Terminal, ros: environment.RosEnvironment, scratch: Path) -> None:
+    """Build the workspace; its log is written last, and says that the whole is there."""
     found, broken = find_packages(SOLUTIONS)
     assert not broken
     for name, folder in found.items():
-        shutil.copytree(folder, root / "src" / name)
-    ros = environment.find()
+        shutil.copytree(folder, terminal.root / "src" / name)
     messages = [name for name, folder in found.items() if (folder / "CMakeLists.txt").is_file()]
     for name in messages:
-        build(Workspace(root, ros, tmp_path_factory.mktemp("scratch")), (name,))
-    variables = {**os.environ, **ros.variables(log_dir=root / "log/ros"), "PATH": environment.path_with_scripts()}
-    terminal = Terminal(root, variables)
-    variables.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns where it is set
+        (home := scratch / name).mkdir()
+        build(Workspace(terminal.root, ros, home), (name,))
     built = terminal.run("colcon", "build", "--packages-skip", *messages)
     assert built.returncode == 0, built.stdout
-    (root / "log/build.txt").write_text(built.stdout)
-    return terminal.source()
+    (terminal.root / "log/build.txt").write_text(built.stdout)
