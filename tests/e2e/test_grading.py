@@ -279,7 +279,7 @@ def test_a_result_of_an_earlier_run_is_never_taken_for_this_one(
 def test_what_is_not_there_is_a_wrong_call(reference: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="there is no such file or folder"):
         _grade(tmp_path / "nobody", tmp_path / "out")
-    with pytest.raises(UsageError, match="there are no checks for '77_none'"):
+    with pytest.raises(UsageError, match="there are no hidden checks for '77_none'"):
         grade_submission(reference, "77_none", student="a", seed=1, out=tmp_path / "out")
 
 
