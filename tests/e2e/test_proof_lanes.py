@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import tempfile
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from autograder.sandbox import Tier
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
+Servers = Callable[[], list[int]]
 SOME = Scope(only=("starts", "node_name", "publishes_cmd_vel", "threshold"))
 
 
@@ -51,61 +53,70 @@ def _verdicts(result: Result) -> list[tuple[object, ...]]:
     return [(check.id, check.outcome, check.message, check.points) for check in result.checks]
 
 
-def _servers() -> list[int]:
+def _running() -> set[int]:
     """Return the fork servers that run directly below this process."""
-    found = []
+    found = set()
     for task in Path("/proc/self/task").iterdir():
         for child in (task / "children").read_text().split():
             if "autograder.proof.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
-                found.append(int(child))
+                found.add(int(child))
     return found
 
 
-def test_one_cell_for_many_gives_the_results_of_a_cell_each(reference: Path, half: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def servers() -> Servers:
+    """Return a function that gives the fork servers started by the test; those of other tests' lanes do not count."""
+    before = _running()
+    return lambda: sorted(_running() - before)
+
+
+def test_one_cell_for_many_gives_the_results_of_a_cell_each(
+    reference: Path, half: Path, servers: Servers, tmp_path: Path
+) -> None:
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         shared = [_grade(path, tmp_path / "shared", lanes, SOME) for path in (reference, half, reference)]
-        assert len(_servers()) == 1
-    assert _servers() == []
+        assert len(servers()) == 1
+    assert servers() == []
     alone = [_grade(path, tmp_path / "alone", in_own_cell, SOME) for path in (reference, half)]
     assert [_verdicts(result) for result in shared] == [_verdicts(alone[number]) for number in (0, 1, 0)]
     assert [result.suite_version for result in shared[:2]] == [result.suite_version for result in alone]
     assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
 
 
-def test_a_lane_outlives_the_thread_that_used_it_first(half: Path, tmp_path: Path) -> None:
-    servers = []
+def test_a_lane_outlives_the_thread_that_used_it_first(half: Path, servers: Servers, tmp_path: Path) -> None:
+    seen = []
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         for name in ("one", "two"):
             with ThreadPoolExecutor(1) as thread:
                 graded = thread.submit(_grade, half, tmp_path / name, lanes).result()
             assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
-            servers.append(_servers())
-    assert len(servers[0]) == 1
-    assert servers[0] == servers[1]
+            seen.append(servers())
+    assert len(seen[0]) == 1
+    assert seen[0] == seen[1]
 
 
 def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
-    reference: Path, half: Path, tmp_path: Path
+    reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         failed = _grade(reference, tmp_path / "failed", lanes, Scope(only=("no_such_check",)))
         graded = _grade(half, tmp_path / "graded", lanes)
-        assert len(_servers()) == 1
+        assert len(servers()) == 1
     assert failed.status is Status.NOT_GRADED
     assert "no record of no_such_check" in (tmp_path / "failed" / LOG).read_text()
     assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
 
 
 def test_a_server_that_dies_is_replaced_and_nothing_of_it_stays(
-    half: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    half: Path, servers: Servers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with Lanes(Tier.PROCESS, 1) as lanes:
         assert _grade(half, tmp_path / "one", lanes, tier=Tier.PROCESS).status is Status.GRADED
         (cell,) = tmp_path.glob("cell-*")
         assert list(cell.iterdir()) == []
-        (server,) = _servers()
+        (server,) = servers()
         os.kill(server, signal.SIGKILL)
         assert _grade(half, tmp_path / "two", lanes, tier=Tier.PROCESS).status is Status.GRADED
-        assert _servers() not in ([], [server])
+        assert servers() not in ([], [server])
     assert list(tmp_path.glob("cell-*")) == []
