@@ -3,7 +3,7 @@
 `ros()` switches ROS 2 on for the kernel. `drive(...)` lets a program of the workspace steer the simulated robot,
 faster than real time; `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` stands in
 the locked cells. `source(...)` does for the kernel what `source install/setup.bash`
-does in a terminal; `simulator(...)` lets the robot live in the kernel for a while.
+does in a terminal; `simulator(...)` runs the simulator beside it for a while.
 
 Students' programs run in processes of their own, never in the kernel.
 """

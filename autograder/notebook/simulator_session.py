@@ -1,34 +1,35 @@
-"""`simulator`: simulates the robot in the kernel, in real time, while other programs talk to it over ROS."""
+"""`simulator`: simulates robots in a process of their own, in real time, while other programs talk to them over ROS."""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Iterator
+import shlex
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import layout
 from autograder.notebook.notices import Notice
-from autograder.ros import activate
+from autograder.notebook.terminal import running
+from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
 if TYPE_CHECKING:
     from sim import Recording
-    from sim.bridge import Bridge
     from sim.view import Picture
-
-PERIOD = 0.05  # s of real time between two looks at the robot
 
 
 class SimulatorSession:
-    """What the robot did while it was simulated; the track is there once the block is over."""
+    """What the robots did while they were simulated; the track is there once the block is over."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None
 
     @property
     def track(self) -> Picture | Notice:
-        """The robot's track as a picture."""
+        """The robots' tracks as a picture."""
         if self.recording is None:
             return Notice("The robot has not been simulated yet.")
         from sim.view import plot
@@ -37,12 +38,17 @@ class SimulatorSession:
 
 
 @contextmanager
-def simulator(world: str = "empty_room", speed: float = 1.0) -> Iterator[SimulatorSession]:
-    """Simulate a robot in a world while the block runs: /scan, /odom and /clock come from it, /cmd_vel moves it.
+def simulator(
+    world: str = "empty_room", speed: float = 1.0, robots: Sequence[str] = ("",)
+) -> Iterator[SimulatorSession]:
+    """Simulate robots in a world while the block runs: /scan, /odom and /clock come from it, /cmd_vel moves a robot.
+
+    The simulator is a program of its own, as on a real robot. Its log is printed in the cell.
 
     Args:
         world: a name in `assets/worlds`.
         speed: simulated seconds in a second of real time.
+        robots: the namespaces of the robots, one robot each; "" is a robot without a namespace.
 
     Raises:
         UsageError: there is no such world.
@@ -52,29 +58,19 @@ def simulator(world: str = "empty_room", speed: float = 1.0) -> Iterator[Simulat
     if grading():
         yield session
         return
-    activate()
-    from sim.bridge import Bridge
-
-    with Bridge(path, speed=speed) as bridge:
-        stop = threading.Event()
-        watcher = threading.Thread(target=_record, args=(bridge, session, stop), daemon=True)
-        watcher.start()
-        try:
+    with tempfile.TemporaryDirectory() as folder:
+        recording = Path(folder) / "run.npz"
+        parameters = {"world": path, "speed": float(speed), "robots": list(robots), "recording": recording}
+        settings = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+        node = [sys.executable, "-m", "sim.bridge", "--ros-args", *settings]
+        command = shlex.join([sys.executable, "-m", "autograder", "ros", *node])
+        # All programs of the block announce themselves often: a graph that is looked at is whole within a second.
+        with announcing_often(), running(command, until="robot(s)", workspace=folder):
             yield session
-        finally:
-            stop.set()
-            watcher.join()
+        session.recording = _load(recording)
 
 
-def _record(bridge: Bridge, session: SimulatorSession, stop: threading.Event) -> None:
-    from sim import Recorder
+def _load(path: Path) -> Recording | None:
+    from sim.recording import load_recording
 
-    state = bridge.driver.state
-    recorder = Recorder(bridge.simulation, state)
-    running = True
-    while running:
-        running = not stop.wait(PERIOD)
-        if bridge.driver.state.time_ns > state.time_ns:
-            state = bridge.driver.state
-            recorder.append(state)
-    session.recording = recorder.recording()
+    return load_recording(path) if path.exists() else None

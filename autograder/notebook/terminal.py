@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -44,13 +44,15 @@ def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws")
 
 
 @contextmanager
-def running(command: str, *, until: str = "", seconds: float = 30.0, workspace: str | Path = "ws") -> Iterator[None]:
+def running(
+    command: str, *, until: str | Sequence[str] = "", seconds: float = 30.0, workspace: str | Path = "ws"
+) -> Iterator[None]:
     """Run a command while the block runs; print its output, and press Ctrl-C in the end.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
-        until: a text; the block begins once the command has printed it, or has ended.
-        seconds: after so long without that text, the block begins all the same.
+        until: a text, or several; the block begins once the command has printed them all, or has ended.
+        seconds: after so long without them, the block begins all the same.
         workspace: sourced first, once it has been built.
 
     Raises:
@@ -60,8 +62,9 @@ def running(command: str, *, until: str = "", seconds: float = 30.0, workspace: 
         print(GRADED)
         yield
         return
+    texts = [until] if isinstance(until, str) else until
     with _Terminal(command, Path(workspace)) as terminal:
-        terminal.wait(lambda: until in terminal.said(), seconds)
+        terminal.wait(lambda: all(text in terminal.said() for text in texts), seconds)
         terminal.show()
         yield
         terminal.end()

@@ -30,12 +30,17 @@ from sim.bridge.driver import Driver, Sent
 from sim.bridge.messages import clock_to_msg, odom_to_msg, scan_to_msg, twist_to_command
 from sim.bridge.settings import declare, simulation_of
 from sim.exceptions import SimError
+from sim.recording import Recorder
+from sim.state import State
 
 PERIOD = 0.01
 """Seconds of real time between two looks at the clock."""
 
 LONGEST_LEAP = 0.25
 """Seconds of real time made up for at once. A machine that sleeps must not make the robot leap."""
+
+RECORD_NS = 50_000_000
+"""Simulated time between two states of a recording, in ns. A state with an event is recorded in any case."""
 
 CLOCK_QOS = QoSProfile(depth=1, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that it matches every subscription; one deep, for only the newest time is worth having."""
@@ -53,6 +58,8 @@ class SimulatorNode(Node):
         self._step_time = float(values["step_time"])
         self._paused = bool(values["start_paused"])
         self._behind = 0.0
+        self._recording = values["recording"]
+        self._recorder = self._new_recorder()
 
         self._clock_publisher = self.create_publisher(ClockMessage, "/clock", CLOCK_QOS)
         self._scans: dict[str, Any] = {}
@@ -111,6 +118,23 @@ class SimulatorNode(Node):
     def _advance(self, ticks: int) -> None:
         for sent in self._driver.run(ticks):
             self._publish(sent)
+            self._record(sent.state)
+
+    def _new_recorder(self) -> Recorder | None:
+        self._recorded_ns = self._driver.state.time_ns
+        return Recorder(self._driver.simulation, self._driver.state) if self._recording else None
+
+    def _record(self, state: State) -> None:
+        if self._recorder is not None and (state.events or state.time_ns - self._recorded_ns >= RECORD_NS):
+            self._recorder.append(state)
+            self._recorded_ns = state.time_ns
+
+    def destroy_node(self) -> None:
+        """Write the recording, if one is wanted; then end the node."""
+        if self._recorder is not None:
+            self._recorder.recording().save(self._recording)
+            self._recorder = None
+        super().destroy_node()
 
     def _publish(self, sent: Sent) -> None:
         """Send the clock first: whoever gets the data then knows a time that is not before its stamp."""
@@ -124,7 +148,11 @@ class SimulatorNode(Node):
             if scan is not None:
                 self._scans[robot.name].publish(scan_to_msg(scan, f"{prefix}{scan.frame_id}"))
         for event in sent.state.events:
-            self.get_logger().warning(f"{event.robot}: {event.kind}, {event.what}", throttle_duration_sec=1.0)
+            sentence = f"{event.robot}: {event.kind}, {event.what}"
+            if event.kind == "collision":  # a robot that keeps pushing collides in each tick
+                self.get_logger().warning(sentence, throttle_duration_sec=1.0)
+            else:
+                self.get_logger().warning(sentence)
 
     def pause(self, paused: bool) -> None:
         """Let simulated time stand still, or go on."""
@@ -139,6 +167,7 @@ class SimulatorNode(Node):
         """Go back to the start."""
         self._driver.reset()
         self._behind = 0.0
+        self._recorder = self._new_recorder()
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self.pause(request.data)

@@ -51,6 +51,7 @@ SETTINGS = (
     Setting("seed", 0, "The seed of all noise, drop-outs, drift and moving obstacles.", 0, 2**53),
     Setting("engine", "auto", "Who computes; all give the same bits.", choices=("auto", "numpy", "numba")),
     Setting("speed", 1.0, "Simulated seconds in a second of real time.", 0.01, 1000.0, live=True),
+    Setting("recording", "", "The file that gets the run's recording when the node ends; '' keeps none."),
     Setting("start_paused", False, "Start paused, waiting for ~/pause or ~/step."),
     Setting("tick", 0.02, "The physics period in s.", 0.0001, 1.0),
     Setting("step_time", 0.1, "What one call of ~/step simulates, in s.", 0.0001, 60.0, live=True),

@@ -1,13 +1,13 @@
-"""The robot that lives in the kernel: its run is recorded, and mistakes are told plainly."""
+"""The simulator beside a notebook: its robots' runs are recorded, and mistakes are told plainly."""
 
 from __future__ import annotations
 
-import threading
 import time
 from typing import Any
 
 import pytest
 import rclpy
+from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -25,31 +25,57 @@ def test_a_world_that_is_not_there_is_named() -> None:
         pass
 
 
-def test_nothing_is_simulated_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_simulated_while_the_notebook_is_graded(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")
     with simulator() as robot:
-        assert not [thread for thread in threading.enumerate() if thread.name == "simulator"]
+        pass
     assert isinstance(robot.track, Notice)
+    assert capfd.readouterr().out == ""
 
 
 def test_before_its_end_there_is_no_track() -> None:
     assert repr(SimulatorSession().track) == "The robot has not been simulated yet."
 
 
-def test_the_robots_run_is_recorded() -> None:
+@pytest.mark.slow
+def test_each_robots_run_is_recorded_with_its_events(capsys: pytest.CaptureFixture[str]) -> None:
     context = Context()
     heard: list[Any] = []
     rclpy.init(context=context)
-    node = Node("listener", context=context)
-    node.create_subscription(Odometry, "odom", heard.append, 10)
+    node = Node("driver", context=context)
+    node.create_subscription(Odometry, "right/odom", heard.append, 10)
+    forward = node.create_publisher(Twist, "right/cmd_vel", 10)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
-    deadline = time.monotonic() + 30.0
-    with simulator("empty_room") as robot:
-        while len(heard) < 10 and time.monotonic() < deadline:
+    deadline = time.monotonic() + 60.0
+    with simulator("lab", speed=4.0, robots=["left", "right"]) as robots:
+        while not (heard and heard[-1].twist.twist.linear.x > 0.1) and time.monotonic() < deadline:
+            forward.publish(Twist(linear=Vector3(x=0.2)))
+            executor.spin_once(timeout_sec=0.02)
+        stopped = len(heard)
+        while not (len(heard) > stopped and heard[-1].twist.twist.linear.x == 0.0) and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
     node.destroy_node()
     rclpy.try_shutdown(context=context)
-    assert isinstance(robot.recording, Recording)
-    assert len(robot.recording) > 1
-    assert "empty room" in repr(robot.track)
+    assert isinstance(robots.recording, Recording)
+    left, right = (robots.recording.poses[:, index] for index in (0, 1))
+    assert (left[0] == left[-1]).all()
+    assert not (right[0] == right[-1]).all()
+    assert [(event.robot, event.kind) for event in robots.recording.events] == [("right", "watchdog")]
+    assert "the lab" in repr(robots.track)
+    said = capsys.readouterr().out
+    assert "world 'the lab', 2 robot(s), speed 4" in said
+    assert said.count("right had no new command for 0.5 s and stops") == 1
+
+
+def test_settings_that_make_no_sense_are_told_in_the_cell(capsys: pytest.CaptureFixture[str]) -> None:
+    with simulator(
+        "empty_room", robots=["one", "two", "three", "four", "five", "six", "seven", "eight", "nine"]
+    ) as robots:
+        pass
+    assert isinstance(robots.track, Notice)
+    said = capsys.readouterr().out
+    assert "9 robots, but the world 'empty room' has" in said
+    assert "[exit status 1]" in said
