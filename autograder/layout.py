@@ -55,3 +55,8 @@ def assignments() -> list[str]:
 def source_notebook(assignment: str) -> Path:
     """Return the path of an assignment's source notebook. Raises UsageError as `chapter` does."""
     return chapter(assignment) / f"{assignment}.ipynb"
+
+
+def judged_later(assignment: str) -> Path:
+    """Return the file with the titles of an assignment's hidden checks that students may read."""
+    return CHECKS / f"ch{assignment}" / "visible" / "judged_later.json"

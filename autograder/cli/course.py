@@ -7,7 +7,9 @@ from pathlib import Path
 
 import click
 
+from autograder import layout
 from autograder.checks import suites
+from autograder.course import judged_later
 from autograder.course.cells import is_graded
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
@@ -87,9 +89,11 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
 
 @course.command()
 def tables() -> None:
-    """Write the pages for instructors: what is taught where, which checks judge it, and what proves them."""
+    """Write the pages for instructors, and for students the titles of the checks that judge after handing in."""
     page, problems = course_page()
     for finding in problems:
         click.echo(str(finding))
+    for assignment, text in judged_later.outdated().items():
+        layout.judged_later(assignment).write_text(text, encoding="utf-8")
     PAGE.write_text(page, encoding="utf-8")
     guide.PAGE.write_text(guide.guide(), encoding="utf-8")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import html
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from autograder import layout
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
@@ -14,6 +16,7 @@ from autograder.notebook.worker_client import send
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
+AFTER = "After you hand in, {count} more checks judge, with inputs of their own:"
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
 
 
@@ -36,11 +39,13 @@ class CheckReport:
         assignment: which assignment's.
         lines: one a check.
         trouble: what kept the package from being built or the node from running, or None.
+        later: the titles of the checks that judge the packages after they are handed in.
     """
 
     assignment: str
     lines: tuple[Line, ...]
     trouble: Notice | None = None
+    later: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -60,12 +65,18 @@ class CheckReport:
             parts += [f"    {line.message}"] if line.message else []
             parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
             parts += [f"    read: {line.doc}"] if line.doc and line.outcome is Outcome.FAILED else []
-        return "\n".join([*parts, "", self.summary])
+        parts += ["", self.summary]
+        if self.passed and self.later:
+            parts += ["", AFTER.format(count=len(self.later)), *(f"- {title}" for title in self.later)]
+        return "\n".join(parts)
 
     def _repr_html_(self) -> str:
         trouble = "" if self.trouble is None else self.trouble._repr_html_()
         colour = COLOURS[Outcome.PASSED] if self.passed else INFO
         rows = "".join(_row(line) for line in self.lines)
+        if self.passed and self.later:
+            titles = "".join(f"<li>{html.escape(title)}</li>" for title in self.later)
+            rows += f"<details><summary>{AFTER.format(count=len(self.later))}</summary><ul>{titles}</ul></details>"
         return f'{trouble}<div style="{STYLE.format(colour=colour)}"><b>{html.escape(self.summary)}</b>{rows}</div>'
 
 
@@ -98,7 +109,12 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         outcome = Outcome(result["outcome"])
         hints = tuple(result["hints"]) if outcome is Outcome.FAILED else ()
         lines.append(Line(declared["title"], outcome, result["message"], hints, declared["doc"]))
-    return CheckReport(assignment, tuple(lines), trouble)
+    return CheckReport(assignment, tuple(lines), trouble, _later(assignment))
+
+
+def _later(assignment: str) -> tuple[str, ...]:
+    path = layout.judged_later(assignment)
+    return tuple(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else ()
 
 
 def _row(line: Line) -> str:

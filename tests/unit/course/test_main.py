@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
 
+from autograder import layout
 from autograder.checks import Check, Visibility, suites
 from autograder.cli import course as command
+from autograder.course import judged_later
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
@@ -64,3 +67,17 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
     assert result.exit_code == 2
     assert "there is no chapter 99_flying; there are: 01_small" in result.output
     assert run(course, "check", "01_small").exit_code == 1
+
+
+def test_each_graded_chapter_says_what_is_judged_after_handing_in() -> None:
+    assert judged_later.outdated() == {}, "run `autograder course tables`"
+    titles = json.loads(layout.judged_later("02_nodes").read_text())
+    assert "The node is called robot_controller." in titles
+    assert not {check.title for check in suites.visible("02_nodes").checks} & set(titles)
+
+
+def test_a_list_of_what_is_judged_later_that_is_missing_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(judged_later, "judged_later", lambda assignment: tmp_path / assignment)
+    assert sorted(judged_later.outdated()) == suites.graded()

@@ -74,3 +74,19 @@ def test_a_grade_cell_outside_of_grading_is_worth_nothing_to_nbgrader() -> None:
     cell = new_code_cell('grade("02_nodes", "graph")', metadata={"nbgrader": {**GRADED, "points": 5}})
     cell.outputs = [new_output("execute_result", {"text/plain": repr(grade("02_nodes", "graph"))})]
     assert determine_grade(cell) == (0.0, 5)
+
+
+LATER = ("It turns <left>.", "It stops.")
+
+
+def test_when_all_have_passed_it_says_what_is_judged_after_handing_in() -> None:
+    report = CheckReport("02_nodes", LINES[:1], later=LATER)
+    assert repr(report).endswith(
+        "After you hand in, 2 more checks judge, with inputs of their own:\n- It turns <left>.\n- It stops."
+    )
+    assert "<li>It turns &lt;left&gt;.</li><li>It stops.</li>" in report._repr_html_()
+
+
+def test_before_that_it_does_not() -> None:
+    report = CheckReport("02_nodes", LINES, later=LATER)
+    assert "hand in" not in repr(report) + report._repr_html_()
