@@ -11,7 +11,7 @@ CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 STEAL_SECRETS = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
-for _root in (*_glob.glob("{layout.CHECKS}/*"), "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
+for _root in (*_glob.glob("{layout.CHECKS}/ch*"), "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
     for _folder, _, _names in _os.walk(_root):
         # Students may read a clone below /tmp. Its secrets are searched for by name.
         if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
