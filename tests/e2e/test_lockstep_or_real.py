@@ -42,7 +42,7 @@ def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["reference", "all_beams", "five_hertz"])
+@pytest.mark.parametrize("name", ["reference", pytest.param("all_beams", marks=pytest.mark.nightly), "five_hertz"])
 def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -81,15 +81,17 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
 @pytest.mark.parametrize(
     ("assignment", "file", "checks"),
     [
-        (
+        pytest.param(
             "05_parameters",
             f"{PACKAGE}/{PACKAGE}/nodes/configured_node.py",
             ("starts", "names", "overrides", "start_rate", "rate_change", "contradiction", "no_side_effects"),
+            marks=pytest.mark.nightly,
         ),
-        (
+        pytest.param(
             "07_best_practices",
             f"{PACKAGE}/{PACKAGE}/nodes/robust_node.py",
             ("once_a_second", "late_joiners", "unstable", "declared"),
+            marks=pytest.mark.nightly,
         ),
         (
             "09_assessment",

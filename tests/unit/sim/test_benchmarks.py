@@ -11,7 +11,7 @@ import sys
 import pytest
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_simulator_benchmark_returns_finite_positive_figures(request: pytest.FixtureRequest) -> None:
     """In a process of its own, without ir-sim, which only `make bench` installs."""
     measure = "print(json.dumps(figures(1, 1, 0.2, compare=False)))"

@@ -75,7 +75,7 @@ def test_the_scans_are_those_of_every_machine(name: str) -> None:
     assert golden(name) == GOLDEN
 
 
-@pytest.mark.parametrize("name", ["numpy", pytest.param("numba", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["numpy", pytest.param("numba", marks=pytest.mark.nightly)])
 def test_a_processor_without_vector_units_or_fused_multiply_add_finds_the_same_scans(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

@@ -45,7 +45,7 @@ def test_a_sample_of_beams_agrees_with_extended_precision(engine: str) -> None:
     assert compare(60, 1, engine) <= TOLERANCE
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_million_beams_agree_with_extended_precision() -> None:
     assert compare(2800, 2, "numba") <= TOLERANCE
 
