@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from autograder import layout
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import running
-from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
 if TYPE_CHECKING:
@@ -64,8 +63,7 @@ def simulator(
         settings = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
         node = [sys.executable, "-m", "sim.bridge", "--ros-args", *settings]
         command = shlex.join([sys.executable, "-m", "autograder", "ros", *node])
-        # All programs of the block announce themselves often: a graph that is looked at is whole within a second.
-        with announcing_often(), running(command, until="robot(s)", workspace=folder):
+        with running(command, until="robot(s)", workspace=folder):
             yield session
         session.recording = _load(recording)
 

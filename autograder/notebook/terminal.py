@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from autograder.exceptions import UsageError
+from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
 GRADED = "Commands are not run while the notebook is graded."
@@ -63,7 +64,8 @@ def running(
         yield
         return
     texts = [until] if isinstance(until, str) else until
-    with _Terminal(command, Path(workspace)) as terminal:
+    # All programs of the block announce themselves often: `ros2 node list` then finds them all within a second.
+    with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.said() for text in texts), seconds)
         terminal.show()
         yield
