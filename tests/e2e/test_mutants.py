@@ -58,4 +58,4 @@ def lanes() -> Iterator[Lanes]:
 def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes, tmp_path: Path) -> None:
     (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
     log = tmp_path / case.assignment / case.name / "grader.log"
-    assert claim.holds, f"{claim.wrong}\n{log.read_text() if log.is_file() else ''}"
+    assert claim.holds, f"{claim.mismatch}\n{log.read_text() if log.is_file() else ''}"
