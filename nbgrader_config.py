@@ -1,9 +1,9 @@
-"""nbgrader with this repository as the course directory: `nbgrader generate_assignment 02_nodes`, and so on.
+"""Configures nbgrader, with this repository as the course directory.
 
-Grades come from the isolated grader (`autograder.nbgrader`); nbgrader books them. `NBGRADER_EXCHANGE` names the
-exchange folder of a class; without it there is one below `.build/`, for trying things out.
+The isolated grader (`autograder.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
+exchange folder of a class. Without it the folder is `.build/exchange`.
 
-`nbgrader autograde` takes one submission after the other. To grade a large class on all cores, and then book it:
+`nbgrader autograde` grades one submission after the other. These commands grade a class on all cores and then book it:
 
     autograder grade submitted --assignment 02_nodes --out .build/nbgrader/02_nodes -j 8
     nbgrader autograde 02_nodes --SandboxedGrade.resume=True
@@ -19,15 +19,15 @@ from nbgrader.preprocessors import Execute
 from autograder.course import CODE_STUB
 
 ROOT = Path(__file__).resolve().parent
-# nbgrader starts `alembic` by its bare name: it must be found also where this environment was not activated.
+# nbgrader starts `alembic` from PATH, which lacks this environment if it was not activated.
 os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
 
-c = get_config()  # noqa: F821 (traitlets puts it into a configuration file's names)
+c = get_config()  # noqa: F821 (traitlets defines it for a configuration file)
 
 c.CourseDirectory.root = str(ROOT)
 c.CourseDirectory.course_id = "ros2-python"
 c.CourseDirectory.source_directory = "chapters"
-# What colcon and Python leave in a workspace is neither released nor collected.
+# Build products of colcon and Python are neither released nor collected.
 c.CourseDirectory.ignore = [
     *(".ipynb_checkpoints", "__pycache__", "*.pyc", "*.egg-info", ".pytest_cache"),
     *("build", "install", "log", "feedback"),
@@ -41,7 +41,7 @@ c.Exchange.root = exchange
 
 c.ClearSolutions.code_stub = {"python": CODE_STUB}
 
-# A mark scheme stands in the locked cell of its question, from which autograding brings it back for formgrader.
+# A mark scheme is in the locked cell of its question. Autograding restores it for formgrader.
 c.ClearMarkScheme.enforce_metadata = False
 
 c.Autograde.exporter_class = "autograder.nbgrader.SubmissionExporter"
@@ -54,5 +54,5 @@ c.Autograde.autograde_preprocessors = [
     for step in Autograde.autograde_preprocessors.default()
 ]
 
-# Feedback and formgrader show students' text: it must not become part of the page.
-c.HTMLExporter.filters = {"markdown2html": "autograder.nbgrader.harmless_markdown"}
+# Feedback and formgrader show students' text, which must not run scripts in the page.
+c.HTMLExporter.filters = {"markdown2html": "autograder.nbgrader.sanitized_markdown"}

@@ -1,4 +1,4 @@
-"""What can be wrong with a submission before any behaviour is judged: a name, and a sentence to act on."""
+"""Names and sentences for what can be wrong with a submission before its behaviour is checked."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Kind(str, Enum):
-    """The named outcomes of bringing a submission to life."""
+    """The outcomes of reading, building and starting a submission."""
 
     OK = "ok"
     UNSAFE_ARCHIVE = "unsafe_archive"
@@ -28,7 +28,6 @@ class Kind(str, Enum):
     STUCK = "stuck"
     RESERVED_NAME = "reserved_name"
     UNUSABLE_COMMAND = "unusable_command"
-    NEVER_STOPPED = "never_stopped"
     FLOODED_OUTPUT = "flooded_output"
     OUT_OF_MEMORY = "out_of_memory"
     TIMED_OUT = "timed_out"
@@ -37,12 +36,12 @@ class Kind(str, Enum):
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """One named outcome.
+    """The outcome of reading, building and starting one submission.
 
     Attributes:
-        kind: its name.
-        sentence: what happened and what to do, for the student.
-        detail: the relevant lines of output or traceback, already shortened; may be empty.
+        kind: name of the outcome.
+        sentence: what happened and what the student can do.
+        detail: relevant lines of output or traceback, already shortened. It may be empty.
     """
 
     kind: Kind

@@ -1,9 +1,9 @@
-"""The grader's errors, and whose fault each one is.
+"""The errors that the grader raises, sorted by who can correct them.
 
 AutograderError
-├── UsageError          the command was called wrongly, or names something that is not there   (exit 2)
-├── StudentError        the submission's own fault: a named diagnosis and a sentence to act on  (points are lost)
-└── GraderError         the grader's own fault, or the machine's: never shown as a zero         ("not graded")
+├── UsageError          the command was called wrongly, or names something that does not exist  (exit status 2)
+├── StudentError        the submission is wrong; it gets a diagnosis                            (points are lost)
+└── GraderError         the grader or the machine failed; this is never a zero                  ("not graded")
     └── IsolationError  this machine cannot isolate a submission as asked
 """
 
@@ -13,18 +13,18 @@ from autograder.diagnosis import Diagnosis
 
 
 class AutograderError(Exception):
-    """Base of every error that the grader raises on purpose."""
+    """Base class of the grader's errors."""
 
 
 class UsageError(AutograderError):
-    """A wrong argument: no such assignment, no such file, an unreadable option."""
+    """An argument is wrong: an assignment or a file does not exist, or an option cannot be read."""
 
 
 class StudentError(AutograderError):
-    """Something in the submission is wrong; the student can mend it.
+    """The submission is wrong, and the student can correct it.
 
     Attributes:
-        diagnosis: what went wrong, by name and in words.
+        diagnosis: name of the outcome, and a sentence for the student.
     """
 
     def __init__(self, diagnosis: Diagnosis) -> None:
@@ -37,4 +37,4 @@ class GraderError(AutograderError):
 
 
 class IsolationError(GraderError):
-    """The machine lacks what the asked-for isolation needs."""
+    """The machine lacks what the requested isolation needs."""

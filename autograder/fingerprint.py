@@ -1,6 +1,7 @@
-"""What a grading depends on: one digest of every file of the course that it reads.
+"""Digests the files of the course that a grading reads.
 
-A submission graded twice with one seed and one digest gets one result; `autograder grade --resume` relies on it.
+A submission that is graded twice with the same seed and the same digest gets the same result. `autograder grade
+--resume` relies on this.
 """
 
 from __future__ import annotations
@@ -12,20 +13,20 @@ from pathlib import Path
 
 from autograder import layout
 
-# Parts of the autograder that no grading asks.
-APART = frozenset({"bootstrap.py", "cli", "course", "doctor", "export", "feedback", "nbgrader", "notebook", "proof"})
-PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants"})  # in a chapter's checks: what judges them
+# Parts of the autograder that no grading reads.
+NOT_READ = frozenset({"bootstrap.py", "cli", "course", "doctor", "export", "feedback", "nbgrader", "notebook", "proof"})
+PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants"})  # in a chapter's checks, for the proof only
 CHAPTER = re.compile(r"ch\d\d_")
-MENTION = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\d_\w+)")
+CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\d_\w+)")
 
 
 def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> str:
-    """Return a short digest that changes whenever a file changes that a grading of the assignment reads.
+    """Return a digest of the files that a grading of the assignment reads, as 12 hexadecimal digits.
 
     Args:
-        assignment: what is graded.
-        reads: files and folders that its checks read besides their own packages, by their paths below `root`.
-        root: the course's folder.
+        assignment: name of the assignment.
+        reads: files and folders that its checks read beside their own, as paths below `root`.
+        root: folder of the course.
     """
     found = hashlib.sha256()
     for path in files(assignment, reads, root):
@@ -34,15 +35,21 @@ def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT)
 
 
 def files(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> list[Path]:
-    """Return every file of the course that a grading of the assignment reads, in order; arguments as for `digest`."""
+    """Return the sorted paths of the files that a grading of the assignment reads.
+
+    Args:
+        assignment: name of the assignment.
+        reads: files and folders that its checks read beside their own, as paths below `root`.
+        root: folder of the course.
+    """
     chapter = root / "chapters" / assignment
     shared = [root / name for name in ("autograder", "sim", "assets/worlds", *reads)]
-    own = [*_packages(assignment, root), chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]
-    return sorted({path for top in shared + own for path in _below(top, root / "autograder")})
+    own = [*_check_folders(assignment, root), chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]
+    return sorted({path for top in shared + own for path in _files_below(top, root / "autograder")})
 
 
-def _packages(assignment: str, root: Path) -> set[Path]:
-    """Return the folder of the assignment's checks and those of all chapters that these import from."""
+def _check_folders(assignment: str, root: Path) -> set[Path]:
+    """Return the folder of the assignment's checks, and those of the chapters from which they import."""
     home = root / "autograder" / "checks"
     pending = [home / f"ch{assignment}"]
     found: set[Path] = set()
@@ -50,24 +57,24 @@ def _packages(assignment: str, root: Path) -> set[Path]:
         folder = pending.pop()
         if folder not in found:
             found.add(folder)
-            texts = (path.read_text(encoding="utf-8") for path in folder.rglob("*.py") if not _proves(path, home))
-            pending += [home / name for text in texts for name in MENTION.findall(text)]
+            texts = (path.read_text(encoding="utf-8") for path in folder.rglob("*.py") if not _is_proof(path, home))
+            pending += [home / name for text in texts for name in CHECKS_IMPORT.findall(text)]
     return found
 
 
-def _proves(path: Path, home: Path) -> bool:
-    """Return whether a path below the checks is, or lies in, what proves them."""
+def _is_proof(path: Path, home: Path) -> bool:
+    """Return whether a path below `home`, the folder of all checks, is for the proof only."""
     return not PROOF.isdisjoint(path.relative_to(home).parts)
 
 
-def _below(path: Path, grader: Path) -> Iterator[Path]:
-    """Yield a file, or the files of a folder without what no grading reads and without the chapters' checks."""
+def _files_below(path: Path, grader: Path) -> Iterator[Path]:
+    """Yield a file, or the files of a folder that a grading reads, without the checks of chapters."""
     if path.is_file():
         yield path
     for child in path.iterdir() if path.is_dir() else ():
-        apart = path == grader and child.name in APART
+        not_read = path == grader and child.name in NOT_READ
         home = grader / "checks"
-        proof = child.is_relative_to(home) and _proves(child, home)
+        proof = child.is_relative_to(home) and _is_proof(child, home)
         checks = path == home and CHAPTER.match(child.name)
-        if not (apart or proof or checks or child.name.startswith(".") or child.name == "__pycache__"):
-            yield from _below(child, grader)
+        if not (not_read or proof or checks or child.name.startswith(".") or child.name == "__pycache__"):
+            yield from _files_below(child, grader)

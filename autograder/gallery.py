@@ -1,4 +1,4 @@
-"""Pictures that checks leave for the feedback."""
+"""Saves pictures of checks for the feedback."""
 
 from __future__ import annotations
 
@@ -13,7 +13,14 @@ DPI = 96
 
 @dataclass(frozen=True)
 class Gallery:
-    """Saves what a check wants to show, or nothing if closed. Frozen but for the shared list of what was saved."""
+    """Saves the pictures of one check.
+
+    Attributes:
+        folder: folder that gets the pictures.
+        check: id of the check, the first part of the file names.
+        closed: whether nothing is saved.
+        artifacts: records of the pictures that were saved. The galleries of all checks share this list.
+    """
 
     folder: Path
     check: str = ""
@@ -21,20 +28,20 @@ class Gallery:
     artifacts: list[Artifact] = field(default_factory=list)
 
     def of(self, check: str) -> Gallery:
-        """Return the same gallery, saving under another check's name."""
+        """Return a gallery for another check, in the same folder."""
         return replace(self, check=check)
 
     def track(
         self, name: str, recording: Recording, caption: str, *, mark: float | None = None, note: str = ""
     ) -> None:
-        """Save a picture of a robot's track; its record carries the hash of the run, the behaviour's fingerprint.
+        """Save a picture of a robot's track. The digest of its record is that of the run.
 
         Args:
-            name: a short name, unique in the check.
+            name: name of the picture, unique in the check.
             recording: the run.
-            caption: the picture in words, its alternative text.
-            mark: the instant to point out, in seconds.
-            note: what happened then.
+            caption: alternative text of the picture.
+            mark: the time to mark on the track, in seconds since the start of the run.
+            note: text beside the mark.
         """
         if self.closed:
             return

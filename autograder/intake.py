@@ -1,8 +1,8 @@
-"""Intake: what was handed in becomes a plain tree of files, or a sentence that says why it cannot.
+"""Reads a submission into memory, and refuses an unsafe one.
 
-A submission is an assignment's folder (the notebook and `ws/` beside it), a zip of one, the notebook alone, or a bare
-source tree with `src/`. Nothing in it is executed here. Links, devices, absolute and parent paths are refused, sizes,
-counts and depths are bounded; `build`, `install` and `log` are never looked at.
+A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip archive of such a folder, the
+notebook alone, or a source tree with `src/`. Nothing in it is executed here. Links, devices, absolute paths and parent
+paths are refused. Sizes, counts and depths are limited. The folders `build`, `install` and `log` are ignored.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError, UsageError
 
 MAX_FILES = 2000
-MAX_FILE = 16 * 1024 * 1024
-MAX_TOTAL = 64 * 1024 * 1024
-MAX_DEPTH = 16
-MAX_NAME = 200  # bytes of a path; file systems take 255 for each part of one
+MAX_FILE = 16 * 1024 * 1024  # bytes
+MAX_TOTAL = 64 * 1024 * 1024  # bytes
+MAX_DEPTH = 16  # parts of a path
+MAX_NAME = 200  # bytes of a path; file systems allow 255 for each part
 IGNORED = frozenset(
     {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".git", ".pytest_cache", "__MACOSX"}
 )
 _EXECUTABLE = 0o100
-# What `zipfile` lets out when an archive is damaged, encrypted or packed in a way that it does not know.
+# `zipfile` raises these for an archive that is damaged, encrypted or compressed by an unknown method.
 _DAMAGED = (
     zipfile.BadZipFile,
     zipfile.LargeZipFile,
@@ -44,8 +44,14 @@ _DAMAGED = (
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One file of a submission: its path below the submission's root, its bytes, whether it may be executed."""
+class SubmittedFile:
+    """A file of a submission.
+
+    Attributes:
+        path: path below the root of the submission, or below a folder of it.
+        data: content.
+        executable: whether its owner may execute it.
+    """
 
     path: PurePosixPath
     data: bytes
@@ -54,26 +60,29 @@ class Entry:
 
 @dataclass(frozen=True)
 class Submission:
-    """What was handed in, laid out the one way that grading knows.
+    """The files of a submission, in the layout that grading uses.
 
     Attributes:
-        notebook: the assignment's notebook as it was handed in, or None.
-        source: files below `ws/src`, paths relative to it.
-        extra: files beside the notebook that it may read, paths relative to the assignment's folder.
-        sha256: of all files' paths and contents.
+        notebook: content of the assignment's notebook, or None.
+        source: files below `ws/src`, with paths relative to it.
+        extra: files beside the notebook that it may read, with paths relative to the assignment's folder.
+        sha256: digest of all files' paths and contents, in hexadecimal digits.
     """
 
     notebook: bytes | None
-    source: tuple[Entry, ...]
-    extra: tuple[Entry, ...]
+    source: tuple[SubmittedFile, ...]
+    extra: tuple[SubmittedFile, ...]
     sha256: str
 
 
-def take_source(root: Path) -> tuple[Entry, ...]:
-    """Read the packages of a workspace, `root`/src, that student's code has written to.
+def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
+    """Read the packages in `root`/src, a workspace that a student's code may have changed.
+
+    Returns:
+        The files, with paths relative to `src`.
 
     Raises:
-        StudentError: `src` is no folder, or holds what a submission may not hold.
+        StudentError: `src` is not a folder, or holds something unsafe.
     """
     for folder in (root, root / "src"):
         try:
@@ -86,12 +95,16 @@ def take_source(root: Path) -> tuple[Entry, ...]:
     return tuple(_from_folder(root / "src", _Budget()))
 
 
-def take(path: Path, assignment: str) -> Submission:
+def read_submission(path: Path, assignment: str) -> Submission:
     """Read a submission from disk.
 
+    Args:
+        path: a folder, a zip archive or a notebook.
+        assignment: name of the assignment.
+
     Raises:
-        UsageError: there is nothing at `path`.
-        StudentError: it is no submission, or one that must not be unpacked.
+        UsageError: `path` does not exist.
+        StudentError: the submission is unsafe or unreadable, or has neither the notebook nor a package.
     """
     budget = _Budget()
     if path.is_dir():
@@ -102,14 +115,18 @@ def take(path: Path, assignment: str) -> Submission:
         entries = _from_zip(path, budget)
     else:
         raise UsageError(f"{path}: there is no such file or folder")
-    return arrange(entries, assignment)
+    return detect_layout(entries, assignment)
 
 
-def arrange(entries: list[Entry], assignment: str) -> Submission:
-    """Recognise a submission's layout.
+def detect_layout(entries: list[SubmittedFile], assignment: str) -> Submission:
+    """Find the notebook and the packages among the files of a submission.
+
+    Args:
+        entries: all files, with paths below the root of the submission.
+        assignment: name of the assignment.
 
     Raises:
-        StudentError: there is neither the notebook nor a package in it.
+        StudentError: there is neither the notebook nor a package, or a file and a folder have the same path.
     """
     digest = hashlib.sha256()
     for entry in sorted(entries, key=lambda entry: str(entry.path)):
@@ -118,7 +135,9 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
     _require_tree(entries)
     root = _root(entries, assignment)
     inside = [
-        Entry(entry.path.relative_to(root), entry.data, entry.executable) for entry in entries if _below(entry, root)
+        SubmittedFile(entry.path.relative_to(root), entry.data, entry.executable)
+        for entry in entries
+        if _below(entry, root)
     ]
     notebook = next((entry.data for entry in inside if str(entry.path) == f"{assignment}.ipynb"), None)
     workspace = PurePosixPath("ws/src")
@@ -126,7 +145,7 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
     source, extra = [], []
     for entry in inside:
         if _below(entry, home):
-            source.append(Entry(entry.path.relative_to(home), entry.data, entry.executable))
+            source.append(SubmittedFile(entry.path.relative_to(home), entry.data, entry.executable))
         elif entry.path.parts[0] != "ws" and str(entry.path) != f"{assignment}.ipynb":
             extra.append(entry)
     if notebook is None and not source:
@@ -138,8 +157,8 @@ def arrange(entries: list[Entry], assignment: str) -> Submission:
     return Submission(notebook, tuple(source), tuple(extra), digest.hexdigest())
 
 
-def write_tree(entries: tuple[Entry, ...], folder: Path) -> None:
-    """Write files below `folder`, which is made."""
+def write_tree(entries: tuple[SubmittedFile, ...], folder: Path) -> None:
+    """Write files below `folder`, and create the folder if it does not exist."""
     folder.mkdir(parents=True, exist_ok=True)
     for entry in entries:
         target = folder / entry.path
@@ -149,8 +168,8 @@ def write_tree(entries: tuple[Entry, ...], folder: Path) -> None:
             target.chmod(0o755)
 
 
-def _root(entries: list[Entry], assignment: str) -> PurePosixPath:
-    """Return the folder that holds the notebook, or the parent of `ws/src` or `src`; the shallowest one."""
+def _root(entries: list[SubmittedFile], assignment: str) -> PurePosixPath:
+    """Return the shallowest folder that holds the notebook, `ws/src` or `src`."""
     candidates = []
     for entry in entries:
         parts = entry.path.parts
@@ -163,25 +182,27 @@ def _root(entries: list[Entry], assignment: str) -> PurePosixPath:
     return min(candidates)[2] if candidates else PurePosixPath()
 
 
-def _below(entry: Entry, root: PurePosixPath) -> bool:
+def _below(entry: SubmittedFile, root: PurePosixPath) -> bool:
     return entry.path.is_relative_to(root) and entry.path != root
 
 
-def _require_tree(entries: list[Entry]) -> None:
-    """Refuse what no file system holds: two files of one name, or a file that is a folder, too."""
+def _require_tree(entries: list[SubmittedFile]) -> None:
+    """Refuse two files with the same path, and a file whose path is also that of a folder."""
     files = {entry.path for entry in entries}
     folders = {folder for path in files for folder in path.parents}
     if len(files) < len(entries) or files & folders:
-        raise _unsafe("two things in it have the same name")
+        raise _unsafe("two of its files or folders have the same path")
 
 
 class _Budget:
-    """Counts bytes before they are read, so that nothing larger than allowed is ever in memory."""
+    """Counts bytes before they are read, so that no more than `MAX_TOTAL` are ever in memory."""
 
     def __init__(self) -> None:
         self._left = MAX_TOTAL
 
-    def read(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> Entry:
+    def read(
+        self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False
+    ) -> SubmittedFile:
         if len(path.parts) > MAX_DEPTH:
             raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
         if len(os.fsencode(path)) > MAX_NAME:
@@ -191,10 +212,10 @@ class _Budget:
         self._left -= size
         if self._left < 0:
             raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB in all")
-        return Entry(path, read(), executable)
+        return SubmittedFile(path, read(), executable)
 
 
-def _from_folder(root: Path, budget: _Budget) -> list[Entry]:
+def _from_folder(root: Path, budget: _Budget) -> list[SubmittedFile]:
     return [
         budget.read(
             PurePosixPath(path.relative_to(root)), info.st_size, path.read_bytes, bool(info.st_mode & _EXECUTABLE)
@@ -220,11 +241,11 @@ def _walk(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
             elif stat.S_ISREG(info.st_mode):
                 yield path, info
             else:
-                what = "a symbolic link" if stat.S_ISLNK(info.st_mode) else "no ordinary file"
+                what = "a symbolic link" if stat.S_ISLNK(info.st_mode) else "not a regular file"
                 raise _unsafe(f"{path.relative_to(root)} is {what}")
 
 
-def _from_zip(path: Path, budget: _Budget) -> list[Entry]:
+def _from_zip(path: Path, budget: _Budget) -> list[SubmittedFile]:
     if path.stat().st_size > MAX_TOTAL:
         raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB")
     try:
@@ -234,11 +255,11 @@ def _from_zip(path: Path, budget: _Budget) -> list[Entry]:
                 raise _unsafe(f"it holds more than {MAX_FILES} files and folders")
             return [entry for info in infos if (entry := _zip_entry(archive, info, budget)) is not None]
     except _DAMAGED as error:
-        sentence = f"{path.name} is no folder, notebook or readable zip archive ({error}): hand in one of these."
+        sentence = f"{path.name} is not a folder, a notebook or a readable zip archive ({error}): hand in one of these."
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
 
 
-def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget) -> Entry | None:
+def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget) -> SubmittedFile | None:
     path = PurePosixPath(info.filename.replace("\\", "/"))
     if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
         raise _unsafe(f"{info.filename} points outside the archive")
@@ -246,12 +267,12 @@ def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: _Budget)
         return None
     mode = info.external_attr >> 16
     if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
-        raise _unsafe(f"{info.filename} is no ordinary file")
+        raise _unsafe(f"{info.filename} is not a regular file")
     return budget.read(path, info.file_size, lambda: _inflate(archive, info), bool(mode & _EXECUTABLE))
 
 
 def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    # The directory's size is the sender's claim: read one byte more than it allows, and no further.
+    # The archive's directory may state a wrong size: read at most one byte more than it states.
     with archive.open(info) as stream:
         data = stream.read(info.file_size + 1)
     if len(data) != info.file_size:

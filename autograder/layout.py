@@ -1,4 +1,4 @@
-"""Where the course's parts lie."""
+"""Paths of the course's folders and files."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ SOLUTIONS = ROOT / "solutions"
 CHECKS = ROOT / "autograder" / "checks"
 WORLDS = ROOT / "assets" / "worlds"
 BUILD = ROOT / ".build"
-# What tools leave behind in a folder that is worked in, for `shutil.copytree`.
+# Ignores the files that tools create in a working folder; for `shutil.copytree`.
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
 
 
 def check_folders() -> tuple[Path, ...]:
-    """Return the folder of each chapter's checks, visible, hidden and what proves them. No sandbox shows one."""
+    """Return the folders of all chapters' checks, which every sandbox hides."""
     return tuple(sorted(CHECKS.glob("ch*")))
 
 
@@ -26,7 +26,7 @@ def chapter(assignment: str) -> Path:
     """Return an assignment's source folder.
 
     Raises:
-        UsageError: there is none of that name; says which there are.
+        UsageError: it does not exist; the message lists the existing ones.
     """
     folder = CHAPTERS / assignment
     if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
@@ -38,7 +38,7 @@ def world(name: str) -> Path:
     """Return the path of a world of the course.
 
     Raises:
-        UsageError: there is none of that name; says which there are.
+        UsageError: it does not exist; the message lists the existing ones.
     """
     path = WORLDS / f"{name}.yaml"
     if not path.is_file():

@@ -1,4 +1,4 @@
-"""The ROS 2 packages of a source tree, by the names in their manifests. Texts only: nothing is imported or run."""
+"""Finds the ROS 2 packages of a source tree by their package.xml. Nothing is imported or executed."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buil
 
 @dataclass(frozen=True)
 class PackageTexts:
-    """What a package.xml names, as its text has it: whether ROS would accept it, `probes.manifest` says.
+    """The names in a package.xml. They are not validated here; `probes.manifest` does that.
 
     Attributes:
-        name: the package's.
-        depends: what it needs to be built and to run.
-        groups: of which dependency groups it is a member.
+        name: name of the package.
+        depends: names of the packages that it needs, to be built or to run.
+        groups: names of the dependency groups of which it is a member.
     """
 
     name: str
@@ -30,7 +30,7 @@ def read_texts(manifest: Path) -> PackageTexts:
     """Read a package.xml of at most `MAX_MANIFEST` bytes.
 
     Raises:
-        xml.etree.ElementTree.ParseError: it is no well-formed XML.
+        xml.etree.ElementTree.ParseError: it is not well-formed XML.
     """
     root = ET.fromstring(manifest.read_bytes())
     return PackageTexts(
@@ -41,19 +41,25 @@ def read_texts(manifest: Path) -> PackageTexts:
 
 
 def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
-    """Return the packages by name, and what is wrong with each folder whose package.xml cannot be read."""
+    """Find the packages below a folder.
+
+    Returns:
+        The folder of each package by its name, and an error sentence for each folder with an unreadable package.xml.
+    """
     found: dict[str, Path] = {}
     broken: dict[Path, str] = {}
     for manifest in sorted(source.rglob(MANIFEST)):
-        if manifest.is_symlink() or not manifest.is_file():  # a set-up script may have left a pipe that nobody fills
+        if (
+            manifest.is_symlink() or not manifest.is_file()
+        ):  # reading a named pipe, which a set-up script may have made, would never end
             continue
         where = manifest.relative_to(source)
         if manifest.stat().st_size > MAX_MANIFEST:
-            broken[manifest.parent] = f"src/{where} is far larger than a manifest."
+            broken[manifest.parent] = f"src/{where} is larger than {MAX_MANIFEST // 1024} KiB: shorten it."
             continue
         try:
             found[read_texts(manifest).name] = manifest.parent
         except ET.ParseError as error:
-            sentence = f"src/{where} is no well-formed XML ({error}): mend that line, colcon cannot read the package."
+            sentence = f"src/{where} is not well-formed XML ({error}): correct that line for colcon."
             broken[manifest.parent] = sentence
     return found, broken

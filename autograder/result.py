@@ -1,6 +1,6 @@
-"""A graded submission as data: what the trusted process recorded, and nothing else.
+"""The result of grading a submission, as the trusted process records it, and its JSON form.
 
-The JSON form is published in `result.schema.json` beside this module; fields are only ever added to it.
+`result.schema.json` beside this module describes the JSON form. Fields are only added to it.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import UsageError
 
 SCHEMA = "autograder-result/1"
-HARMLESS = 0.1  # s, one period at 10 Hz: no check minds if what it meets in real time is held up for that long
+MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that is held up for so long loses no check
 
 
 class Status(str, Enum):
-    """Whether the grader reached a verdict at all."""
+    """Whether the grader reached a result."""
 
     GRADED = "graded"
     NOT_GRADED = "not_graded"
@@ -33,7 +33,14 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What became of one check; `points` is what it earned."""
+    """The result of one check.
+
+    Attributes:
+        points: points that the check earned, of `max_points`.
+        message: what is wrong, or an empty string.
+        doc: address of a page to read, or None.
+        seconds: wall time of the check.
+    """
 
     id: str
     title: str
@@ -51,7 +58,15 @@ class CheckResult:
     def of(
         cls, check: Check, outcome: Outcome, message: str = "", *, fraction: float = 0.0, seconds: float = 0.0
     ) -> CheckResult:
-        """Make the record of `check`: full points when passed, the fraction when failed, else none."""
+        """Return the result of a check.
+
+        Args:
+            check: the check.
+            outcome: its outcome. A check that was not checked has no points.
+            message: what is wrong.
+            fraction: share of the points, 0 to 1, that the check earns if it failed.
+            seconds: wall time of the check.
+        """
         share = {Outcome.PASSED: 1.0, Outcome.FAILED: fraction, Outcome.NOT_CHECKED: 0.0}[outcome]
         hints = () if outcome is Outcome.PASSED else check.hints
         return cls(
@@ -71,7 +86,7 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Build:
-    """How building the student's packages went; `log` is the end of colcon's output."""
+    """The result of building the student's packages. `log` is the end of colcon's output."""
 
     ok: bool
     seconds: float
@@ -81,13 +96,15 @@ class Build:
 
 @dataclass(frozen=True)
 class Artifact:
-    """A file that grading left beside the result: a track's recording or picture.
+    """A file beside the result, such as the picture of a track.
 
     Attributes:
-        name: its path below the result's folder.
-        sha256: of the file, or of the behaviour that it records when the bytes may differ from run to run.
-        check: the check that it belongs to.
-        caption: what the picture shows, in words.
+        name: path of the file, below the folder of the result.
+        kind: kind of the artifact, such as "track".
+        sha256: digest of the file. For a track it is the digest of the recording, because the bytes of a picture may
+            differ from run to run.
+        check: id of the check that saved it.
+        caption: alternative text of the picture.
     """
 
     name: str
@@ -99,10 +116,15 @@ class Artifact:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that is known about one graded submission.
+    """Everything that is recorded of one graded submission.
 
-    `time` is "real" when a program's time could not be stepped; `time_note` says which and why, in a sentence.
-    `held_up` is for how many seconds at a time, at most, a busy machine then kept it, or the grader, from running.
+    Attributes:
+        started: start of the grading, in ISO 8601.
+        seconds: wall time of the grading.
+        phases: wall time of each phase, in seconds.
+        time: "lockstep", or "real" if a program's time could not be stepped.
+        time_note: the sentence that names that program and the reason.
+        held_up: the longest time, in seconds, for which a busy machine held up that program or the grader.
     """
 
     assignment: str
@@ -126,7 +148,7 @@ class Result:
 
     @property
     def score(self) -> float:
-        """The points earned; 0 when not graded, which `status` tells apart from a zero."""
+        """The points earned. It is 0 if the submission was not graded; see `status`."""
         return round(math.fsum(check.points for check in self.checks), 4)
 
     @property
@@ -136,16 +158,16 @@ class Result:
 
     @property
     def in_doubt(self) -> bool:
-        """Whether points that were lost in real time may be the busy machine's fault."""
+        """Whether points may have been lost because the machine was busy."""
         lost = any(check.outcome is Outcome.FAILED for check in self.checks)
-        return self.time == "real" and self.held_up > HARMLESS and lost
+        return self.time == "real" and self.held_up > MAX_HARMLESS_DELAY and lost
 
     def group(self, name: str) -> tuple[CheckResult, ...]:
         """Return the checks that count for one locked grade cell."""
         return tuple(check for check in self.checks if check.group == name)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the published JSON form."""
+        """Return the JSON form."""
         plain = {"schema": SCHEMA, **dataclasses.asdict(self), "score": self.score}
         return json.loads(json.dumps(plain, default=_enum_value))  # type: ignore[no-any-return]
 
@@ -158,17 +180,21 @@ def _enum_value(value: object) -> object:
 
 @cache
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of a result."""
+    """Return the JSON Schema of the JSON form."""
     return json.loads(Path(__file__).with_name("result.schema.json").read_text(encoding="utf-8"))  # type: ignore[no-any-return]
 
 
 def from_json(data: object, *, source: str = "result") -> Result:
-    """Rebuild a result from its JSON form.
+    """Return the result that a JSON form describes.
+
+    Args:
+        data: the JSON form, as `json.loads` returns it.
+        source: name of the file, for the error.
 
     Raises:
-        UsageError: `data` does not follow the published schema; names `source` and the field.
+        UsageError: `data` does not match the schema. The message names `source` and the field.
     """
-    import jsonschema  # takes a second to import, which workers need not spend
+    import jsonschema  # imported here because it takes a second, and workers do not need it
 
     try:
         jsonschema.validate(data, schema())
@@ -176,22 +202,24 @@ def from_json(data: object, *, source: str = "result") -> Result:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
         raise UsageError(f"{source}: not a grading result: {field}: {error.message}") from None
     assert isinstance(data, dict)
-    fields = _known(Result, data)
+    fields = _known_fields(Result, data)
     fields["status"] = Status(fields["status"])
-    diagnosis = _known(Diagnosis, fields["diagnosis"])
+    diagnosis = _known_fields(Diagnosis, fields["diagnosis"])
     try:
         fields["diagnosis"] = Diagnosis(**{**diagnosis, "kind": Kind(diagnosis["kind"])})
     except ValueError as error:
         raise UsageError(f"{source}: not a grading result of this version: diagnosis.kind: {error}") from None
     fields["checks"] = tuple(_check_from_json(item) for item in fields["checks"])
     if fields["build"] is not None:
-        fields["build"] = Build(**{**_known(Build, fields["build"]), "packages": tuple(fields["build"]["packages"])})
-    fields["artifacts"] = tuple(Artifact(**_known(Artifact, item)) for item in fields["artifacts"])
+        fields["build"] = Build(
+            **{**_known_fields(Build, fields["build"]), "packages": tuple(fields["build"]["packages"])}
+        )
+    fields["artifacts"] = tuple(Artifact(**_known_fields(Artifact, item)) for item in fields["artifacts"])
     return Result(**fields)
 
 
-def _known(kind: type, item: dict[str, Any]) -> dict[str, Any]:
-    """Keep what this version knows; a later one may have added fields."""
+def _known_fields(kind: type, item: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields that this version knows. A later version may have added others."""
     names = {field.name for field in dataclasses.fields(kind)}
     return {name: value for name, value in item.items() if name in names}
 
@@ -199,7 +227,7 @@ def _known(kind: type, item: dict[str, Any]) -> dict[str, Any]:
 def _check_from_json(item: dict[str, Any]) -> CheckResult:
     return CheckResult(
         **{
-            **_known(CheckResult, item),
+            **_known_fields(CheckResult, item),
             "outcome": Outcome(item["outcome"]),
             "visibility": Visibility(item["visibility"]),
             "hints": tuple(item["hints"]),
@@ -208,10 +236,15 @@ def _check_from_json(item: dict[str, Any]) -> CheckResult:
 
 
 def write_json(path: Path, data: object) -> None:
-    """Write JSON whole or not at all: to a file beside `path` first, then renamed over it."""
+    """Write JSON atomically."""
+    text = json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n"
+    # Half a surrogate pair, which a file name that is not UTF-8 gives, is written as a JSON escape.
+    write_atomically(path, text.encode("utf-8", "backslashreplace"))
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a file beside `path`, and rename it to `path`. Its folder is created if it does not exist."""
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    text = json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n"
-    # Half a surrogate pair (a file name that is no UTF-8) becomes the JSON escape that it came from.
-    fresh.write_bytes(text.encode("utf-8", "backslashreplace"))
+    fresh.write_bytes(data)
     fresh.replace(path)

@@ -96,7 +96,7 @@ TURNS = _check(
     doc="https://docs.ros.org/en/jazzy/p/sensor_msgs/",
 )
 STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", depends=("turns",))
-LATE = _check("late", "A secret for after the due date.", 1, "safety", visibility=Visibility.AFTER_DUE)
+LATE = _check("late", "The robot starts in time.", 1, "safety")
 
 
 @pytest.fixture
@@ -122,7 +122,7 @@ def make_result() -> MakeResult:
                 CheckResult.of(LISTENS, Outcome.PASSED, seconds=0.2),
                 CheckResult.of(TURNS, Outcome.FAILED, "it kept driving: 0.08 m from the north wall", fraction=0.25),
                 CheckResult.of(STOPS, Outcome.NOT_CHECKED, "not checked: the robot does not turn yet"),
-                CheckResult.of(LATE, Outcome.FAILED, "a message for after the due date"),
+                CheckResult.of(LATE, Outcome.FAILED, "it starts after 3 s"),
             ),
             "max_score": 10.0,
             "started": "2026-05-04T09:00:00+00:00",

@@ -37,11 +37,10 @@ PREFIX = "test_"
 
 
 class Visibility(str, Enum):
-    """Who sees a check, and when."""
+    """Whether students get the source of a check."""
 
     VISIBLE = "visible"
     HIDDEN = "hidden"
-    AFTER_DUE = "after_due"
 
 
 class Outcome(str, Enum):

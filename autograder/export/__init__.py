@@ -1,7 +1,6 @@
-"""Stored results turned into what others read: spreadsheets, CI, Gradescope, a web page, a report in Markdown.
+"""Exports stored results: CSV, JUnit XML, Gradescope, HTML and Markdown.
 
-`write(load(path), "csv", out)` reads every result below `path` and writes one format; `FORMATS` names them. Nothing
-is graded here.
+`write(load(path), "csv", out)` reads every result below `path` and writes one of `FORMATS`.
 """
 
 from autograder.export.formats import FORMATS, write

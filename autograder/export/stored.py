@@ -1,4 +1,4 @@
-"""Results as grading stored them: a JSON file of one or of a list, or a folder that holds such files."""
+"""Reads stored results: a JSON file of one result or of a list, or a folder with such files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MANY = "results.json"
 
 @dataclass(frozen=True)
 class Stored:
-    """A result and the folder that its artifacts are in."""
+    """A result and the folder of its artifacts."""
 
     result: Result
     folder: Path
@@ -25,11 +25,12 @@ def load(path: Path) -> tuple[Stored, ...]:
     """Read the results at `path`.
 
     Args:
-        path: a result, a list of results (the artifacts of each in the folder beside it that is named after the
-            student), or a folder with a `result.json` in it or below it; one that has none may hold a `results.json`.
+        path: a file with a result or a list of results, or a folder with `result.json` files in it or below it. If
+            there is none, `results.json` in the folder is read. The artifacts of a result in a list are in the
+            folder that has the name of the student, beside the file.
 
     Raises:
-        UsageError: there is nothing to read, or a file is no result; names the file.
+        UsageError: there is nothing to read, or a file holds no result. The message names the file.
     """
     if not path.exists():
         raise UsageError(f"{path}: no such file or folder; give the folder that `autograder grade --out` wrote")

@@ -1,7 +1,7 @@
-"""What a student reads after grading: one self-contained HTML page a submission, and a table of them for a class.
+"""Writes feedback as self-contained HTML: a page for each submission, and a table for a class.
 
-`write(result, folder)` makes `folder/feedback.html` with the pictures found in the same folder; `write_summary(results,
-folder)` makes `folder/index.html`, which links to `<student>/feedback.html`.
+`write(result, folder)` writes `folder/feedback.html` with the pictures in the same folder. `write_summary(results,
+folder)` writes `folder/index.html`, which links to `<student>/feedback.html`.
 """
 
 from autograder.feedback.pages import PAGE, SUMMARY, write, write_summary

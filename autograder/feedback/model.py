@@ -1,12 +1,12 @@
-"""A result as its reader sees it: what is shown, in which order and under which heading. Pure; no markup here."""
+"""Arranges a result for a feedback page, without any markup."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from urllib.parse import urlsplit
 
-from autograder.checks import Outcome, Visibility
+from autograder.checks import Outcome
 from autograder.diagnosis import Kind
 from autograder.feedback.text import clean
 from autograder.result import Artifact, CheckResult, Result, Status
@@ -14,7 +14,7 @@ from autograder.result import Artifact, CheckResult, Result, Status
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture to show: its data URI, or None where the file is gone, and what it shows in words."""
+    """A picture on a page: its data URI, or None if the file is missing, and its alternative text."""
 
     uri: str | None
     caption: str
@@ -22,7 +22,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class CheckView:
-    """One check as shown. `outcome` is a word; `doc` is a link that is safe to follow, or None."""
+    """A check on a page. `outcome` is in words. `doc` is an http or https address, or None."""
 
     id: str
     title: str
@@ -37,73 +37,66 @@ class CheckView:
 
 @dataclass(frozen=True)
 class GroupView:
-    """The checks that count for one locked grade cell; `withheld` of them stay closed until the due date."""
+    """The checks that count for one locked grade cell."""
 
     name: str
     points: float
     max_points: float
     checks: tuple[CheckView, ...]
-    withheld: int
 
 
 @dataclass(frozen=True)
 class PageView:
-    """All that a feedback page says.
+    """The content of a feedback page.
 
     Attributes:
-        graded: False when the grader itself failed; then there is no score to show.
-        good: the submission came to life; nothing to diagnose.
-        first: the check to begin with, the first one that failed, or None.
-        pictures: those that belong to no check.
+        graded: whether there is a score. There is none if the grader failed.
+        started: whether the submission was built and started, so that there is no diagnosis to show.
+        groups: the groups of checks, in the order of the suite.
+        first: the first check that failed, or None.
+        pictures: pictures that belong to no check.
     """
 
     result: Result
     graded: bool
-    good: bool
+    started: bool
     groups: tuple[GroupView, ...]
     first: CheckView | None
     pictures: tuple[Picture, ...]
 
     @property
     def percent(self) -> int:
-        """The score in whole per cent, never rounded up to 100."""
+        """The score in per cent, rounded down."""
         return int(self.result.percent + 1e-9)
 
 
-def view(result: Result, picture: Callable[[Artifact], Picture | None], *, after_due: bool = False) -> PageView:
-    """Lay out a result.
+def page_view(result: Result, picture: Callable[[Artifact], Picture | None]) -> PageView:
+    """Return the content of the page of a result.
 
     Args:
-        result: what to show.
-        picture: turns an artifact into a picture, None for one that is no picture.
-        after_due: also show the checks that stay closed until the due date.
+        result: the result to show.
+        picture: function that returns the picture of an artifact, or None if the artifact is not a picture.
     """
-    shown = {check.id for check in result.checks if after_due or check.visibility is not Visibility.AFTER_DUE}
     known = {check.id for check in result.checks}
     pictures: dict[str, list[Picture]] = {}
     for artifact in result.artifacts:
-        if artifact.check in known - shown:
-            continue
         found = picture(artifact)
         if found is not None:
-            pictures.setdefault(artifact.check if artifact.check in shown else "", []).append(found)
-    groups = tuple(
-        _group(name, result.group(name), shown, pictures) for name in dict.fromkeys(c.group for c in result.checks)
-    )
+            pictures.setdefault(artifact.check if artifact.check in known else "", []).append(found)
+    groups = tuple(_group(name, result.group(name), pictures) for name in dict.fromkeys(c.group for c in result.checks))
     checks = [check for group in groups for check in group.checks]
     return PageView(
         result=result,
         graded=result.status is Status.GRADED,
-        good=result.diagnosis.kind is Kind.OK,
+        started=result.diagnosis.kind is Kind.OK,
         groups=groups,
         first=next((check for check in checks if check.outcome == Outcome.FAILED.words), None),
         pictures=tuple(pictures.get("", ())),
     )
 
 
-def _group(name: str, checks: Iterable[CheckResult], shown: set[str], pictures: dict[str, list[Picture]]) -> GroupView:
-    checks = tuple(checks)
-    views = [_check(check, tuple(pictures.get(check.id, ()))) for check in checks if check.id in shown]
+def _group(name: str, checks: Sequence[CheckResult], pictures: dict[str, list[Picture]]) -> GroupView:
+    views = [_check(check, tuple(pictures.get(check.id, ()))) for check in checks]
     views = [
         replace(after, message="") if _repeats(before, after) else after
         for before, after in zip([None, *views], views, strict=False)
@@ -113,14 +106,13 @@ def _group(name: str, checks: Iterable[CheckResult], shown: set[str], pictures: 
         points=sum(check.points for check in checks),
         max_points=sum(check.max_points for check in checks),
         checks=tuple(views),
-        withheld=len(checks) - len(views),
     )
 
 
 def _repeats(before: CheckView | None, after: CheckView) -> bool:
-    """Return whether a check was left out for the reason that stands just above it."""
-    idle = after.outcome == Outcome.NOT_CHECKED.words
-    return before is not None and idle and (before.outcome, before.message) == (after.outcome, after.message)
+    """Return whether a check was not checked for the same reason as the check before it."""
+    skipped = after.outcome == Outcome.NOT_CHECKED.words
+    return before is not None and skipped and (before.outcome, before.message) == (after.outcome, after.message)
 
 
 def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:
@@ -138,7 +130,7 @@ def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:
 
 
 def safe_link(address: str | None) -> str | None:
-    """Return `address` when it is a web address, else None."""
+    """Return `address` if it is an http or https address, and None otherwise."""
     if address is None or urlsplit(address).scheme not in ("http", "https"):
         return None
     return address

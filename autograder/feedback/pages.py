@@ -1,8 +1,7 @@
-"""Pages from the report templates. Everything is escaped; a page loads nothing and runs nothing."""
+"""Renders the pages from the templates. All text is escaped. A page loads no other file and has no script."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -12,11 +11,11 @@ import jinja2
 from markupsafe import Markup
 
 from autograder import layout
-from autograder.checks import Outcome, Visibility
-from autograder.feedback.model import view
-from autograder.feedback.pictures import from_folder
+from autograder.checks import Outcome
+from autograder.feedback.model import page_view
+from autograder.feedback.pictures import picture_reader
 from autograder.feedback.text import NOT_GRADED, clean, number
-from autograder.result import Result, Status
+from autograder.result import Result, Status, write_atomically
 
 TEMPLATES = layout.ROOT / "assets" / "templates"
 PAGE = "feedback.html"
@@ -25,7 +24,7 @@ SUMMARY = "index.html"
 
 @cache
 def environment() -> jinja2.Environment:
-    """Return the template environment: everything escaped, an unknown name is an error."""
+    """Return the template environment. It escapes all text and raises for an unknown name."""
 
     def presentable(value: object) -> object:
         return clean(value) if isinstance(value, str) and not isinstance(value, Markup) else value
@@ -44,27 +43,25 @@ def environment() -> jinja2.Environment:
     return found
 
 
-def write(result: Result, folder: Path, *, artifacts: Path | None = None, after_due: bool = False) -> Path:
+def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Path:
     """Write the feedback page of one submission and return its path.
 
     Args:
-        result: the graded submission.
-        folder: where `feedback.html` goes.
-        artifacts: the result's folder, from which its pictures are read; by default the same.
-        after_due: also show the checks that stay closed until the due date.
+        result: the result to show.
+        folder: folder that gets `feedback.html`.
+        artifacts: folder of the result's pictures; `folder` if it is None.
 
     Raises:
-        UsageError: an artifact's name leads out of its folder.
+        UsageError: the path of an artifact leads out of its folder.
     """
-    page = view(result, from_folder(artifacts or folder), after_due=after_due)
-    return _put(folder / PAGE, environment().get_template("feedback.html.j2").render(page=page))
+    page = page_view(result, picture_reader(artifacts or folder))
+    return _write(folder / PAGE, environment().get_template("feedback.html.j2").render(page=page))
 
 
-def write_summary(results: Sequence[Result], folder: Path, *, after_due: bool = False) -> Path:
+def write_summary(results: Sequence[Result], folder: Path) -> Path:
     """Write the table of a class's submissions and return its path.
 
-    A submission's row links to `folder/<student>/feedback.html` where that file exists. `after_due` also names the
-    checks that stay closed until the due date.
+    The row of a submission links to `folder/<student>/feedback.html` if that file exists.
     """
     graded = [result for result in results if result.status is Status.GRADED]
     html = (
@@ -72,13 +69,13 @@ def write_summary(results: Sequence[Result], folder: Path, *, after_due: bool = 
         .get_template("summary.html.j2")
         .render(
             assignments=list(dict.fromkeys(result.assignment for result in results)),
-            rows=[(result, _link(result, folder), _reason(result, after_due)) for result in results],
+            rows=[(result, _link(result, folder), _reason(result)) for result in results],
             graded=graded,
             mean=mean(result.percent for result in graded) if graded else None,
-            missed=_missed(graded, after_due),
+            missed=_missed(graded),
         )
     )
-    return _put(folder / SUMMARY, html)
+    return _write(folder / SUMMARY, html)
 
 
 def _link(result: Result, folder: Path) -> str | None:
@@ -87,31 +84,25 @@ def _link(result: Result, folder: Path) -> str | None:
     return f"{result.student}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
 
 
-def _reason(result: Result, after_due: bool) -> str:
-    """Say in one sentence why points are missing."""
-    page = view(result, lambda artifact: None, after_due=after_due)
-    if not page.good:
+def _reason(result: Result) -> str:
+    """Return a sentence that says why points are missing."""
+    page = page_view(result, lambda artifact: None)
+    if not page.started:
         return result.diagnosis.sentence
     if not page.graded:
         return NOT_GRADED
     return (page.first.message or page.first.title) if page.first else ""
 
 
-def _missed(results: Sequence[Result], after_due: bool) -> list[tuple[str, int, int]]:
-    """Return (title, passed, of how many) of each check that someone did not pass, the most missed first."""
+def _missed(results: Sequence[Result]) -> list[tuple[str, int, int]]:
+    """Return (title, passed, graded) of each check that a submission did not pass, the most missed first."""
     counts: dict[str, tuple[str, int, int]] = {}
     for check in (check for result in results for check in result.checks):
-        if check.visibility is Visibility.AFTER_DUE and not after_due:
-            continue
         title, passed, total = counts.get(check.id, (check.title, 0, 0))
         counts[check.id] = (title, passed + (check.outcome is Outcome.PASSED), total + 1)
     return sorted((entry for entry in counts.values() if entry[1] < entry[2]), key=lambda e: e[1] / e[2])
 
 
-def _put(path: Path, html: str) -> Path:
-    """Write a page whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    fresh.write_text(html, encoding="utf-8")
-    fresh.replace(path)
+def _write(path: Path, html: str) -> Path:
+    write_atomically(path, html.encode("utf-8"))
     return path

@@ -1,4 +1,4 @@
-"""Pictures that grading left beside a result, put into the page itself."""
+"""Reads the pictures beside a result as data URIs, for use in a page."""
 
 from __future__ import annotations
 
@@ -14,21 +14,23 @@ MEDIA_TYPES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 
 
 def picture_file(artifact: Artifact, folder: Path) -> Path | None:
-    """Return where an artifact's picture is, or None for an artifact that is no picture.
+    """Return the path of an artifact's picture, or None if the artifact is not a picture.
 
     Raises:
-        UsageError: the artifact's name leads out of `folder`.
+        UsageError: the path of the artifact leads out of `folder`.
     """
     if Path(artifact.name).suffix.lower() not in MEDIA_TYPES:
         return None
     path = (folder / artifact.name).resolve()
     if not path.is_relative_to(folder.resolve()):
-        raise UsageError(f"{folder}: the artifact {artifact.name!r} lies outside the result's folder; it is not shown")
+        raise UsageError(
+            f"{folder}: the artifact {artifact.name!r} lies outside the result's folder; correct result.json"
+        )
     return path
 
 
-def from_folder(folder: Path) -> Callable[[Artifact], Picture | None]:
-    """Return a reader of the artifacts in a result's folder."""
+def picture_reader(folder: Path) -> Callable[[Artifact], Picture | None]:
+    """Return a function that reads the picture of an artifact in `folder`. It returns None if there is no picture."""
 
     def read(artifact: Artifact) -> Picture | None:
         path = picture_file(artifact, folder)

@@ -1,9 +1,9 @@
-"""Grading: from what was handed in to a result.
+"""Grades a submission and returns its result.
 
-    submission -> intake -> notebook (hygiene, extract) -> build -> checks -> result
+    submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
 
-`grade_submission` starts a worker for one submission in a cell of its own; the worker (`worker.py`) goes through the
-phases, running students' code in sandboxes only. The proof's many submissions share a few workers (`lanes.py`).
+`grade_submission` starts a worker (`worker.py`) for one submission in a cell of its own. The worker goes through the
+phases and runs students' code only in sandboxes. The proof's many submissions share a few workers (`lanes.py`).
 """
 
 from autograder.grading.pipeline import DEFAULT_SEED, Graded, grade_submission

@@ -112,7 +112,7 @@ def _of_folder(folder: Path, assignment: str) -> Iterator[Entry]:
 def _stored(entry: Entry, assignment: str, seed: int, isolation: Tier, folder: Path) -> Result | None:
     try:
         result = from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
-        digest = intake.take(entry.path, assignment).sha256
+        digest = intake.read_submission(entry.path, assignment).sha256
     except (OSError, ValueError, AutograderError):
         return None
     suite = suites.hidden(assignment)

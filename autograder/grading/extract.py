@@ -1,4 +1,4 @@
-"""Extraction: the notebook runs in a sandboxed kernel, and its files land in a fresh workspace."""
+"""Runs a submitted notebook in a sandboxed kernel. Its cells write files into a fresh workspace."""
 
 from __future__ import annotations
 
@@ -26,45 +26,49 @@ from autograder.workspace import Workspace
 from sim.grading import GRADING_VARIABLE
 
 CELL_SECONDS = 60
-MAX_OUTPUT = 4 * 1024 * 1024
+MAX_OUTPUT = 4 * 1024 * 1024  # characters
 WRITEFILE = "%%writefile "
 
 
 def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, out: Path) -> None:
-    """Mend a submitted notebook after its source notebook, run it, and keep it as it ran.
+    """Restore the cells of a submitted notebook that students may not change, run it, and save it with its outputs.
 
     Args:
-        submitted: the notebook as it was handed in.
-        original: the path of the source notebook.
-        folder: the assignment's folder, with `ws/` in it; the notebook may write there.
-        workspace: says which ROS 2 and which scratch folder are used.
-        out: where the executed notebook is written.
+        submitted: content of the submitted notebook.
+        original: path of the source notebook.
+        folder: folder of the assignment, with `ws/`. The notebook may write there.
+        workspace: workspace whose ROS 2 and scratch folder are used.
+        out: path of the executed notebook.
 
     Raises:
-        StudentError: what was handed in is no notebook, or keeps its kernel from starting.
+        StudentError: the submission is not a notebook, or its files keep the kernel from starting.
     """
     source = nbformat.read(original, as_version=4)
     notebook = submitted_notebook.restore(submitted_notebook.read(submitted, original.name), source)
     executed = nbformat.writes(execute(notebook, folder, workspace))
-    # Half a surrogate pair, in a cell or in what it printed, is no UTF-8: it must not fail the grader.
+    # Half a surrogate pair, in a cell or its output, is not UTF-8.
     out.write_bytes(executed.encode("utf-8", errors="replace"))
 
 
 def execute(
     notebook: NotebookNode, folder: Path, workspace: Workspace, *, cell_seconds: int = CELL_SECONDS
 ) -> NotebookNode:
-    """Run a notebook in `folder`, in a sandboxed kernel; its outputs are filled in, in place.
+    """Run a notebook in a sandboxed kernel, and write the outputs into its cells.
 
-    A cell that raises does not stop the run; a kernel that dies does, and the files written so far count.
+    A cell that raises does not end the run. A kernel that dies ends it, and the files written before it count.
 
     Args:
-        notebook: after hygiene.
-        folder: the assignment's folder, with `ws/` in it; the notebook may write there.
-        workspace: says which ROS 2 and which scratch folder are used.
-        cell_seconds: how long one cell may run; one that takes longer ends the run.
+        notebook: the restored notebook.
+        folder: folder of the assignment, with `ws/`, in which the kernel runs. The notebook may write there.
+        workspace: workspace whose ROS 2 and scratch folder are used.
+        cell_seconds: wall time that one cell may take. A cell that takes longer ends the run.
+
+    Returns:
+        The same notebook.
 
     Raises:
-        StudentError: something of the submission keeps the kernel from starting.
+        StudentError: a file of the submission keeps the kernel from starting.
+        GraderError: the kernel does not answer for another reason.
     """
     connections = workspace.scratch / "jupyter"
     connections.mkdir(exist_ok=True)
@@ -75,7 +79,7 @@ def execute(
         client.execute()
     except (DeadKernelError, CellTimeoutError):
         return notebook
-    except RuntimeError as error:  # what nbclient raises when the kernel does not come up
+    except RuntimeError as error:  # nbclient raises it if the kernel does not start
         raise _no_kernel(manager, error) from error
     finally:
         manager.end()
@@ -83,7 +87,7 @@ def execute(
 
 
 class _Client(NotebookClient):
-    """nbclient, with a bound on what the kernel may send and cells that are left out."""
+    """Runs a notebook without the cells in `skipped`, and kills a kernel that sends more than `MAX_OUTPUT`."""
 
     def __init__(self, notebook: NotebookNode, *, skipped: set[int], **options: Any) -> None:
         super().__init__(notebook, **options)
@@ -105,13 +109,13 @@ class _Client(NotebookClient):
 
 
 def _no_kernel(manager: SandboxedKernelManager, error: RuntimeError) -> Exception:
-    """Tell a kernel that died while it started, which a submitted file can do, from one that was never heard."""
+    """Return a StudentError if the kernel died, which a submitted file can cause, and a GraderError otherwise."""
     process = manager.process
     if process is None or process.ending is None:
         return GraderError(f"the sandboxed kernel did not answer: {error}")
     sentence = (
         "The notebook's kernel could not start: a file beside the notebook, such as ipykernel_launcher.py, "
-        "stands in the way of a module of the same name. Rename or remove it."
+        "hides a module of the same name. Rename or remove it."
     )
     return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output)))
 
@@ -131,7 +135,7 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment = {
         **workspace.environment(),
         GRADING_VARIABLE: "1",
-        "USER": "student",  # the sandbox has no list of users, and ros2 pkg create asks for one
+        "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create asks for the user's name
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
         "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
         "JUPYTER_RUNTIME_DIR": str(workspace.scratch / "jupyter"),

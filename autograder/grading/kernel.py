@@ -1,4 +1,4 @@
-"""A Jupyter kernel in the sandbox: a kernel provisioner, which is Jupyter's own way to say where a kernel runs."""
+"""Starts a Jupyter kernel in the sandbox, by a kernel provisioner and a kernel manager."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from autograder.sandbox.launcher import launch
 
 
 class SandboxedProvisioner(KernelProvisionerBase):
-    """Starts a kernel as a watched process in a sandbox. `sandbox` must be set before it is launched."""
+    """Starts a kernel as a process in `sandbox`, which must be set before `launch_kernel`."""
 
     sandbox: Sandbox | None = None
     process: Process | None = None
-    started: Process | None = None  # kept when Jupyter forgets the process
+    started: Process | None = None  # the process, even after `wait` has reset `process`
 
     @property
     def has_process(self) -> bool:
@@ -64,7 +64,7 @@ class SandboxedProvisioner(KernelProvisionerBase):
 
 
 class _OneKernel(KernelSpecManager):
-    """Knows the grader's own Python only, whatever the notebook or the machine names."""
+    """Returns the grader's own Python for every kernel name."""
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
         return KernelSpec(
@@ -75,7 +75,7 @@ class _OneKernel(KernelSpecManager):
 
 
 class SandboxedKernelManager(AsyncKernelManager):
-    """Starts its kernel in a sandbox, reached by sockets in a folder instead of ports."""
+    """Starts a kernel in a sandbox. It connects to it by Unix sockets in a folder, not by ports."""
 
     def __init__(self, sandbox: Sandbox, connections: Path) -> None:
         super().__init__(
@@ -84,16 +84,16 @@ class SandboxedKernelManager(AsyncKernelManager):
             connection_file=str(connections / "k.json"),
             ip=str(connections / "k"),
         )
-        self._place = SandboxedProvisioner(kernel_id="student", kernel_spec=self.kernel_spec, parent=self)
-        self._place.sandbox = sandbox
-        self.provisioner = self._place
+        self._provisioner = SandboxedProvisioner(kernel_id="student", kernel_spec=self.kernel_spec, parent=self)
+        self._provisioner.sandbox = sandbox
+        self.provisioner = self._provisioner
 
     @property
     def process(self) -> Process | None:
-        """The kernel's process, from its start on."""
-        return self._place.started
+        """The process of the kernel, or None before its start."""
+        return self._provisioner.started
 
     def end(self) -> None:
-        """Leave nothing of the kernel alive, whatever Jupyter believes of it."""
+        """Kill the kernel, even if Jupyter regards it as ended."""
         if self.process is not None:
             self.process.kill()

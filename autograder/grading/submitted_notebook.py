@@ -1,7 +1,7 @@
-"""Notebook hygiene: a submitted notebook gets back what a student may not change.
+"""Restores the cells of a submitted notebook that students may not change.
 
-Locked cells are restored from the source notebook, deleted ones are added again, copies lose their claim to a grade.
-Points, cell types and grade ids come from the source notebook, never from the submission.
+Locked cells get the text of the source notebook. Deleted cells are added again. Copies of graded cells lose their grade
+id. Points, cell types and grade ids come from the source notebook, never from the submission.
 """
 
 from __future__ import annotations
@@ -20,30 +20,35 @@ STUB = "YOUR CODE HERE"
 
 
 def read(data: bytes, name: str) -> NotebookNode:
-    """Read a notebook of the current format.
+    """Read a submitted notebook.
+
+    Args:
+        data: content of the file.
+        name: file name, for the error.
 
     Raises:
-        StudentError: it is no JSON, no notebook, or one of another format.
+        StudentError: the file is not JSON, not a notebook or one of another format, or it has too many cells.
     """
     try:
         notebook = nbformat.reads(data.decode("utf-8"), as_version=4)
         nbformat.validate(notebook)
-    except Exception as error:  # nbformat passes on whatever a malformed structure makes it trip over
+    except Exception as error:  # nbformat raises any exception for a malformed structure
         reason = str(error).strip().splitlines()[0][:200] if str(error).strip() else type(error).__name__
         sentence = (
             f"{name} cannot be read as a notebook ({reason}): open it in JupyterLab, save it and hand it in again."
         )
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
     if len(notebook.cells) > MAX_CELLS:
-        raise StudentError(Diagnosis(Kind.UNREADABLE, f"{name} has {len(notebook.cells)} cells, {MAX_CELLS} at most."))
+        sentence = f"{name} has {len(notebook.cells)} cells: at most {MAX_CELLS} are allowed."
+        raise StudentError(Diagnosis(Kind.UNREADABLE, sentence))
     return notebook
 
 
 def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
-    """Return the submitted notebook with every cell that nbgrader marks as the source notebook has it.
+    """Return a copy of the submitted notebook with the source notebook's nbgrader cells, and without outputs.
 
-    Cells that the student may edit keep the student's text, and are empty where the student deleted them. Outputs are
-    dropped.
+    Cells that students may edit keep the student's text. If the student deleted such a cell, it comes back with a
+    comment that says so.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
     notebook = copy.deepcopy(submitted)
@@ -53,16 +58,16 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
         cell.metadata.pop("nbgrader", None)
         if name in originals and name not in seen:
             seen.add(name)
-            _mend(cell, originals[name])
+            _restore_cell(cell, originals[name])
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-    notebook.cells += [_put_back(cell) for name, cell in originals.items() if name not in seen]
+    notebook.cells += [_restored_cell(cell) for name, cell in originals.items() if name not in seen]
     notebook.metadata = copy.deepcopy(source.metadata)
     return notebook
 
 
-def _put_back(original: NotebookNode) -> NotebookNode:
-    """Return a cell that the student deleted; an exercise comes back empty: the source notebook holds its answer."""
+def _restored_cell(original: NotebookNode) -> NotebookNode:
+    """Return a deleted cell. An exercise comes back without its answer, which the source notebook holds."""
     cell = copy.deepcopy(original)
     if cell.metadata.nbgrader.get("solution"):
         cell.source = DELETED
@@ -70,13 +75,13 @@ def _put_back(original: NotebookNode) -> NotebookNode:
 
 
 def grade_id(cell: NotebookNode) -> str:
-    """Return the name by which nbgrader knows a cell, or an empty string."""
+    """Return the grade id of a cell, or an empty string."""
     marks = cell.metadata.get("nbgrader")
     name = marks.get("grade_id") if isinstance(marks, dict) else None
     return name if isinstance(name, str) else ""
 
 
-def _mend(cell: NotebookNode, original: NotebookNode) -> None:
+def _restore_cell(cell: NotebookNode, original: NotebookNode) -> None:
     marks = original.metadata.nbgrader
     if marks.get("locked") or not marks.get("solution") or cell.cell_type != original.cell_type:
         text = cell.source if marks.get("solution") and not marks.get("locked") else original.source

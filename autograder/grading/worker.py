@@ -97,7 +97,7 @@ class Grading:
         from autograder.building import observed
 
         with self._phase("intake"):
-            submission = intake.take(self._job.path, self._job.assignment)
+            submission = intake.read_submission(self._job.path, self._job.assignment)
             self._sha256 = submission.sha256
             packages = submission.source
         if submission.notebook is not None:
@@ -110,7 +110,7 @@ class Grading:
                 original = layout.source_notebook(self._job.assignment)
                 extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
                 # The notebook could write links and devices to all of this. Only plain files of it are taken.
-                packages = intake.take_source(self._folder / "ws")
+                packages = intake.read_packages(self._folder / "ws")
                 self._clear()
         source = self._workspace.root / "src"
         write_tree(packages, source)

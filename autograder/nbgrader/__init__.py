@@ -1,18 +1,18 @@
-"""The nbgrader plug-in: nbgrader's own commands, with grades that come from the isolated grader.
+"""The nbgrader plug-in: nbgrader's commands book the scores of the isolated grader.
 
-`nbgrader autograde` runs two chains of preprocessors on each submitted notebook. `nbgrader_config.py` puts these parts
-into them, by name:
+`nbgrader autograde` runs two chains of preprocessors on each submitted notebook. `nbgrader_config.py` adds these parts
+by their names:
 
-    SubmissionExporter  reads a notebook whatever is in the file
-    RestoreCells        gives back to it what the released one held (first in the sanitizing chain)
-    SandboxedGrade      grades the submitted folder in a sandbox and writes the scores into the locked grade cells
-                        (where nbgrader would have executed the notebook); nbgrader's SaveAutoGrades books them
-    harmless_markdown   shows a student's text in feedback and formgrader without what it could run there
+    SubmissionExporter   reads a submitted file, even if it is not a notebook
+    RestoreCells         restores the released cells (the first preprocessor of the sanitizing chain)
+    SandboxedGrade       grades the submitted folder in a sandbox and writes the scores into the locked grade cells. It
+                         takes the place of nbgrader's Execute; nbgrader's SaveAutoGrades books the scores
+    sanitized_markdown   renders a student's text without scripts, for feedback and formgrader
 """
 
 from autograder.nbgrader.exporter import SubmissionExporter
 from autograder.nbgrader.grade import SandboxedGrade
-from autograder.nbgrader.markdown import harmless_markdown
+from autograder.nbgrader.markdown import sanitized_markdown
 from autograder.nbgrader.restore import RestoreCells
 
-__all__ = ["RestoreCells", "SandboxedGrade", "SubmissionExporter", "harmless_markdown"]
+__all__ = ["RestoreCells", "SandboxedGrade", "SubmissionExporter", "sanitized_markdown"]

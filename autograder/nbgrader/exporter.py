@@ -1,4 +1,4 @@
-"""Reading a submitted notebook that may hold anything, so that one bad file is a diagnosis and not a dead batch."""
+"""Reads a submitted file for nbgrader. A file that is not a notebook does not stop the batch."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from autograder.grading import submitted_notebook
 
 
 class SubmissionExporter(NotebookExporter):
-    """nbgrader's exporter, for which a file that is no notebook is one without cells; the grader says what is wrong."""
+    """Reads a file that is not a notebook as one without cells. The grader reports what is wrong with it."""
 
     def from_file(self, file_stream: Any, *args: Any, **kwargs: Any) -> Any:
         data = file_stream.buffer.read(intake.MAX_FILE + 1)

@@ -1,7 +1,6 @@
-"""Grading in the place where nbgrader would execute a notebook.
+"""Grades the submitted folder in place of nbgrader's execution of the notebook.
 
-The submitted folder is graded in a sandbox, and the scores are written into the locked grade cells, for nbgrader's own
-code to book.
+The folder is graded in a sandbox. The scores are written into the locked grade cells, from which nbgrader books them.
 """
 
 from __future__ import annotations
@@ -20,38 +19,43 @@ from traitlets import Bool, Integer, Unicode
 
 from autograder import feedback
 from autograder.exceptions import GraderError
-from autograder.feedback.model import view
-from autograder.feedback.pictures import from_folder
+from autograder.feedback.model import page_view
+from autograder.feedback.pictures import picture_reader
 from autograder.feedback.text import clean
 from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
 from autograder.grading.pipeline import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
-from autograder.nbgrader.outputs import harmless, verdict
+from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
 
 
 class SandboxedGrade(NbGraderPreprocessor):
-    """Grades a submission and fills the notebook's outputs. No code of a student's runs in this process."""
+    """Grades a submission and writes the outputs of the notebook. No code of a student runs in this process."""
 
-    seed = Integer(DEFAULT_SEED, help="Every hidden input is drawn from this seed.").tag(config=True)
-    isolation = Unicode(Tier.BUBBLEWRAP.value, help="How submissions are isolated: a tier's name.").tag(config=True)
+    seed = Integer(DEFAULT_SEED, help="The seed of every hidden input.").tag(config=True)
+    isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation: bubblewrap or process.").tag(config=True)
     resume = Bool(
         False,
-        help="Book a result stored below `results` if its submission, suite and seed are the same, instead of grading "
-        "again: `autograder grade submitted --assignment ID --out .build/nbgrader/ID -j N` grades a class in parallel.",
+        help="Book the result stored below `results` if its submission, suite and seed are the same. To grade a class "
+        "in parallel first: `autograder grade submitted --assignment ID --out .build/nbgrader/ID -j N`.",
     ).tag(config=True)
-    after_due = Bool(False, help="Also show the checks that stay closed until the due date.").tag(config=True)
     results = Unicode(
-        ".build/nbgrader", help="Where results go: <results>/<assignment>/<student>/, from the course directory."
+        ".build/nbgrader",
+        help="The folder of results, from the course directory. It gets ASSIGNMENT/STUDENT/result.json.",
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
-        """Grade the submitted folder that this notebook came from.
+        """Grade the submitted folder of this notebook, and write its outputs.
+
+        Args:
+            nb: the submitted notebook, after sanitizing.
+            resources: nbgrader's resources; `resources["nbgrader"]` names assignment, student and database.
 
         Raises:
-            GraderError: it could not be graded, or the notebook's grade cells do not fit the suite. Nothing is booked.
+            GraderError: the submission could not be graded, or the grade cells do not match the suite. Nothing is
+                booked then.
         """
         coursedir = self.parent.parent.coursedir
         marks = resources["nbgrader"]
@@ -75,16 +79,16 @@ class SandboxedGrade(NbGraderPreprocessor):
                     f"{student}: the stored result was graded with the isolation {result.isolation!r}, not "
                     f"{self.isolation!r}: grade it again, without SandboxedGrade.resume"
                 )
-            self._fill(nb, results / student / NOTEBOOK)
-            self._judge(nb, result, results / student)
-            feedback.write(result, results / student, after_due=self.after_due)
+            self._copy_outputs(nb, results / student / NOTEBOOK)
+            self._write_scores(nb, result, results / student)
+            feedback.write(result, results / student)
         except Exception:
-            self._flag(marks)
+            self._request_manual_grading(marks)
             raise
         return nb, resources
 
-    def _fill(self, nb: NotebookNode, executed: Path) -> None:
-        """Take over the outputs of the sandboxed run, cell by cell where the source is the same."""
+    def _copy_outputs(self, nb: NotebookNode, executed: Path) -> None:
+        """Copy the outputs of the sandboxed run into the cells that have the same source there."""
         notebook = nbformat.read(executed, as_version=4) if executed.is_file() else new_notebook()
         cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
         count = Counter(_name(cell) for cell in cells)
@@ -93,19 +97,19 @@ class SandboxedGrade(NbGraderPreprocessor):
             if cell.cell_type == "code":
                 same = ran.get(_name(cell))
                 outputs = [] if same is None or clean(same.source) != cell.source else same.outputs
-                cell.outputs = harmless(outputs)
+                cell.outputs = sanitized_outputs(outputs)
                 cell.execution_count = None
 
-    def _judge(self, nb: NotebookNode, result: Result, out: Path) -> None:
-        """Put the score of each group, and what explains it, below the locked grade cell that stands for it."""
-        page = view(result, from_folder(out), after_due=self.after_due)
+    def _write_scores(self, nb: NotebookNode, result: Result, out: Path) -> None:
+        """Write the score and the feedback of each group into the outputs of its locked grade cell."""
+        page = page_view(result, picture_reader(out))
         groups = {group.name: group for group in page.groups}
         graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
         named = [_group(cell) for cell in graded]
         if sorted(named) != sorted(groups):
             raise GraderError(
-                f"{result.assignment}: its grade cells stand for the groups {sorted(named)}, but its suite has "
-                f"{sorted(groups)}: mend the source notebook and run `nbgrader generate_assignment` again"
+                f"{result.assignment}: its grade cells have the groups {sorted(named)}, but its suite has "
+                f"{sorted(groups)}: correct the source notebook and run `nbgrader generate_assignment` again"
             )
         for cell, name in zip(graded, named, strict=True):
             group, worth = groups[name], float(cell.metadata.nbgrader["points"])
@@ -115,10 +119,10 @@ class SandboxedGrade(NbGraderPreprocessor):
                     f"{group.max_points:g}: run `nbgrader generate_assignment` again"
                 )
             points = min(max(round(group.points, 4), 0.0), worth)
-            cell.outputs = verdict(points, page, group, first=cell is graded[0])
+            cell.outputs = grade_outputs(points, page, group, first=cell is graded[0])
 
-    def _flag(self, marks: dict[str, str]) -> None:
-        """Mark the submission for the instructor's eye. A score booked earlier stays as it is; no new one is made."""
+    def _request_manual_grading(self, marks: dict[str, str]) -> None:
+        """Mark the submission for manual grading. A score that was booked earlier stays the same."""
         with Gradebook(marks["db_url"]) as gradebook:
             submission = gradebook.find_submission_notebook(marks["notebook"], marks["assignment"], marks["student"])
             for grade in submission.grades:
@@ -127,7 +131,7 @@ class SandboxedGrade(NbGraderPreprocessor):
 
 
 def _name(cell: NotebookNode) -> str:
-    """Return what a cell is matched by: its grade id, or else its own id."""
+    """Return the key by which cells are matched: the grade id, or the cell id if there is none."""
     return f"grade {grade_id(cell)}" if grade_id(cell) else f"cell {cell.get('id')}"
 
 

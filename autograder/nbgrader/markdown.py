@@ -1,4 +1,4 @@
-"""Markdown to HTML for pages that show students' text: nbgrader's templates take HTML in Markdown as it comes."""
+"""Renders students' Markdown safely. nbgrader's templates would keep any HTML in it."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ ATTRIBUTES = {
     "td": ["align", "colspan", "rowspan"],
     "th": ["align", "colspan", "rowspan", "scope"],
 }
-# Addresses are http, https or mailto, or lead to a place beside the page.
+# Links are http, https or mailto, or relative.
 _SANITIZER: Any = SanitizeHTML(tags=TAGS.split(), attributes=ATTRIBUTES)  # type: ignore[no-untyped-call]
 
 
 @pass_context
-def harmless_markdown(context: Context, source: str) -> str:
-    """Render Markdown; a tag that could run, frame or style something is shown as the text that it is."""
+def sanitized_markdown(context: Context, source: str) -> str:
+    """Return Markdown as HTML. Tags for scripts, frames and styles are escaped."""
     return str(_SANITIZER.sanitize_html_tags(markdown2html(source)))

@@ -1,8 +1,8 @@
-"""What stands below the cells of an autograded notebook: the student's own outputs, and the grader's verdict. Pure.
+"""Makes the outputs of an autograded notebook: the student's own, and the scores with their feedback.
 
-nbgrader takes an output for the grade (its `determine_grade`): an error or anything on stderr is 0, an `execute_result`
-that is a number is that many points, and nothing at all is full marks. So a grade cell gets exactly one
-`execute_result`, a plain float, and the explanation as `display_data`, which nbgrader does not read.
+nbgrader reads the points of a cell from its outputs (`determine_grade`). An error or text on stderr is 0, a number as
+`execute_result` is that many points, and no output is full marks. So a grade cell gets exactly one `execute_result`, a
+float. The feedback is `display_data`, which nbgrader does not read.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from autograder.feedback.text import clean, number
 PICTURES = ("image/png", "image/jpeg")
 
 
-def verdict(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
+def grade_outputs(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
     """Return the outputs of a locked grade cell.
 
     Args:
-        points: what is booked.
-        page: the whole feedback.
-        group: the part of it that the cell stands for.
-        first: this is the notebook's first grade cell, which also tells what holds for all of them.
+        points: the points to book.
+        page: content of the feedback page.
+        group: the checks that count for the cell.
+        first: whether this is the first grade cell of the notebook, which also gets the diagnosis.
     """
     html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
     text = "\n".join(f"[{check.outcome}] {check.title} {check.message}".strip() for check in group.checks)
@@ -47,10 +47,10 @@ def verdict(points: float, page: PageView, group: GroupView, *, first: bool) -> 
     return outputs
 
 
-def harmless(outputs: Iterable[Any]) -> list[NotebookNode]:
-    """Return a student's outputs as text and pictures.
+def sanitized_outputs(outputs: Iterable[Any]) -> list[NotebookNode]:
+    """Return the text and the pictures of a student's outputs.
 
-    HTML, SVG, scripts, widgets and metadata are left out: feedback and formgrader would put them into their pages.
+    HTML, SVG, scripts, widgets and metadata are removed, because feedback and formgrader would show them unescaped.
     """
     kept = []
     for output in outputs:
@@ -78,7 +78,7 @@ def _data(bundle: dict[str, Any]) -> dict[str, str]:
 
 
 def _picture(value: object) -> str | None:
-    """Return Base64 data in its one canonical form, or None for what is no such data."""
+    """Return Base64 data in canonical form, or None if `value` is not such data."""
     if not isinstance(value, str):
         return None
     try:
@@ -88,7 +88,7 @@ def _picture(value: object) -> str | None:
 
 
 def _text(value: object) -> str:
-    """Return a text, its colours kept (pages render them); what is no text becomes none."""
+    """Return cleaned text with its terminal colours, which pages render, or an empty string for another type."""
     if isinstance(value, list):
         value = "".join(part for part in value if isinstance(part, str))
     return "\x1b".join(clean(part) for part in value.split("\x1b")) if isinstance(value, str) else ""

@@ -1,4 +1,4 @@
-"""The submitted notebook gets back what a student may not change, before nbgrader trusts any of it."""
+"""Restores the released cells of a submitted notebook before nbgrader reads it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from autograder.grading import submitted_notebook
 class RestoreCells(NbGraderPreprocessor):
     """Restores nbgrader's cells from the released form of the source notebook.
 
-    nbgrader repairs the cells that are there; it trusts the marks of grade cells that were deleted, retyped or copied.
-    After this step a submission has each of the source's marked cells once, and no other cell is marked.
+    nbgrader itself restores only the cells that exist. It does not notice that grade cells were deleted, retyped or
+    copied. After this step a submission has each nbgrader cell of the source notebook once, and no others.
     """
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -30,9 +30,9 @@ class RestoreCells(NbGraderPreprocessor):
 
 
 def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
-    """Return the submitted notebook with the released one's marked cells, and the student's cells as plain text.
+    """Return the submitted notebook with the nbgrader cells of the released one.
 
-    Metadata and attachments of a student's cell are dropped: pages made from the notebook would take them over.
+    The student's own cells lose their metadata and attachments, because pages made from the notebook would use them.
     """
     notebook = submitted_notebook.restore(submitted, released)
     ids: set[str] = set()
@@ -41,7 +41,7 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
         if not submitted_notebook.grade_id(cell):
             cell.metadata = NotebookNode()
         cell.pop("attachments", None)
-        # Two cells of one id would be one cell to a browser; nbformat only warns.
+        # A browser cannot tell two cells with one id apart, and nbformat only warns.
         while cell.get("id") is None or cell.id in ids:
             cell.id = nbformat.v4.new_raw_cell().id
         ids.add(cell.id)

@@ -30,7 +30,7 @@ from pathlib import Path
 import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.intake import take_source
+from autograder.intake import read_packages
 from autograder.probes import junit
 from autograder.probes.junit import Claims
 from autograder.probes.memory import Memory
@@ -56,7 +56,7 @@ def take(workspace: Workspace, package: str) -> Source:
     Raises:
         StudentError: there is something else than plain files, or no folder of the package's name.
     """
-    entries = take_source(workspace.root)
+    entries = read_packages(workspace.root)
     folder = next(
         (e.path.parent for e in entries if e.path.name == "package.xml" and e.path.parent.name == package), None
     )

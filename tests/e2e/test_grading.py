@@ -141,7 +141,7 @@ def _no_script(source: Path) -> None:
         pytest.param(_remove("package.xml"), Kind.MISSING_PACKAGE, "has no package.xml", id="no package.xml"),
         pytest.param(_remove("setup.py"), Kind.HALF_WRITTEN_PACKAGE, "has no setup.py", id="no setup.py"),
         pytest.param(_remove("resource"), Kind.HALF_WRITTEN_PACKAGE, "has no resource/", id="no marker"),
-        pytest.param(_replace("package.xml", "<package>"), Kind.HALF_WRITTEN_PACKAGE, "no well-formed XML", id="xml"),
+        pytest.param(_replace("package.xml", "<package>"), Kind.HALF_WRITTEN_PACKAGE, "not well-formed XML", id="xml"),
         pytest.param(_replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "colcon build failed", id="setup.py"),
         pytest.param(_no_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
         pytest.param(

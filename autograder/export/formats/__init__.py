@@ -1,7 +1,7 @@
-"""The formats, a module each. A module added to this folder is a format under its own name.
+"""The export formats. Each module of this folder is a format of the same name.
 
-Such a module has FOLDER, whether the format is written to a folder or to one file, and
-`write(stored: Sequence[Stored], out: Path) -> Path`, which writes it and returns the file to open first.
+Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file,
+and `write`; see `Format`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from autograder.export.stored import Stored
 
 
 class Format(Protocol):
-    """What a format's module holds."""
+    """The members of a format's module."""
 
     FOLDER: bool
 
@@ -34,16 +34,18 @@ def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
     """Write results in a format and return the file to open first.
 
     Args:
-        stored: what `load` read.
-        name: a key of `FORMATS`.
-        out: the file to write, or the folder where the format is written to one.
+        stored: the results, from `load`.
+        name: name of the format, a key of `FORMATS`.
+        out: the file or folder to write.
 
     Raises:
-        UsageError: the format is not known, `out` is of the other kind, or two results would share a file.
+        UsageError: the format does not exist, `out` is a folder instead of a file or the other way round, or two
+            results need the same file.
     """
     if name not in FORMATS:
         raise UsageError(f"there is no format {name!r}; the formats are {', '.join(FORMATS)}")
     format = FORMATS[name]
     if out.exists() and out.is_dir() is not format.FOLDER:
-        raise UsageError(f"{out}: {name} is written to a {'folder' if format.FOLDER else 'file'}, and this is none")
+        kind = "folder" if format.FOLDER else "file"
+        raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
     return format.write(stored, out)

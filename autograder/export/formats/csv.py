@@ -1,4 +1,4 @@
-"""CSV: a row a submission, for a spreadsheet or a learning management system."""
+"""CSV: a row for each submission."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ COLUMNS = (
 
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
-    """Write the table: the columns above, then one a check with the points that it earned.
+    """Write `COLUMNS`, and a column for each check with the points that it earned.
 
-    A submission that was not graded has no score, rather than 0. UTF-8, comma, quoted where needed (RFC 4180).
+    The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
     """
     checks = list(dict.fromkeys(check.id for item in stored for check in item.result.checks))
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -66,6 +66,6 @@ def _row(result: Result) -> dict[str, str | float]:
 
 
 def _text(value: str) -> str:
-    """Keep a spreadsheet from taking a student's text for a formula."""
+    """Return the text on one line. A quote before a leading =, +, - or @ keeps spreadsheets from evaluating it."""
     line = one_line(value)
     return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line

@@ -1,4 +1,4 @@
-"""Gradescope: a `results.json` a submission, by its autograder specification.
+"""Gradescope: a `results.json` for each submission, as Gradescope's autograder specification defines it.
 
 The format: https://gradescope-autograders.readthedocs.io/en/latest/specs/ (output format, test cases, visibility).
 """
@@ -18,12 +18,8 @@ from autograder.result import CheckResult, Result, Status, write_json
 
 FOLDER = True
 
-# A hidden check cannot be tried by the student, but its verdict is part of the feedback: so, once marks are published.
-VISIBILITY = {
-    Visibility.VISIBLE: "visible",
-    Visibility.HIDDEN: "after_published",
-    Visibility.AFTER_DUE: "after_due_date",
-}
+# The result of a hidden check is part of the feedback, which students get when the marks are published.
+VISIBILITY = {Visibility.VISIBLE: "visible", Visibility.HIDDEN: "after_published"}
 
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
@@ -34,9 +30,9 @@ def write(stored: Sequence[Stored], out: Path) -> Path:
 
 
 def report(result: Result) -> dict[str, Any]:
-    """Return what Gradescope reads of one submission.
+    """Return the content of one `results.json`.
 
-    One that was not graded has neither score nor tests: Gradescope then reports a failed autograder, not a zero.
+    A submission that was not graded has neither score nor tests. Gradescope then reports a failed autograder.
     """
     if result.status is Status.NOT_GRADED:
         return {"output": f"Not graded. {NOT_GRADED}"}

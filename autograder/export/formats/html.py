@@ -1,4 +1,4 @@
-"""HTML: the students' feedback pages and a table that leads to them."""
+"""HTML: the feedback page of each submission, and a table with links to them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""JUnit XML: a test suite a submission, a test case a check, as CI servers show them."""
+"""JUnit XML: a test suite for each submission, with a test case for each check."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FOLDER = False
 
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
-    """Write the report. Failed is a failure, not checked is skipped, not graded is an error."""
+    """Write the report. `failed` is a failure, `not_checked` is skipped, and `not_graded` is an error."""
     suites = [_suite(item.result) for item in stored]
     root = ET.Element("testsuites", _totals(suites))
     root.extend(suites)

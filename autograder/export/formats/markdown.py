@@ -1,4 +1,4 @@
-"""Markdown: a table of the submissions, then each one's checks; for a chat, a wiki or a job's summary in CI."""
+"""Markdown: a table of the submissions, and a table of checks for each of them."""
 
 from __future__ import annotations
 
@@ -59,5 +59,5 @@ def _diagnosis(result: Result) -> str:
 
 
 def _plain(text: str) -> str:
-    """Escape each character that Markdown, or HTML in it, could take for markup within a line (CommonMark 2.4)."""
+    """Return the text on one line, with the characters escaped that are markup in Markdown or HTML (CommonMark 2.4)."""
     return re.sub(r"([\\`*_\[\]<>|~&])", r"\\\1", one_line(text))

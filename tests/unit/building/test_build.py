@@ -77,7 +77,7 @@ def test_a_malformed_manifest_of_another_package_is_not_this_ones_fault(tmp_path
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "package.xml").write_text("<package><name>")
     build.require_packages(tmp_path, (NAME,))
-    with pytest.raises(StudentError, match=r"src/other/package\.xml is no well-formed XML"):
+    with pytest.raises(StudentError, match=r"src/other/package\.xml is not well-formed XML"):
         build.require_packages(tmp_path, ("other",))
 
 
@@ -93,14 +93,14 @@ def test_a_cmake_package_needs_none_of_pythons_files(tmp_path: Path) -> None:
 def test_a_malformed_manifest_is_named_with_its_line(tmp_path: Path, text: str) -> None:
     kind, sentence = _fault(_package(tmp_path, **{"package.xml": text}))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
-    assert "src/my_robot_package/package.xml is no well-formed XML" in sentence
+    assert "src/my_robot_package/package.xml is not well-formed XML" in sentence
     assert "line" in sentence
 
 
 def test_a_huge_manifest_is_not_read(tmp_path: Path) -> None:
     kind, sentence = _fault(_package(tmp_path, **{"package.xml": " " * (packages.MAX_MANIFEST + 1)}))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
-    assert "far larger than a manifest" in sentence
+    assert "is larger than 64 KiB" in sentence
 
 
 def test_links_inside_the_install_space_are_fine(tmp_path: Path) -> None:

@@ -96,7 +96,7 @@ class Grader:
         result = self._make(
             student,
             seed=seed,
-            submission_sha256=intake.take(path, assignment).sha256,
+            submission_sha256=intake.read_submission(path, assignment).sha256,
             suite_version=suites.hidden(assignment).version,
         )
         write_json(out / "result.json", result.to_json())

@@ -155,5 +155,5 @@ def test_what_is_no_notebook_is_named_with_what_to_do(data: bytes) -> None:
 
 def test_a_notebook_of_thousands_of_cells_is_refused() -> None:
     book = new_notebook(cells=[new_markdown_cell("") for _ in range(submitted_notebook.MAX_CELLS + 1)])
-    with pytest.raises(StudentError, match="has 501 cells, 500 at most"):
+    with pytest.raises(StudentError, match="has 501 cells: at most 500 are allowed"):
         submitted_notebook.read(nbformat.writes(book).encode(), "a.ipynb")

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from autograder import intake
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError, UsageError
-from autograder.intake import Entry, arrange, take, take_source, write_tree
+from autograder.intake import SubmittedFile, detect_layout, read_packages, read_submission, write_tree
 
 CHAPTER = "02_nodes"
 TREE = {
@@ -42,13 +42,13 @@ def _zip(path: Path, files: dict[str, bytes], prefix: str = "") -> Path:
     return path
 
 
-def _names(entries: tuple[Entry, ...]) -> set[str]:
+def _names(entries: tuple[SubmittedFile, ...]) -> set[str]:
     return {str(entry.path) for entry in entries}
 
 
 def _refused(path: Path) -> tuple[Kind, str]:
     with pytest.raises(StudentError) as caught:
-        take(path, CHAPTER)
+        read_submission(path, CHAPTER)
     return caught.value.diagnosis.kind, caught.value.diagnosis.sentence
 
 
@@ -60,10 +60,10 @@ def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layou
     if layout.startswith("folder"):
         root = tmp_path / "alice"
         _write(root / CHAPTER if "in a" in layout else root, TREE)
-        taken = take(root, CHAPTER)
+        taken = read_submission(root, CHAPTER)
     else:
         prefix = {"zip": "", "zip with a top folder": f"{CHAPTER}/", "zip by two": f"alice/{CHAPTER}/"}[layout]
-        taken = take(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
+        taken = read_submission(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
     assert taken.notebook == b"{}"
     assert _names(taken.source) == SOURCE
     assert _names(taken.extra) == {"notes.txt"}
@@ -71,18 +71,18 @@ def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layou
 
 def test_a_lone_notebook_may_have_any_name(tmp_path: Path) -> None:
     (tmp_path / "my answer.ipynb").write_bytes(b"{}")
-    taken = take(tmp_path / "my answer.ipynb", CHAPTER)
+    taken = read_submission(tmp_path / "my answer.ipynb", CHAPTER)
     assert (taken.notebook, taken.source, taken.extra) == (b"{}", (), ())
 
 
 def test_a_bare_source_tree_has_no_notebook(tmp_path: Path) -> None:
-    taken = take(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
+    taken = read_submission(_write(tmp_path / "bob", {"src/pkg/package.xml": b"x"}), CHAPTER)
     assert taken.notebook is None
     assert _names(taken.source) == {"pkg/package.xml"}
 
 
 def test_ws_src_is_preferred_to_a_folder_called_src_beside_it(tmp_path: Path) -> None:
-    taken = take(_write(tmp_path / "bob", {"ws/src/pkg/a": b"1", "src/pkg/a": b"2"}), CHAPTER)
+    taken = read_submission(_write(tmp_path / "bob", {"ws/src/pkg/a": b"1", "src/pkg/a": b"2"}), CHAPTER)
     assert [(str(entry.path), entry.data) for entry in taken.source] == [("pkg/a", b"1")]
 
 
@@ -90,13 +90,15 @@ def test_what_colcon_and_python_leave_is_never_looked_at(tmp_path: Path) -> None
     left = ["ws/build/x", "ws/install/lib/x", "ws/log/x", "ws/src/my_robot_package/__pycache__/x.pyc", ".git/config"]
     plain, full = _write(tmp_path / "plain", TREE), _write(tmp_path / "full", {**TREE, **dict.fromkeys(left, b"x")})
     (full / "ws" / "install" / "link").symlink_to("/etc/passwd")
-    assert take(full, CHAPTER) == take(plain, CHAPTER)
-    assert take(_zip(tmp_path / "f.zip", {**TREE, **dict.fromkeys(left, b"x")}), CHAPTER) == take(plain, CHAPTER)
+    assert read_submission(full, CHAPTER) == read_submission(plain, CHAPTER)
+    assert read_submission(_zip(tmp_path / "f.zip", {**TREE, **dict.fromkeys(left, b"x")}), CHAPTER) == read_submission(
+        plain, CHAPTER
+    )
 
 
 def test_what_macos_puts_into_archives_is_ignored(tmp_path: Path) -> None:
     files = {**TREE, "__MACOSX/ws/src/my_robot_package/._setup.py": b"\0\0"}
-    assert _names(take(_zip(tmp_path / "a.zip", files), CHAPTER).extra) == {"notes.txt"}
+    assert _names(read_submission(_zip(tmp_path / "a.zip", files), CHAPTER).extra) == {"notes.txt"}
 
 
 def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_path: Path) -> None:
@@ -109,25 +111,25 @@ def test_an_empty_folder_and_a_folder_of_other_things_hold_nothing_to_grade(tmp_
 
 def test_a_path_that_does_not_exist_is_a_wrong_call(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="nobody: there is no such file or folder"):
-        take(tmp_path / "nobody", CHAPTER)
+        read_submission(tmp_path / "nobody", CHAPTER)
 
 
 def test_executable_files_stay_executable(tmp_path: Path) -> None:
     root = _write(tmp_path / "bob", {"src/pkg/run": b"#!/bin/sh", "src/pkg/data": b""})
     (root / "src/pkg/run").chmod(0o755)
-    write_tree(take(root, CHAPTER).source, tmp_path / "out")
+    write_tree(read_submission(root, CHAPTER).source, tmp_path / "out")
     assert [os.access(tmp_path / "out/pkg" / name, os.X_OK) for name in ("run", "data")] == [True, False]
 
 
 def test_the_digest_is_of_paths_and_contents_whatever_the_packing(tmp_path: Path) -> None:
-    folder = take(_write(tmp_path / "a", TREE), CHAPTER).sha256
-    assert take(_zip(tmp_path / "a.zip", TREE), CHAPTER).sha256 == folder
-    assert take(_write(tmp_path / "b", {**TREE, "notes.txt": b"yours"}), CHAPTER).sha256 != folder
+    folder = read_submission(_write(tmp_path / "a", TREE), CHAPTER).sha256
+    assert read_submission(_zip(tmp_path / "a.zip", TREE), CHAPTER).sha256 == folder
+    assert read_submission(_write(tmp_path / "b", {**TREE, "notes.txt": b"yours"}), CHAPTER).sha256 != folder
 
 
 def test_windows_line_ends_spaces_and_unicode_are_kept_as_they_are(tmp_path: Path) -> None:
     files = {"src/mein Paket/größe 漢字.py": b"a = 1\r\n"}
-    taken = take(_zip(tmp_path / "a.zip", files), CHAPTER)
+    taken = read_submission(_zip(tmp_path / "a.zip", files), CHAPTER)
     write_tree(taken.source, tmp_path / "out")
     assert (tmp_path / "out/mein Paket/größe 漢字.py").read_bytes() == b"a = 1\r\n"
 
@@ -135,7 +137,7 @@ def test_windows_line_ends_spaces_and_unicode_are_kept_as_they_are(tmp_path: Pat
 def test_a_name_that_is_no_utf_8_is_kept(tmp_path: Path) -> None:
     name = os.fsdecode(b"caf\xe9.txt")
     root = _write(tmp_path / "bob", {f"src/pkg/{name}": b"x"})
-    write_tree(take(root, CHAPTER).source, tmp_path / "out")
+    write_tree(read_submission(root, CHAPTER).source, tmp_path / "out")
     assert (tmp_path / "out/pkg" / name).read_bytes() == b"x"
 
 
@@ -163,7 +165,7 @@ def _special(path: Path, mode: int) -> Path:
 def test_links_pipes_and_devices_in_an_archive_are_refused(tmp_path: Path, kind: int) -> None:
     found, sentence = _refused(_special(tmp_path / "a.zip", kind | 0o777))
     assert found is Kind.UNSAFE_ARCHIVE
-    assert "ws/src/pkg/odd is no ordinary file" in sentence
+    assert "ws/src/pkg/odd is not a regular file" in sentence
 
 
 @pytest.mark.parametrize(
@@ -172,7 +174,7 @@ def test_links_pipes_and_devices_in_an_archive_are_refused(tmp_path: Path, kind:
         (lambda path: path.symlink_to("/etc/passwd"), "a symbolic link"),
         (lambda path: path.symlink_to("/", target_is_directory=True), "a symbolic link"),
         (lambda path: path.symlink_to(path), "a symbolic link"),
-        (os.mkfifo, "no ordinary file"),
+        (os.mkfifo, "not a regular file"),
     ],
 )
 def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[[Path], None], what: str) -> None:
@@ -240,7 +242,7 @@ def test_damaged_bytes_are_unreadable_and_named(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(data)
         kind, sentence = _refused(tmp_path / name)
         assert kind is Kind.UNREADABLE
-        assert f"{name} is no folder, notebook or readable zip archive" in sentence
+        assert f"{name} is not a folder, a notebook or a readable zip archive" in sentence
 
 
 def test_an_encrypted_archive_is_unreadable(tmp_path: Path) -> None:
@@ -259,7 +261,7 @@ def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: 
     for path in (twice, _zip(tmp_path / "both.zip", {"src/x": b"", "src/x/y": b""})):
         kind, sentence = _refused(path)
         assert kind is Kind.UNSAFE_ARCHIVE
-        assert "two things in it have the same name" in sentence
+        assert "two of its files or folders have the same path" in sentence
 
 
 @settings(deadline=None)
@@ -277,7 +279,7 @@ def test_whatever_the_names_files_land_below_the_folder_or_nothing_is_opened(
 ) -> None:
     root = tmp_path_factory.mktemp("names")
     try:
-        taken = take(_zip(root / "a.zip", dict(files)), CHAPTER)
+        taken = read_submission(_zip(root / "a.zip", dict(files)), CHAPTER)
     except StudentError as error:
         event(error.diagnosis.kind.value)
         return
@@ -288,17 +290,17 @@ def test_whatever_the_names_files_land_below_the_folder_or_nothing_is_opened(
 
 def test_the_shallowest_notebook_is_the_submission() -> None:
     entries = [
-        Entry(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), b"old"),
-        Entry(PurePosixPath(f"a/{CHAPTER}.ipynb"), b"new"),
+        SubmittedFile(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), b"old"),
+        SubmittedFile(PurePosixPath(f"a/{CHAPTER}.ipynb"), b"new"),
     ]
-    assert arrange(entries, CHAPTER).notebook == b"new"
+    assert detect_layout(entries, CHAPTER).notebook == b"new"
 
 
 # What a notebook leaves behind.
 
 
 def test_the_packages_that_a_notebook_wrote_are_taken_as_plain_files(tmp_path: Path) -> None:
-    assert _names(take_source(_write(tmp_path, TREE) / "ws")) == SOURCE
+    assert _names(read_packages(_write(tmp_path, TREE) / "ws")) == SOURCE
 
 
 @pytest.mark.parametrize("link", ["ws", "ws/src", "ws/src/pkg", "ws/src/my_robot_package/passwd"])
@@ -308,10 +310,10 @@ def test_a_link_that_a_notebook_left_is_never_followed(tmp_path: Path, link: str
         (root / link).rename(root / "moved")
     (root / link).symlink_to("/etc")
     with pytest.raises(StudentError) as caught:
-        take_source(root / "ws")
+        read_packages(root / "ws")
     assert caught.value.diagnosis.kind in (Kind.UNSAFE_ARCHIVE, Kind.NOTHING_SUBMITTED)
 
 
 def test_a_notebook_that_leaves_no_workspace_is_told_so(tmp_path: Path) -> None:
     with pytest.raises(StudentError, match="After the notebook has run there is no folder ws/src"):
-        take_source(tmp_path / "ws")
+        read_packages(tmp_path / "ws")

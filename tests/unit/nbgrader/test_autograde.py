@@ -229,7 +229,7 @@ def test_groups_that_do_not_fit_the_cells_are_refused(
     course.submit("erin", course.released)
     done = course.autograde("erin")
     assert not done["success"]
-    assert "stand for the groups ['graph', 'reaction'], but its suite has ['graph']" in done["log"]
+    assert "have the groups ['graph', 'reaction'], but its suite has ['graph']" in done["log"]
     assert course.grades("erin")["grade-reaction"] == (None, 4.0, True)
 
 
