@@ -60,8 +60,10 @@ def verify_full_marks(result: Result) -> str:
 
 
 def verify_zero(result: Result) -> str:
-    """Return the score of an untouched release if it is not 0."""
-    return "" if is_graded(result) and result.score == 0 else f"it scores {result.score:g}"
+    """Return why an untouched release does not have 0 points."""
+    if not is_graded(result):
+        return result.diagnosis.sentence
+    return "" if result.score == 0 else f"it scores {result.score:g}"
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:

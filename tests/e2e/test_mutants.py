@@ -58,4 +58,6 @@ def lanes() -> Iterator[Lanes]:
 def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes, tmp_path: Path) -> None:
     (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
     log = tmp_path / case.assignment / case.name / "grader.log"
-    assert claim.holds, f"{claim.mismatch}\n{log.read_text() if log.is_file() else ''}"
+    messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in claim.result.checks]
+    details = [claim.mismatch, *messages, log.read_text() if log.is_file() else ""]
+    assert claim.holds, "\n".join(details)
