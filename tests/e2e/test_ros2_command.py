@@ -94,11 +94,23 @@ class Arena:
     process: subprocess.Popen[str]
 
     def ros2(self, *words: str, stdin: str = "") -> Answer:
-        """Run a command to its end."""
-        done = subprocess.run(
-            [*ROS2, *words], env=self.env, input=stdin, capture_output=True, text=True, timeout=PATIENCE
-        )
-        return Answer(done.stdout, done.stderr, done.returncode)
+        """Run a command to its end; one that hangs is told to print where (`PYTHONFAULTHANDLER`) and to end."""
+        env = {**self.env, "PYTHONFAULTHANDLER": "1"}
+        with subprocess.Popen(
+            [*ROS2, *words],
+            env=env,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as process:
+            try:
+                out, err = process.communicate(stdin, timeout=PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGABRT)
+                out, err = process.communicate()
+                raise AssertionError(f"ros2 {' '.join(words)} hung\n{out}\n{err}") from None
+        return Answer(out, err, process.returncode)
 
     def ask(self, *words: str) -> Answer:
         """Run a command about something that is there, however long a busy machine takes to discover it."""

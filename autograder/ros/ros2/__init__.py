@@ -4,6 +4,6 @@ This is a stand-in. It steps aside whenever the real `ros2cli` is importable: in
 source a ROS 2 Jazzy installation. There is no daemon: each call discovers the graph itself.
 """
 
-from autograder.ros.ros2.main import main
+from autograder.ros.ros2.main import main, run
 
-__all__ = ["main"]
+__all__ = ["main", "run"]

@@ -1,7 +1,5 @@
 """`python -m autograder.ros.ros2`."""
 
-import sys
+from autograder.ros.ros2.main import run
 
-from autograder.ros.ros2.main import main
-
-sys.exit(main())
+run()

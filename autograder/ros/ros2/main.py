@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 import os
@@ -72,6 +73,24 @@ def main(argv: Sequence[str] | None = None) -> Outcome:
         return 1
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def run() -> NoReturn:
+    """Run `ros2` and end this process with its exit code.
+
+    Python's finalization is left out: under load it can wait for ever for a thread of Fast DDS after all was printed.
+    """
+    try:
+        outcome = main()
+    except SystemExit as ended:
+        outcome = ended.code
+    if isinstance(outcome, str):
+        print(outcome, file=sys.stderr)
+        outcome = 1
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError):  # nobody reads it
+            stream.flush()
+    os._exit(outcome or 0)
 
 
 def _terminate(signum: int, _: object) -> NoReturn:
