@@ -107,10 +107,10 @@ def _horner(coefficients: tuple[float, ...], x: Floats) -> Floats:
 
 def _log(x: Floats) -> Floats:
     """Return the natural logarithm: log m + k ln 2, and log m = 2 artanh((m - 1) / (m + 1)) as a series."""
-    m, k = np.frexp(x)
-    small = m < _HALF_ROOT
-    m = np.where(small, 2.0 * m, m)
-    t = (m - 1.0) / (m + 1.0)
+    mantissa, k = np.frexp(x)
+    small = mantissa < _HALF_ROOT
+    m: Floats = np.where(small, 2.0 * mantissa, mantissa)
+    t: Floats = (m - 1.0) / (m + 1.0)
     z = t * t
     series = _horner(tuple(1.0 / n for n in range(1, 24, 2)), z)
     return (k - small) * _LN_2 + 2.0 * t * series

@@ -4,10 +4,8 @@ It stands before ROS in CMAKE_PREFIX_PATH and holds a Config file for each of ro
 one. What it changes is how the build goes about it, and not what it says or installs for Python nodes:
 
 - the C++ generators, which no Python node needs, are left out of `rosidl_generate_interfaces`;
-- the others are run by `generator_host`, which does nothing twice;
-- what they generate is compiled a library at a time: nearly all the time goes into headers that the files share;
-- CMake asks Python for its properties once. CMake 4 keeps thirteen of them, "64;32" being one, expects twelve when it
-  looks, and so asks again, seven programs each time, at every find_package(Python3).
+- the others are run by `generator_host`, which parses nothing twice;
+- what they generate is compiled a library at a time: nearly all the time goes into headers that the files share.
 """
 
 from __future__ import annotations
@@ -17,7 +15,6 @@ from pathlib import Path
 from autograder.building import generator_host
 
 HOST = Path(generator_host.__file__)
-READ = (HOST, generator_host.TEMPLATES)  # by a build with the overlay, beside the overlay
 LEFT_OUT = (
     "rosidl_generator_cpp",
     "rosidl_typesupport_cpp",
@@ -33,11 +30,6 @@ COMPILED = (
 )
 HOSTED = ("rosidl_generator_type_description", *COMPILED)
 _CONFIG = 'set({name}_DIR "{real}")\ninclude("{real}/{name}Config.cmake")\n'
-_ASK_ONCE = """if(DEFINED CACHE{_Python3_INTERPRETER_PROPERTIES})
-  string(REPLACE ";64;32;" ";64;" _properties "${_Python3_INTERPRETER_PROPERTIES}")
-  set(_Python3_INTERPRETER_PROPERTIES "${_properties}" CACHE INTERNAL "Python3 Properties")
-endif()
-"""
 _LEAVE_OUT = 'list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "^{name}:")\n'
 _TAKE = 'set({name}_BIN "{program}")\n'
 _EXTEND = """set({name}_together_DIR "{folder}")
@@ -72,7 +64,7 @@ def write_overlay(prefixes: tuple[Path, ...], overlay: Path) -> Path:
             continue
         folder = overlay / "share" / name / "cmake"
         folder.mkdir(parents=True, exist_ok=True)
-        config = _CONFIG.format(name=name, real=real) + _ASK_ONCE
+        config = _CONFIG.format(name=name, real=real)
         if name in LEFT_OUT:
             config += _LEAVE_OUT.format(name=name)
         elif (generator := real.parents[2] / "lib" / name / name).is_file():

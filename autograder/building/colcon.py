@@ -43,7 +43,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, (HOST, *cmake_overlay.READ, *workspace.underlays)),
+            *map(Mount, (HOST, cmake_overlay.HOST, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),

@@ -1,8 +1,8 @@
-"""One of rosidl's code generators, which does nothing twice that another has done: what CMake starts in its place.
+"""One of rosidl's code generators, which parses no file that another has parsed: what CMake starts in its place.
 
 To build one interface package, six generators run, each a program of its own. Each parses the same .idl files, with a
-parser that takes a tenth of a second for one, and scans the same templates for every interface. Here what was parsed is
-kept for the next of them. What they write is what they always write.
+parser that takes a tenth of a second for one. Here what was parsed is kept for the next of them. What they write is
+what they always write.
 
 It runs inside the sandbox of a build, and what is kept lies there: it is no less the student's to harm.
 """
@@ -18,8 +18,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-TEMPLATES = Path(__file__).parents[1] / "interfaces" / "templates.py"
-
 
 def run(generator: Path, parsed: Path) -> None:
     """Be a generator.
@@ -29,7 +27,6 @@ def run(generator: Path, parsed: Path) -> None:
         parsed: the folder of what was parsed in this build.
     """
     _remember_parsing(parsed)
-    runpy.run_path(str(TEMPLATES))["scan_once"]()
     sys.argv[0] = str(generator)
     sys.path[0] = str(generator.parent)
     runpy.run_path(str(generator), run_name="__main__")

@@ -20,6 +20,7 @@ def examine(system: System | None = None) -> tuple[Finding, ...]:
         *ros.examine(system),
         machine.compiler(system),
         machine.build_tools(system),
+        machine.versions(system),
         machine.notebooks(system),
         machine.isolation(system),
         machine.space(system),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
+from autograder.ros import platform_versions
 
 ROOMY_BYTES = 2 * 1024**3
 
@@ -78,6 +80,22 @@ def build_tools(system: System) -> Finding:
     if missing:
         return Finding("build tools", Status.MISSING, f"{' and '.join(missing)} not found", "make setup")
     return Finding("build tools", Status.OK, f"colcon in {system.which('colcon')}, cmake in {system.which('cmake')}")
+
+
+def versions(system: System) -> Finding:
+    """Look at whether what students' programs, builds and tests meet has the versions of Jazzy's platform."""
+    others = platform_versions.differences({p.name: system.package(p.name) for p in platform_versions.PACKAGES})
+    if not others:
+        return Finding("versions", Status.OK, f"those of Ubuntu 24.04: {_told(platform_versions.PACKAGES)}")
+    found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
+    expected = all(package.differs and version for package, version in others.items())
+    if expected:
+        return Finding("versions", Status.OK, f"those of Ubuntu 24.04 but {found}, see docs/platform.md")
+    return Finding("versions", Status.WEAK, f"Ubuntu 24.04, the platform of Jazzy, has others: {found}", "make setup")
+
+
+def _told(packages: Iterable[platform_versions.PlatformPackage]) -> str:
+    return ", ".join(f"{package.name} {package.version}" for package in packages)
 
 
 def notebooks(system: System) -> Finding:

@@ -21,7 +21,7 @@ from autograder.ros.environment import without_wheel_bootstrap
 HERE = Path(__file__).parent
 SECONDS = 120.0
 RECIPE = "recipe.json"
-OWN = ("generate", "templates", "compile")  # the modules that make a prefix
+OWN = ("generate", "compile")  # the modules that make a prefix
 
 
 def build(

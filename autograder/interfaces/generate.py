@@ -20,7 +20,6 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from autograder.interfaces import compile as compiling
-from autograder.interfaces.templates import scan_once
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
@@ -203,7 +202,6 @@ def main() -> None:
     files = adapt(prefix, work, recipe["package"], recipe["texts"])
     job = Job(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
     share_parsing(job)
-    scan_once()
     generate(job)
     install(job)
     compiling.compile_package(job.package, prefix, work, prefixes, job.dependencies)

@@ -33,6 +33,26 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
 
 
+def runs_pytest(workspace: Workspace, package: str) -> bool:
+    """Return whether `colcon test` runs pytest on a built package, as it does if setup.py names pytest.
+
+    Colcon itself answers, because the answer depends on the platform: every setuptools reads `extras_require`, and
+    those before 72.0, such as the 68.1.2 of Ubuntu 24.04, read `tests_require`, too. The tests are collected and not
+    run.
+
+    Args:
+        workspace: the built workspace; its build and test folders are written to.
+        package: the package.
+    """
+    colcon_test(workspace, package, "--pytest-args", "--collect-only")
+    return _report(workspace, package).is_file()
+
+
+def _report(workspace: Workspace, package: str) -> Path:
+    """Return the path of the file that pytest writes if colcon runs it."""
+    return workspace.root / "build" / package / "pytest.xml"
+
+
 def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
     command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "test"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
@@ -44,7 +64,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     spec = replace(
         plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
     )
-    report = workspace.root / "build" / package / "pytest.xml"
+    report = _report(workspace, package)
     if _inside(report, workspace.root):
         report.unlink(missing_ok=True)
     with launch(command, spec, profile="colcon") as process:

@@ -1,8 +1,7 @@
 """The files of a new package, as text; nothing here touches the disk.
 
-The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own. Two things differ on
-purpose: setup.py names pytest in `extras_require`, as with `tests_require` and a setuptools of today `colcon test`
-runs no test at all; CMakeLists.txt does without the lint packages where they are not installed.
+The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own. One thing differs on
+purpose: CMakeLists.txt does without the lint packages where they are not installed.
 """
 
 from __future__ import annotations
@@ -112,7 +111,7 @@ setup(
     maintainer_email={_quoted(spec.maintainer_email)},
     description={_quoted(spec.description)},
     license={_quoted(spec.licence)},
-    extras_require={{'test': ['pytest']}},
+    tests_require=['pytest'],
     entry_points={{
         'console_scripts': [{script}],
     }},

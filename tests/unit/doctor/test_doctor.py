@@ -15,6 +15,7 @@ import pytest
 
 from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render, this_system
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
+from autograder.ros.platform_versions import PACKAGES
 
 VENV = Path("/course/.venv")
 WHEELS = RosEnvironment("wheels", (VENV,), VENV / "lib/python3.12/site-packages/rclpy")
@@ -24,6 +25,7 @@ FILES = {
     Path("/opt/ros/jazzy/share/rclpy/package.xml"): "<package><version>7.1.4</version></package>",
     Path("/usr/include/python3.12/Python.h"): "",
 }
+VERSIONS: dict[str, str] = {package.name: package.version for package in PACKAGES}
 DENIED = "bwrap: setting up uid map: Permission denied"
 
 
@@ -49,7 +51,7 @@ GOOD = System(
     read=FILES.get,
     free=lambda path: 50 * 1024**3,
     writable=lambda path: True,
-    package=lambda name: "1.2",
+    package=lambda name: VERSIONS.get(name, "1.2"),
     find_ros=lambda: WHEELS,
     bounded=lambda: True,
     baked=lambda prefix: 0,
@@ -80,6 +82,12 @@ def test_a_machine_with_everything_is_healthy_and_nothing_has_to_be_mended() -> 
     assert {found.status for found in findings} == {Status.OK}, findings
     assert [found.mend for found in findings if found.mend] == []
     assert healthy(findings)
+
+
+def test_a_version_that_the_platform_page_explains_is_nothing_to_mend() -> None:
+    found = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
+    assert found.status is Status.OK
+    assert found.found == "those of Ubuntu 24.04 but numpy 2.1.3 for 1.26.4, see docs/platform.md"
 
 
 def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
@@ -215,6 +223,20 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "sudo apt-get install python3.12-dev",
     ),
     "no colcon": ("build tools", {"which": without("colcon")}, Status.MISSING, "colcon not found", "make setup"),
+    "a later pytest": (
+        "versions",
+        {"package": {**VERSIONS, "pytest": "9.0.0"}.get},
+        Status.WEAK,
+        "Ubuntu 24.04, the platform of Jazzy, has others: pytest 9.0.0 for 7.4.4",
+        "make setup",
+    ),
+    "no flake8": (
+        "versions",
+        {"package": {**VERSIONS, "flake8": None}.get},
+        Status.WEAK,
+        "flake8 is not found for 7.0.0",
+        "make setup",
+    ),
     "no CMake": ("build tools", {"which": without("cmake")}, Status.MISSING, "cmake not found", "make setup"),
     "no nbgrader": (
         "notebooks",

@@ -220,7 +220,7 @@ def test_each_build_type_has_its_files() -> None:
         "package.xml", "LICENSE", "setup.py", "setup.cfg", "resource/p", "p/", "p/__init__.py", "p/n.py",
         "p/l/__init__.py", "test/test_copyright.py", "test/test_flake8.py", "test/test_pep257.py",
     }  # fmt: skip
-    assert "extras_require={'test': ['pytest']}" in python["setup.py"]
+    assert "tests_require=['pytest']" in python["setup.py"]
     assert "script_dir=$base/lib/p" in python["setup.cfg"]
     cmake = dict(files(spec(build_type="ament_cmake"), None))
     assert set(cmake) == {"package.xml", "CMakeLists.txt", "src/", "include/p/"}

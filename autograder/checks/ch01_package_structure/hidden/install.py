@@ -92,10 +92,10 @@ def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
 
 @check(points=1, depends=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
-@hint("extras_require={'test': ['pytest']}; setuptools no longer knows tests_require.")
-def test_names_pytest(installed_dance: Installed) -> None:
+@hint("extras_require={'test': ['pytest']} says so to every setuptools.")
+def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    expect_pytest(installed_dance)
+    expect_pytest(workspace, installed_dance)
 
 
 @check(points=2, depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)

@@ -82,11 +82,11 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None
 
 
 @check(points=1, depends=("alarm_builds",), doc=contract.COLCON)
-@hint("colcon build warns: Unknown distribution option.")
-@hint("extras_require={'test': ['pytest']} instead of tests_require=['pytest'].")
-def test_alarm_names_pytest(installed_alarm: Installed) -> None:
+@hint("colcon test runs pytest only for a package that says that it uses it.")
+@hint("extras_require={'test': ['pytest']} says so to every setuptools.")
+def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) -> None:
     """setup.py says, in a way that colcon understands, that its tests are run by pytest."""
-    expect_pytest(installed_alarm)
+    expect_pytest(workspace, installed_alarm)
 
 
 @check(points=2, depends=("alarm_executable", "alarm_subpackages"), doc=contract.CREATE)

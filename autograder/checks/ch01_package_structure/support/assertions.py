@@ -14,6 +14,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.packages import find_packages
 from autograder.probes import imports, manifest
+from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
 
@@ -128,11 +129,11 @@ def licence(installed: Installed) -> str:
     return installed.metadata.get("License-Expression", installed.metadata.get("License", ""))
 
 
-def expect_pytest(installed: Installed) -> None:
+def expect_pytest(workspace: Workspace, installed: Installed) -> None:
     """Fail the check unless setup.py names pytest in a way that colcon test sees."""
     named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
     expect(
-        "pytest" in named,
-        "The installed package names no pytest for its tests, so colcon test would run none of them: tests_require is "
-        "no longer known, extras_require={'test': ['pytest']} is.",
+        "pytest" in named or runs_pytest(workspace, installed.package),
+        "`colcon test` does not run pytest for this package, because setup.py does not name pytest for its tests: "
+        "extras_require={'test': ['pytest']} names it.",
     )

@@ -13,7 +13,7 @@ from autograder.probes.junit import ClaimedOutcome
 
 check = group("craft")
 LINTERS = ("test_flake8", "test_pep257")
-EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest; tests_require is no longer read."
+EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
 
 @check(points=1, depends=("guard_pass",), doc=contract.PYTEST)

@@ -97,7 +97,8 @@ class Bend:
         along = np.clip(x - start.x, 0.0, self.first - start.x)
         up = np.where(x > self.first - 0.9, np.clip(self.side * y, 0.0, self.second), 0.0)
         enough = self.first - start.x + self.second - 1.5  # it turns round before the end
-        return np.minimum(1.0, (along + up) / enough)
+        share: Floats = np.minimum(1.0, (along + up) / enough)
+        return share
 
 
 def draw_bend(draw: random.Random) -> Bend:

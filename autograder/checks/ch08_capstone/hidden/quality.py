@@ -26,7 +26,7 @@ def tested(workspace: Workspace) -> Report:
 
 
 @check(points=2, depends=("build", "interface_package"))
-@hint("extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.")
+@hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: Report) -> None:
     """Colcon test finds the package's tests: the student's own, the integration test and both linters."""

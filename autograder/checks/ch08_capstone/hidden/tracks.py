@@ -31,7 +31,8 @@ class LidarFault:
 
 def speeds(recording: Recording) -> Floats:
     """Return how fast the robot really moves, m/s, one value a state."""
-    return np.abs(recording.velocities[:, 0, 0])
+    found: Floats = np.abs(recording.velocities[:, 0, 0])
+    return found
 
 
 def path(recording: Recording) -> Floats:

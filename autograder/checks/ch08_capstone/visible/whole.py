@@ -14,6 +14,7 @@ from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe, test_runs
+from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import look
 from autograder.probes.parameters import for_node, read_file
 from autograder.probes.test_reports import Report, TestRun
@@ -73,11 +74,12 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
 
 @check(points=1, group="step_7", depends=("package",), doc=contract.TESTING_DOC)
 @hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
-@hint("extras_require={'test': ['pytest']} in setup.py: without it, colcon runs no test and is content.")
+@hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
     extras = look(workspace.install, PACKAGE).extras
-    expect(any("pytest" in found for found in extras.get("test", ())), "setup.py has no extras_require for the tests.")
+    named = any("pytest" in found for found in extras.get("test", ())) or runs_pytest(workspace, PACKAGE)
+    expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
     absent = _absent(workspace, LINTERS)
     expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")
     report = reports.result()[LINTERS]

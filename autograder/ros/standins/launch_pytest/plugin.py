@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
+    from _pytest.fixtures import FixtureDef  # pytest exports it since 8.1
     from launch import LaunchContext, LaunchService
 
     from ._run import LaunchRun
@@ -27,7 +28,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: pytest.FixtureRequest) -> Any:
+def pytest_fixture_setup(fixturedef: FixtureDef[Any], request: pytest.FixtureRequest) -> Any:
     """Launch the description that a launch fixture returns; shut it down when the fixture ends."""
     value = yield
     options = getattr(fixturedef.func, "_launch_pytest_options", None)

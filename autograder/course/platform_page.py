@@ -1,0 +1,72 @@
+"""Writes the page about the platform: the versions of Ubuntu 24.04, and where the lock installs others."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from packaging.requirements import Requirement
+
+from autograder.layout import ROOT
+from autograder.ros.platform_versions import PACKAGES, PlatformPackage
+
+PAGE = ROOT / "docs" / "platform.md"
+LOCK = ROOT / "requirements.lock"
+PYTHONS = ("3.10", "3.11", "3.12", "3.13")
+REQUIREMENT = re.compile(r"^([^\s#-][^\\\n]*)", re.MULTILINE)
+
+HEAD = """# The platform, and what is installed here
+
+ROS 2 Jazzy belongs to Ubuntu 24.04 with Python 3.12. What students' programs, builds and tests meet has the versions of
+that platform, so that what a student learns here holds there. `make setup` installs them from `requirements.lock`.
+`autograder doctor` says where a machine has others. The versions of Ubuntu are those of
+https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own package repository.
+
+`autograder course tables` writes this page from the lock; a test holds it.
+
+| package | apt's name | Ubuntu 24.04 | here | where a student meets it | why another version |
+| --- | --- | --- | --- | --- | --- |
+"""
+
+
+def platform_page(lock: str) -> str:
+    """Return the page as Markdown.
+
+    Args:
+        lock: the text of `requirements.lock`.
+    """
+    by_python = {python: locked(lock, python) for python in PYTHONS}
+    return HEAD + "".join(f"| {' | '.join(_row(package, by_python))} |\n" for package in PACKAGES)
+
+
+def locked(lock: str, python: str) -> dict[str, str]:
+    """Return the version of each package that a lock installs for a Python of this version, on Linux x86-64.
+
+    Raises:
+        InvalidRequirement: a line is no requirement.
+    """
+    return {found.name: next(iter(found.specifier)).version for found in _requirements(lock, python)}
+
+
+def _requirements(lock: str, python: str) -> Iterator[Requirement]:
+    machine = {"platform_machine": "x86_64", "sys_platform": "linux"}
+    environment = {**machine, "python_version": python, "python_full_version": f"{python}.0"}
+    for line in REQUIREMENT.findall(lock):
+        requirement = Requirement(line)
+        if requirement.marker is None or requirement.marker.evaluate(environment):
+            yield requirement
+
+
+def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:
+    here: dict[str, list[str]] = {}
+    for python, versions in by_python.items():
+        here.setdefault(versions[package.name], []).append(python)
+    told = "; ".join(
+        version if len(pythons) == len(PYTHONS) else f"{version} (Python {_span(pythons)})"
+        for version, pythons in here.items()
+    )
+    return package.name, package.debian, package.version, told, package.meets, package.differs
+
+
+def _span(pythons: list[str]) -> str:
+    return pythons[0] if len(pythons) == 1 else f"{pythons[0]} to {pythons[-1]}"

@@ -1,0 +1,37 @@
+"""The page about the platform holds what the lock installs, and each version that is another one has its reason."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.course.platform_page import LOCK, PAGE, PYTHONS, locked, platform_page
+from autograder.ros.platform_versions import PACKAGES
+
+LOCKED = """numpy==1.26.4 ; python_full_version < '3.13' \\
+    --hash=sha256:00
+numpy==2.1.3 ; python_full_version == '3.13.*' and sys_platform == 'linux' \\
+    --hash=sha256:01
+pytest==7.4.4
+"""
+
+
+def test_a_lock_is_read_for_each_python() -> None:
+    assert locked(LOCKED, "3.12") == {"numpy": "1.26.4", "pytest": "7.4.4"}
+    assert locked(LOCKED, "3.13") == {"numpy": "2.1.3", "pytest": "7.4.4"}
+
+
+def test_the_page_tells_what_the_lock_installs() -> None:
+    assert PAGE.read_text(encoding="utf-8") == platform_page(LOCK.read_text(encoding="utf-8")), (
+        "docs/platform.md is out of date: run `autograder course tables`"
+    )
+
+
+@pytest.mark.parametrize("python", PYTHONS)
+def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not(python: str) -> None:
+    versions = locked(LOCK.read_text(encoding="utf-8"), python)
+    unexplained = {
+        package.name: versions[package.name]
+        for package in PACKAGES
+        if versions[package.name] != package.version and not (package.differs and python == "3.13")
+    }
+    assert unexplained == {}
