@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import signal
 import time
-from types import FrameType
 from typing import Any
 
 import rclpy
@@ -17,7 +16,7 @@ from nav_msgs.msg import Odometry
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
@@ -197,17 +196,20 @@ class SimulatorNode(Node):
 def main(args: list[str] | None = None) -> int:
     """Run the node until Ctrl-C or SIGTERM; return 0, or 1 for settings that make no sense.
 
-    It takes the signals itself: rclpy's own handler would shut the context down in the middle of a callback, and a node
-    that publishes all the time would then end in an RCLError as often as not.
+    It takes the signals itself and ends between two callbacks. rclpy's own handler would shut the context down in the
+    middle of one: a publisher then raises RCLError. A KeyboardInterrupt there would leave half a row in the recording.
     """
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    signal.signal(signal.SIGTERM, _interrupt)
+    told_to_end: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _: told_to_end.append(number))
     node = None
     try:
         node = SimulatorNode()
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not told_to_end:
+            executor.spin_once(timeout_sec=PERIOD)
     except (SimError, ParameterException) as error:
         rclpy.logging.get_logger("simulator").fatal(str(error))
         return 1
@@ -216,7 +218,3 @@ def main(args: list[str] | None = None) -> int:
             node.destroy_node()
         rclpy.try_shutdown()
     return 0
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt

@@ -23,6 +23,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
+from sim.recording import load_recording
+
 ROOT = Path(__file__).resolve().parents[2]
 WORLDS = ROOT / "assets" / "worlds"
 PATIENCE = 60.0  # seconds: a deadline, not an expectation
@@ -254,6 +256,37 @@ def test_it_ends_cleanly_when_told_to(listener: Listener, simulator: Start, numb
     output, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, output
     assert "Traceback" not in output
+
+
+# The simulator, which is interrupted while it adds the second row to its recording.
+INTERRUPTED = """
+import os, signal, sys
+from sim import recording
+from sim.bridge.node import main
+clearance, calls = recording.clearance, []
+def interrupted(*arguments):
+    calls.append(arguments)
+    if len(calls) == 2:
+        os.kill(os.getpid(), signal.SIGINT)
+    return clearance(*arguments)
+recording.clearance = interrupted
+sys.exit(main(sys.argv))
+"""
+
+
+def test_a_recording_is_whole_when_the_interrupt_comes_in_the_middle_of_a_row(ros_domain: int, tmp_path: Path) -> None:
+    parameters = (f"world:={WORLDS / 'empty_room.yaml'}", "engine:=numpy", f"recording:={tmp_path / 'run.npz'}")
+    arguments = [text for parameter in parameters for text in ("-p", parameter)]
+    process = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED, "--ros-args", *arguments],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+    )
+    assert process.returncode == 0, process.stderr
+    recorded = load_recording(tmp_path / "run.npz")
+    assert len(recorded.times_ns) == len(recorded.clearances) == 2
 
 
 @pytest.mark.parametrize(
