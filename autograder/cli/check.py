@@ -16,12 +16,22 @@ from autograder.result import write_json
 
 @click.command()
 @click.argument("assignment", metavar="ID")
-@click.argument("workspace", type=click.Path(path_type=Path), default=Path("ws"), metavar="[PATH]")
+@click.argument("workspace", type=click.Path(path_type=Path), default=None, metavar="[PATH]")
 @json_option
-def check(assignment: str, workspace: Path, json_file: Path | None) -> None:
-    """Run the visible checks of the chapter ID on the colcon workspace at PATH (./ws by default)."""
-    report = run_checks(assignment, workspace)
+def check(assignment: str, workspace: Path | None, json_file: Path | None) -> None:
+    """Run the visible checks of the chapter ID on the colcon workspace at PATH.
+
+    By default that is ./ws, or the chapter's ws in the course's folder or in its folder `chapters`.
+    """
+    report = run_checks(assignment, workspace or _workspace(assignment))
     click.echo(repr(report))
     if json_file is not None:
         write_json(json_file, dataclasses.asdict(report))
     sys.exit(0 if isinstance(report, CheckReport) and report.passed else 1)
+
+
+def _workspace(assignment: str) -> Path:
+    """Return the workspace that is meant where none is named: the one here, else the chapter's below here."""
+    here = Path("ws")
+    below = (Path(assignment) / "ws", Path("chapters", assignment, "ws"))
+    return next((folder for folder in (here, *below) if folder.is_dir()), here)

@@ -13,6 +13,7 @@ from autograder.course import judged_later, platform_page
 from autograder.course.cells import is_graded
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
+from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.points import set_points, wrong_points
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
@@ -78,7 +79,7 @@ def _chosen(names: tuple[str, ...], root: Path) -> list[Chapter]:
 def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
     """Return everything that is wrong with a chapter."""
     notebook, name = chapter.read(), chapter.path.name
-    found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook)]
+    found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         try:
             found += wrong_points(name, notebook, suites.hidden(chapter.assignment).checks)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from autograder.checks import suites
 from autograder.course.findings import Finding
+from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters
 from autograder.layout import CHAPTERS
@@ -27,17 +28,19 @@ def course_page() -> tuple[str, tuple[Finding, ...]]:
         syllabus,
         [(name, book, suites.hidden(name).checks if name in have_suites else ()) for name, book in notebooks.items()],
     )
+    efforts = {name: effort(book) for name, book in notebooks.items()}
     titles = {name: book.cells[0].source.splitlines()[0].removeprefix("# ") for name, book in notebooks.items()}
-    return page(syllabus, covered, titles), covered.findings
+    return page(syllabus, covered, titles, efforts), covered.findings
 
 
-def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str]) -> str:
+def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
     """Return the instructors' page as Markdown.
 
     Args:
         syllabus: the entries to cover.
         covered: the locations that cover them.
         titles: title of each chapter by its name, in order.
+        efforts: what there is to do in each chapter, by its name.
     """
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
@@ -45,9 +48,14 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str]) 
             HEAD,
             "## Chapters\n",
             *_table(
-                ("chapter", "title", "points"),
-                [(f"[{n}]({n}/{n}.ipynb)", t, f"{points[n]:g}" if points[n] else "") for n, t in titles.items()],
+                ("chapter", "title", "points", "words", "code cells", "lines to write", "time of a beginner"),
+                [
+                    (f"[{n}]({n}/{n}.ipynb)", t, f"{points[n]:g}" if points[n] else "", *_effort(efforts[n]))
+                    for n, t in titles.items()
+                ],
             ),
+            f"The time is counted: a minute for {WORDS_A_MINUTE:g} words, {MINUTES_A_CELL:g} minute for a code cell, "
+            f"{MINUTES_A_LINE:g} minutes for a line to write.\n",
             "## Objectives\n",
             *_table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
             "## The chapter's contents\n",
@@ -59,6 +67,10 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str]) 
             ),
         ]
     )
+
+
+def _effort(needed: Effort) -> tuple[str, ...]:
+    return str(needed.words), str(needed.cells), str(needed.lines), told(needed.reading + needed.writing)
 
 
 def _points(covered: SyllabusCoverage, name: str) -> float:

@@ -152,6 +152,23 @@ def test_an_error_that_is_known_becomes_a_sentence(
     assert capsys.readouterr().err == f"autograder: {error}\n"
 
 
+@pytest.mark.parametrize("folder", ["ws", "02_nodes/ws", "chapters/02_nodes/ws"])
+def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / folder).mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    asked: list[tuple[str, Path]] = []
+
+    def run_checks(assignment: str, workspace: Path) -> CheckReport:
+        asked.append((assignment, workspace))
+        return CheckReport(assignment, ())
+
+    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", run_checks)
+    _run("check", "02_nodes")
+    assert asked == [("02_nodes", Path(folder))]
+
+
 @pytest.mark.parametrize(("outcome", "status"), [(Outcome.PASSED, 0), (Outcome.FAILED, 1), (Outcome.NOT_CHECKED, 1)])
 def test_checking_exits_0_only_when_every_check_passed(
     outcome: Outcome, status: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

@@ -28,7 +28,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     chapter(
         tmp_path,
         notebook(
-            prose("# Title", "title"),
+            prose("# Title\n\n*5 minutes to read and run, 5 minutes for the exercises.*", "title"),
             code("", "node", course=origin, nbgrader=solution("node")),
             code("grade()", "g", course={"group": "graph"}, nbgrader=grade("g", 1)),
         ),

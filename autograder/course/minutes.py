@@ -1,0 +1,80 @@
+"""Counts how long a beginner takes for a chapter, which its first cell promises.
+
+The three rates fit the times of beginners who were watched: 65 to 90 minutes for chapters 1 and 2, 150 to 190 for
+chapter 3.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from nbformat import NotebookNode
+
+from autograder.course.findings import Finding
+from autograder.course.solution_markers import BEGIN, END
+
+WORDS_A_MINUTE = 120.0  # of a technical text, for somebody who reads English as a second language
+MINUTES_A_CELL = 1.0  # read a code cell, run it, look at what it shows
+MINUTES_A_LINE = 0.8  # think, write and mend
+LONGEST_IN_MINUTES = 100.0
+_ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What there is to do in a chapter.
+
+    Attributes:
+        words: words of text.
+        cells: code cells.
+        lines: lines that the reference has where students write theirs; empty ones do not count.
+    """
+
+    words: int
+    cells: int
+    lines: int
+
+    @property
+    def reading(self) -> float:
+        """Minutes to read and run it."""
+        return self.words / WORDS_A_MINUTE + self.cells * MINUTES_A_CELL
+
+    @property
+    def writing(self) -> float:
+        """Minutes for the exercises."""
+        return self.lines * MINUTES_A_LINE
+
+
+def effort(source: NotebookNode) -> Effort:
+    """Count what there is to do in a source notebook."""
+    texts = [cell.source for cell in source.cells if cell.cell_type == "markdown"]
+    code = [cell.source for cell in source.cells if cell.cell_type == "code"]
+    lines = [line for cell in code for answer in _ANSWER.findall(cell) for line in answer.split("\n") if line.strip()]
+    return Effort(sum(len(text.split()) for text in texts), len(code), len(lines))
+
+
+def promise(needed: Effort) -> str:
+    """Return the words of a chapter's first cell about the time that it takes."""
+    return f"{told(needed.reading)} to read and run, {told(needed.writing)} for the exercises"
+
+
+def told(minutes: float) -> str:
+    """Return a time in words: up to 100 minutes in steps of five, a longer one in half hours."""
+    if minutes <= LONGEST_IN_MINUTES:
+        return f"{max(5, 5 * round(minutes / 5))} minutes"
+    halves = round(minutes / 30)
+    return f"{halves // 2}{'½' if halves % 2 else ''} hours"
+
+
+def wrong_promise(name: str, source: NotebookNode) -> list[Finding]:
+    """Return a finding where the first cell of a source notebook says another time than the rule.
+
+    Args:
+        name: file name of the notebook, for the finding.
+        source: the notebook.
+    """
+    words = promise(effort(source))
+    if words in " ".join(source.cells[0].source.split()):
+        return []
+    return [Finding(name, source.cells[0].id, f"by the counted rule, this should hold: {words}")]
