@@ -121,9 +121,9 @@ def run_notebook(
         raise CourseError(f"{path.name}: a chapter's notebook has its folder's name, {chapter.path.name}")
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
-    with _copy_of(chapter.folder) as folder:
+    with working_copy(chapter.folder) as folder:
         own = {} if domain is None else {"ROS_DOMAIN_ID": str(domain)}
-        failure = _execute(notebook, folder, timeout, {**os.environ, **own})
+        failure = execute(notebook, folder, timeout, {**os.environ, **own})
     seconds = time.monotonic() - started
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
@@ -132,15 +132,23 @@ def run_notebook(
 
 
 @contextmanager
-def _copy_of(folder: Path) -> Iterator[Path]:
+def working_copy(folder: Path) -> Iterator[Path]:
+    """Copy a chapter's folder, without what was built there; yield the copy and remove it afterwards."""
     with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
         copy = Path(scratch) / folder.name
         shutil.copytree(folder, copy, ignore=layout.NOT_COPIED)
         yield copy
 
 
-def _execute(notebook: NotebookNode, folder: Path, timeout: float, environment: dict[str, str]) -> str | None:
-    """Execute in place; return what went wrong, or None."""
+def execute(notebook: NotebookNode, folder: Path, timeout: float, environment: dict[str, str]) -> str | None:
+    """Execute a notebook in place, in a kernel of its own; return what went wrong, or None.
+
+    Args:
+        notebook: gets the outputs.
+        folder: where the kernel runs.
+        timeout: seconds that one cell may take.
+        environment: variables of the kernel.
+    """
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
     )

@@ -78,7 +78,7 @@ def main(args=None):
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except RuntimeError:
-        if rclpy.ok():  # if not, a signal fell between two waits, and rclpy tripped over it
+        if rclpy.ok():  # if not, a signal came between two waits, and rclpy raised this
             raise
     finally:
         if node is not None:

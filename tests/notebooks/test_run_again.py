@@ -1,0 +1,57 @@
+"""A notebook can be run again: twice in one kernel, and in a new kernel on the folder that was used."""
+
+from __future__ import annotations
+
+import copy
+import os
+import re
+from pathlib import Path
+
+import pytest
+from nbformat import NotebookNode
+
+from autograder.course import Chapter, Form, chapters, in_form
+from autograder.course.execute import execute, working_copy
+from autograder.course.sync import write_notebook
+from autograder.ros.domains import Domain
+
+# What the text around a cell relies on: which error is shown, how many checks passed, what was not found.
+RELIED_ON = re.compile(
+    r"\b[A-Z]\w*(?:Error|Exception)\b|\d+ of \d+ visible checks passed|No executable found|exit status [1-9]\d*|"
+    r"Package '?\w*'? ?not found|process has finished cleanly"
+)
+
+
+def shown(cell: NotebookNode) -> set[str]:
+    """Return what a cell shows of that on which the text may rely."""
+    texts = [output.get("text") or output.get("data", {}).get("text/plain", "") for output in cell.get("outputs", [])]
+    return set(RELIED_ON.findall("\n".join(texts)))
+
+
+def twice(notebook: NotebookNode) -> NotebookNode:
+    """Return a notebook that holds all cells two times."""
+    doubled = copy.deepcopy(notebook)
+    again = copy.deepcopy(notebook.cells)
+    for cell in again:
+        cell.id = f"{cell.id}-again"
+    doubled.cells += again
+    return doubled
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(2400)
+@pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
+def test_a_notebook_that_is_run_again_shows_the_same(chapter: Chapter, tmp_path: Path) -> None:
+    notebook = in_form(chapter.read(), Form.SOURCE)
+    one_kernel, new_kernel = twice(notebook), copy.deepcopy(notebook)
+    with working_copy(chapter.folder) as folder, Domain() as domain:
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
+        for name, executed in (("one_kernel", one_kernel), ("new_kernel", new_kernel)):
+            failure = execute(executed, folder, 400, environment)
+            write_notebook(tmp_path / f"{name}.ipynb", executed)
+            assert failure is None, failure
+    count = len(notebook.cells)
+    first = {cell.id: shown(cell) for cell in one_kernel.cells[:count]}
+    assert any(first.values())
+    assert {cell.id.removesuffix("-again"): shown(cell) for cell in one_kernel.cells[count:]} == first
+    assert {cell.id: shown(cell) for cell in new_kernel.cells} == first
