@@ -20,7 +20,7 @@ VERIFY_ARGS ?=
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
 LINTERS := lint-style lint-types lint-standins lint-imports
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch public-packages lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -94,6 +94,15 @@ verify:         ## prove the grader: reference, release and mutants (WORKERS=4 V
 real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
 	@$(BOOTSTRAP)
 	@$(BIN)/python -m autograder.ros.real_launch
+
+EXAMPLES = $(or $(ROS2_EXAMPLES_SOURCE),.build/public/examples)
+DEMOS = $(or $(ROS2_DEMOS_SOURCE),.build/public/demos)
+public-packages: ## build, test and run ROS's own examples and demos (ROS2_EXAMPLES_SOURCE=, ROS2_DEMOS_SOURCE=)
+	@$(BOOTSTRAP) --dev
+	@test -d $(EXAMPLES) || git clone --depth 1 -b jazzy https://github.com/ros2/examples.git $(EXAMPLES)
+	@test -d $(DEMOS) || git clone --depth 1 -b jazzy https://github.com/ros2/demos.git $(DEMOS)
+	ROS2_EXAMPLES_SOURCE=$(EXAMPLES) ROS2_DEMOS_SOURCE=$(DEMOS) $(BIN)/python -m pytest tests/e2e/test_public_packages.py \
+		-m nightly $(PYTEST_ARGS)
 
 # Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
 COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \

@@ -156,9 +156,10 @@ class SetUp:
     def wanted(self, *, dev: bool) -> dict[str, str]:
         """Return what a finished set-up would be stamped with."""
         lock, mend = self.root / "requirements.lock", self.root / "autograder" / "ros" / "mend.py"
+        project = (self.root / "pyproject.toml", self.root / "autograder" / "interfaces" / "tutorials.yaml")
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
-        base = {"base": digest(Path(__file__), lock, mend, *about), "project": digest(self.root / "pyproject.toml")}
+        base = {"base": digest(Path(__file__), lock, mend, *about), "project": digest(*project)}
         return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
 
     def stamp(self) -> dict[str, str]:
@@ -194,6 +195,9 @@ class SetUp:
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
         self._step("the ROS wheels could not be mended", self.python, "-m", "autograder.ros.mend")
+        say("building the interface packages of ROS's tutorials")
+        failed = "the interface packages of ROS's tutorials could not be built"
+        self._step(failed, self.python, "-m", "autograder.interfaces.tutorials")
         fresh = self.venv / f"{STAMP}.fresh"
         fresh.write_text(json.dumps({**have, **self.wanted(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
@@ -256,6 +260,7 @@ def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> No
     apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
     run(*apt, "update", quiet=True)
     status = run(*apt, "install", "-y", "--no-install-recommends", *missing, quiet=True)
+    tried.parent.mkdir(exist_ok=True)
     tried.write_text(" ".join({*before, *missing}))
     if status != 0:
         say(f"apt-get failed, the rest goes on; by hand: {by_hand}")
@@ -278,15 +283,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         interpreter = Interpreter.running()
         check_machine(interpreter.version, platform.system(), platform.machine())
         set_up = SetUp(root, interpreter, sourced_ros(os.environ, root / ".venv", interpreter), run)
-        if set_up.lacks(dev=options.dev):
-            with alone(root / ".build" / "set-up.lock"):
-                set_up.make(dev=options.dev)
         asked = [tool for tool in TOOLS if options.browser or tool != "chromium"]
         missing = [tool for tool in asked if not any(map(shutil.which, TOOLS[tool]))]
         if not Path(sysconfig.get_path("include"), "Python.h").is_file():
             missing.append("python{}.{}-dev".format(*interpreter.version))
         if missing:
-            install_tools(missing, set_up.venv / "apt-tried", os.geteuid(), run)
+            install_tools(missing, root / ".build" / "apt-tried", os.geteuid(), run)
+        if set_up.lacks(dev=options.dev):
+            with alone(root / ".build" / "set-up.lock"):
+                set_up.make(dev=options.dev)
     except SetUpError as error:
         print(f"set-up: {error}.", file=sys.stderr)
         return 1

@@ -28,6 +28,20 @@ https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own pa
 | --- | --- | --- | --- | --- | --- |
 """
 
+TAIL = """
+## Interface packages without wheels
+
+The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for
+Python programs, from `autograder/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have the hashes of
+the real ones, so programs meet those of other computers. A CMake package cannot use them: they have no CMake files.
+
+## Public packages
+
+`make public-packages` builds the Python packages of ros2/examples, and `demo_nodes_py` and `action_tutorials_py` of
+ros2/demos, as they are. It runs their tests by `colcon test`, and lets their servers and clients, publishers and
+subscribers meet.
+"""
+
 
 def platform_page(lock: str) -> str:
     """Return the page as Markdown.
@@ -36,7 +50,7 @@ def platform_page(lock: str) -> str:
         lock: the text of `requirements.lock`.
     """
     by_python = {python: locked(lock, python) for python in PYTHONS}
-    return HEAD + "".join(f"| {' | '.join(_row(package, by_python))} |\n" for package in PACKAGES)
+    return HEAD + "".join(f"| {' | '.join(_row(package, by_python))} |\n" for package in PACKAGES) + TAIL
 
 
 def locked(lock: str, python: str) -> dict[str, str]:

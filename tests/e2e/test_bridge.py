@@ -286,7 +286,7 @@ def test_a_recording_is_whole_when_the_interrupt_comes_in_the_middle_of_a_row(ro
     )
     assert process.returncode == 0, process.stderr
     recorded = load_recording(tmp_path / "run.npz")
-    assert len(recorded.times_ns) == len(recorded.clearances) == 2
+    assert len(recorded.times_ns) == len(recorded.clearances) >= 2
 
 
 @pytest.mark.parametrize(

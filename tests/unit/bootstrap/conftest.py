@@ -49,6 +49,7 @@ class Commands:
             "requirements-dev.lock": "dev",
             "-e ": "project",
             "ros.mend": "mend",
+            "interfaces.tutorials": "tutorials",
             "--target": "pip",
         }
         ran = [word for line in self.ran for key, word in words.items() if key in line]
@@ -60,8 +61,14 @@ class Commands:
 def clone(tmp_path: Path) -> Path:
     """A clone's root, with the files that a set-up depends on."""
     root = tmp_path / "clone"
-    (root / "autograder/ros").mkdir(parents=True)
-    for name in ("requirements.lock", "requirements-dev.lock", "pyproject.toml", "autograder/ros/mend.py"):
+    for name in (
+        "requirements.lock",
+        "requirements-dev.lock",
+        "pyproject.toml",
+        "autograder/ros/mend.py",
+        "autograder/interfaces/tutorials.yaml",
+    ):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(LOCK)
     return root
 

@@ -22,7 +22,7 @@ def set_up(clone: Path, commands: Any) -> SetUp:
 
 def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend"]
+    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
     shown = capsys.readouterr().out
     assert shown.startswith("set-up: making .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
     set_up.make(dev=False)
@@ -34,7 +34,7 @@ def test_the_tests_packages_are_added_to_what_stands_and_then_stay(set_up: SetUp
     set_up.make(dev=False)
     commands.take()
     set_up.make(dev=True)
-    assert commands.take() == ["dev", "project", "mend"]
+    assert commands.take() == ["dev", "project", "mend", "tutorials"]
     set_up.make(dev=False)
     set_up.make(dev=True)
     assert commands.take() == []
@@ -42,16 +42,17 @@ def test_the_tests_packages_are_added_to_what_stands_and_then_stay(set_up: SetUp
 
 def test_the_tests_packages_come_at_once_when_nothing_stands(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=True)
-    assert commands.take() == ["venv", "dev", "project", "mend"]
+    assert commands.take() == ["venv", "dev", "project", "mend", "tutorials"]
     assert set_up.lacks(dev=False) == []
 
 
 @pytest.mark.parametrize(
     ("changed", "again"),
     [
-        ("requirements.lock", ["venv", "base", "project", "mend"]),
-        ("autograder/ros/mend.py", ["venv", "base", "project", "mend"]),
-        ("pyproject.toml", ["project", "mend"]),
+        ("requirements.lock", ["venv", "base", "project", "mend", "tutorials"]),
+        ("autograder/ros/mend.py", ["venv", "base", "project", "mend", "tutorials"]),
+        ("pyproject.toml", ["project", "mend", "tutorials"]),
+        ("autograder/interfaces/tutorials.yaml", ["project", "mend", "tutorials"]),
         ("requirements-dev.lock", []),
     ],
 )
@@ -94,7 +95,7 @@ def test_an_unreadable_stamp_counts_as_none(set_up: SetUp, stamp: str) -> None:
     assert set_up.lacks(dev=False) == ["base", "project"]
 
 
-@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.mend"])
+@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.mend", "interfaces.tutorials"])
 def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
     commands.interrupting = step
     with pytest.raises(KeyboardInterrupt):
@@ -102,7 +103,7 @@ def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, comma
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend"]
+    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
 
 
 def test_an_interrupted_addition_is_made_again_from_the_start(set_up: SetUp, commands: Any) -> None:
@@ -113,7 +114,7 @@ def test_an_interrupted_addition_is_made_again_from_the_start(set_up: SetUp, com
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend"]
+    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
 
 
 @pytest.mark.parametrize(

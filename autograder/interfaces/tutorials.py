@@ -1,0 +1,78 @@
+"""Installs the interface packages of ROS's own tutorials beside the wheels, which lack them.
+
+`example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs` are built from `tutorials.yaml` into the prefix of
+this environment. They are for Python programs: they lack what a CMake package that uses them would need. Set-up runs
+this module. A sourced ROS 2 has the real packages, and nothing happens.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import yaml
+
+from autograder.interfaces.build import build
+from autograder.interfaces.cache import Cache
+from autograder.interfaces.exceptions import InterfaceError
+from autograder.ros import RosError, find
+
+DEFINITIONS = Path(__file__).with_name("tutorials.yaml")
+INSTALLED = ("share", "lib", "include")
+
+
+def packages() -> dict[str, dict[str, str]]:
+    """Return each package's definitions, text by path, as `build` takes them."""
+    found: dict[str, dict[str, str]] = yaml.safe_load(DEFINITIONS.read_text(encoding="utf-8"))
+    return found
+
+
+def install(prefix: Path) -> list[str]:
+    """Build the packages that are not in `prefix`, or are there with other definitions; return their names.
+
+    Args:
+        prefix: the virtual environment, in which the ROS wheels are.
+
+    Raises:
+        InterfaceError: one cannot be built.
+        RosError: there is no ROS 2 Jazzy.
+    """
+    missing = {name: files for name, files in packages().items() if not _installed(prefix, name, files)}
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, files in missing.items():
+            built = build(name, files, cache=Cache(Path(scratch)))
+            for folder in INSTALLED:
+                shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True)
+    return list(missing)
+
+
+def _installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
+    share = prefix / "share" / package
+    return all(
+        (share / path).is_file() and (share / path).read_text().split() == text.split() for path, text in files.items()
+    )
+
+
+def main() -> int:
+    """Install them into this environment; return the exit status.
+
+    Without a compiler it is told how to do that later: much of the course needs neither.
+    """
+    again = f"{sys.executable} -m autograder.interfaces.tutorials"
+    try:
+        if find().kind != "wheels":
+            return 0
+        if shutil.which("g++") is None:
+            print(f"g++ is missing, so {', '.join(packages())} are not installed; once it is there, run {again}")
+            return 0
+        install(Path(sys.prefix))
+    except (InterfaceError, RosError) as error:
+        print(f"The interface packages of ROS's tutorials cannot be installed: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

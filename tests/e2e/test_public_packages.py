@@ -1,0 +1,108 @@
+"""Public ROS packages, as they are, build here, their tests run, and their programs talk to each other.
+
+Each variable names a clone of a repository, branch jazzy: ROS2_EXAMPLES_SOURCE of github.com/ros2/examples,
+ROS2_DEMOS_SOURCE of github.com/ros2/demos. `make public-packages` clones them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SOURCES = {
+    "ROS2_EXAMPLES_SOURCE": ("rclpy",),
+    "ROS2_DEMOS_SOURCE": ("demo_nodes_py", "action_tutorials/action_tutorials_py"),
+}
+PATIENCE = 600.0
+# A program that goes on, what it says when it is ready, a program that meets it, and what that one says.
+PAIRS = (
+    ("examples_rclpy_minimal_service service", None, "examples_rclpy_minimal_client client", "for 41 + 1 = 42"),
+    ("examples_rclpy_minimal_service service", None, "examples_rclpy_minimal_client client_async", "for 41 + 1 = 42"),
+    ("demo_nodes_py add_two_ints_server", None, "demo_nodes_py add_two_ints_client", "Result of add_two_ints: 5"),
+    (
+        "examples_rclpy_minimal_action_server server",
+        None,
+        "examples_rclpy_minimal_action_client client",
+        "Goal succeeded! Result: array('i', [0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55])",
+    ),
+    (
+        "action_tutorials_py fibonacci_action_server",
+        None,
+        "action_tutorials_py fibonacci_action_client",
+        "Result: array('i', [0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55])",
+    ),
+    ("demo_nodes_py talker", "Publishing", "demo_nodes_py listener", "I heard: [Hello World"),
+    (
+        "examples_rclpy_minimal_publisher publisher_member_function",
+        "Publishing",
+        "examples_rclpy_minimal_subscriber subscriber_member_function",
+        'I heard: "Hello World',
+    ),
+)
+
+pytestmark = [
+    pytest.mark.nightly,
+    pytest.mark.timeout(2 * PATIENCE),
+    pytest.mark.skipif(
+        not all(os.environ.get(name) for name in SOURCES), reason=f"{' and '.join(SOURCES)} name no clones"
+    ),
+]
+
+
+def ros(workspace: Path, command: str) -> list[str]:
+    """Return the call of a shell's command with ROS switched on and, where there is one, the workspace sourced."""
+    source = "test ! -f install/setup.bash || source install/setup.bash;"
+    return [sys.executable, "-m", "autograder", "ros", "bash", "-c", f"cd '{workspace}'; {source} exec {command}"]
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the packages of both repositories."""
+    folder = tmp_path_factory.mktemp("public")
+    for name, packages in SOURCES.items():
+        for package in packages:
+            link = folder / "src" / package
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.symlink_to(Path(os.environ[name]).resolve() / package)
+    built = subprocess.run(ros(folder, "colcon build"), capture_output=True, text=True, timeout=PATIENCE)
+    assert built.returncode == 0, built.stdout + built.stderr
+    return folder
+
+
+def test_colcon_runs_the_tests_of_each_package(workspace: Path) -> None:
+    command = "colcon test --return-code-on-test-failure"
+    tested = subprocess.run(ros(workspace, command), capture_output=True, text=True, timeout=PATIENCE)
+    assert tested.returncode == 0, tested.stdout + tested.stderr
+    result = subprocess.run(
+        ros(workspace, "colcon test-result --all"), capture_output=True, text=True, timeout=PATIENCE
+    )
+    counts = dict(re.findall(r"build/(\w+)/pytest.xml: (\d+) tests, 0 errors, 0 failures", result.stdout))
+    packages = {path.name for path in (workspace / "build").iterdir() if path.is_dir()}
+    assert set(counts) == packages, result.stdout
+    assert all(int(count) >= 3 for count in counts.values()), counts
+
+
+@pytest.mark.parametrize(("first", "ready", "second", "said"), PAIRS)
+def test_two_programs_talk(
+    workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, said: str
+) -> None:
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(ros_domain), "PYTHONUNBUFFERED": "1"}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "env": environment}
+    with (
+        subprocess.Popen(ros(workspace, f"ros2 run {first}"), **pipes) as server,  # type: ignore[call-overload]
+        subprocess.Popen(ros(workspace, f"ros2 run {second}"), **pipes) as client,  # type: ignore[call-overload]
+    ):
+        try:
+            if ready is not None:
+                assert any(ready in line for line in server.stdout)
+            assert any(said in line for line in client.stdout)
+        finally:
+            for process in (client, server):
+                process.send_signal(signal.SIGINT)
+                process.communicate(timeout=PATIENCE)

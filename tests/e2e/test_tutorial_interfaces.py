@@ -1,0 +1,88 @@
+"""The interface packages of ROS's tutorials are there after set-up, with the types of the real ones."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
+from autograder.interfaces import tutorials
+from autograder.ros import activate
+
+# REP 2011's hash of the type; `ros2 service info --verbose` of a Jazzy shows it.
+ADD_TWO_INTS = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
+
+
+@pytest.fixture(scope="module")
+def prefix() -> Path:
+    ros = activate()
+    if ros.kind != "wheels":
+        pytest.skip("a sourced ROS has its own")
+    return ros.prefixes[0]
+
+
+def test_a_type_has_the_hash_of_the_real_one(prefix: Path) -> None:
+    described = json.loads((prefix / "share/example_interfaces/srv/AddTwoInts.json").read_text())
+    hashes = {entry["type_name"]: entry["hash_string"] for entry in described["type_hashes"]}
+    assert hashes["example_interfaces/srv/AddTwoInts"] == ADD_TWO_INTS
+
+
+def test_each_definition_becomes_a_class(prefix: Path) -> None:
+    for package, files in tutorials.packages().items():
+        for path in files:
+            kind, name = path.rsplit(".", 1)[0].split("/")
+            module = __import__(f"{package}.{kind}", fromlist=[name])
+            assert getattr(module, name)
+
+
+def test_a_server_answers_a_client(prefix: Path, ros_domain: int) -> None:
+    from example_interfaces.srv import AddTwoInts
+
+    def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+        response.sum = request.a + request.b
+        return response
+
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=ros_domain)
+    node = rclpy.create_node("sums", context=context)
+    node.create_service(AddTwoInts, "add_two_ints", add)
+    client = node.create_client(AddTwoInts, "add_two_ints")
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    try:
+        future = client.call_async(AddTwoInts.Request(a=41, b=1))
+        executor.spin_until_future_complete(future, timeout_sec=60.0)
+        assert future.done()
+        assert future.result().sum == 42
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        context.try_shutdown()
+
+
+def test_what_is_installed_is_not_built_again(prefix: Path) -> None:
+    assert tutorials.install(prefix) == []
+
+
+def test_a_missing_package_is_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    one = {"action_tutorials_interfaces": tutorials.packages()["action_tutorials_interfaces"]}
+    monkeypatch.setattr(tutorials, "packages", lambda: one)
+    assert tutorials.install(tmp_path) == ["action_tutorials_interfaces"]
+    assert tutorials.install(tmp_path) == []
+    python = "python{}.{}".format(*sys.version_info)
+    assert (tmp_path / "lib" / python / "site-packages/action_tutorials_interfaces/action/__init__.py").is_file()
+
+
+def test_without_a_compiler_it_says_how_to_install_them_later(
+    prefix: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    assert tutorials.main() == 0
+    told = capsys.readouterr().out
+    assert "g++ is missing" in told
+    assert "-m autograder.interfaces.tutorials" in told
