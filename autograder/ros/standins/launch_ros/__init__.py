@@ -10,9 +10,12 @@ of ROS 2 Jazzy.
 from __future__ import annotations
 
 from standin_notice import guard
+from standin_submodules import offer_submodules
 
 from . import actions, descriptions, parameter_descriptions, substitutions, utilities
 
 __all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions", "utilities"]
 
 __getattr__ = guard(__name__)
+
+offer_submodules(__name__)

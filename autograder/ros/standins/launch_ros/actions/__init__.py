@@ -5,7 +5,7 @@ from __future__ import annotations
 from standin_notice import guard
 
 from .node import Node
-from .ros_timer import RosTimer
+from .ros_timer import ROSTimer, RosTimer
 from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetUseSimTime
 
 PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
@@ -14,6 +14,7 @@ __all__ = [
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
+    "ROSTimer",
     "RosTimer",
     "SetParameter",
     "SetParametersFromFile",

@@ -96,3 +96,6 @@ def _watch_clock(seconds: float, stop: threading.Event) -> None:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown(context=ros)
+
+
+ROSTimer = RosTimer  # the older spelling, which Jazzy still has

@@ -1,0 +1,98 @@
+"""The public submodules of the real packages, for programs that import a name from the module in which it stands.
+
+The stand-ins divide their code in another way. So `launch.actions.group_action` is a module with the names of
+`launch.actions`. What has no stand-in, such as `launch.frontend`, raises the error that names it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+from standin_notice import not_covered
+
+# The submodules of each module, as the packages of Jazzy have them.
+SUBMODULES = {
+    "launch": "invalid_launch_file_error some_entities_type some_substitutions_type",
+    "launch.actions": (
+        "append_environment_variable declare_launch_argument emit_event group_action log_info opaque_coroutine "
+        "pop_environment pop_launch_configurations push_environment push_launch_configurations register_event_handler "
+        "reset_environment reset_launch_configurations set_environment_variable set_launch_configuration "
+        "shutdown_action unregister_event_handler unset_environment_variable unset_launch_configuration"
+    ),
+    "launch.conditions": (
+        "evaluate_condition_expression_impl if_condition invalid_condition_expression_error "
+        "launch_configuration_equals launch_configuration_not_equals unless_condition"
+    ),
+    "launch.descriptions": "executable",
+    "launch.event_handlers": (
+        "event_named on_action_event_base on_execution_complete on_include_launch_description on_process_exit "
+        "on_process_io on_process_start on_shutdown"
+    ),
+    "launch.events": "execution_complete include_launch_description shutdown timer_event",
+    "launch.events.process": (
+        "process_exited process_io process_matchers process_started process_stderr process_stdin process_stdout "
+        "process_targeted_event running_process_event shutdown_process signal_process"
+    ),
+    "launch.launch_description_sources": (
+        "any_launch_description_source any_launch_file_utilities frontend_launch_description_source "
+        "frontend_launch_file_utilities python_launch_description_source python_launch_file_utilities"
+    ),
+    "launch.logging": "handlers",
+    "launch.substitutions": (
+        "anon_name boolean_substitution command environment_variable equals_substitution file_content find_executable "
+        "if_else_substitution launch_configuration launch_log_dir local_substitution not_equals_substitution "
+        "path_join_substitution python_expression substitution_failure text_substitution this_launch_file "
+        "this_launch_file_dir"
+    ),
+    "launch.utilities": (
+        "class_tools_impl ensure_argument_type_impl normalize_to_list_of_entities_impl "
+        "normalize_to_list_of_substitutions_impl perform_substitutions_impl signal_management typing_file_path "
+        "visit_all_entities_and_collect_futures_impl"
+    ),
+    "launch_ros": "parameters_type remap_rule_type",
+    "launch_ros.actions": (
+        "composable_node_container lifecycle_node lifecycle_transition load_composable_nodes push_ros_namespace "
+        "set_parameter set_parameters_from_file set_remap set_ros_log_dir set_use_sim_time"
+    ),
+    "launch_ros.descriptions": "composable_node",
+    "launch_ros.substitutions": "executable_in_package find_package parameter",
+    "launch_ros.utilities": (
+        "evaluate_parameters namespace_utils normalize_parameters normalize_remap_rule plugin_support "
+        "to_parameters_list track_node_names"
+    ),
+}
+NOT_COVERED = {
+    "launch.frontend": "XML and YAML launch files are read by launch_xml and launch_yaml, which have no stand-in",
+    "launch_ros.event_handlers": "It holds what launch does with lifecycle nodes, which have no stand-in",
+    "launch_ros.events": "It holds the events of lifecycle nodes, which have no stand-in",
+    "launch_ros.ros_adapters": "",
+}
+
+
+class _Submodules(MetaPathFinder, Loader):
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        parent, _, name = fullname.rpartition(".")
+        if fullname in NOT_COVERED:
+            raise not_covered(fullname, standin=fullname.partition(".")[0], reason=NOT_COVERED[fullname])
+        return ModuleSpec(fullname, self) if name in SUBMODULES.get(parent, "").split() else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        parent = vars(sys.modules[module.__name__.rpartition(".")[0]])
+        kept = {name for name in parent if not name.startswith("__")} | ({"__getattr__"} & set(parent))
+        module.__dict__.update({name: parent[name] for name in kept})
+
+
+def offer_submodules(package: str) -> None:
+    """Let programs import the submodules of a package and of its modules, which become packages by it."""
+    for name in SUBMODULES:
+        if name.partition(".")[0] == package:
+            vars(importlib.import_module(name)).setdefault("__path__", [])
+    if not any(isinstance(finder, _Submodules) for finder in sys.meta_path):
+        sys.meta_path.append(_Submodules())
