@@ -18,7 +18,17 @@ from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
 
 # Files and whole folders that are copied beside the chapters.
-COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", ".devcontainer")
+COPIED = (
+    "sim",
+    "autograder",
+    "assets/worlds",
+    "chapters/ros2-commands.md",
+    "docs/platform.md",
+    "pyproject.toml",
+    "requirements.lock",
+    "LICENSE",
+    ".devcontainer",
+)
 STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})

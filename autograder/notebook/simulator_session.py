@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import layout
+from autograder.notebook.driving import RADIUS
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import running
 from sim.grading import grading
@@ -42,7 +43,8 @@ def simulator(
 ) -> Iterator[SimulatorSession]:
     """Simulate robots in a world while the block runs: /scan, /odom and /clock come from it, /cmd_vel moves a robot.
 
-    The simulator is a program of its own, as on a real robot. Its log is printed in the cell.
+    The simulator is a program of its own, as on a real robot. Its log is printed in the cell. The robots have the size
+    of the one that `drive` has.
 
     Args:
         world: a name in `assets/worlds`.
@@ -59,7 +61,13 @@ def simulator(
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "run.npz"
-        parameters = {"world": path, "speed": float(speed), "robots": list(robots), "recording": recording}
+        parameters = {
+            "world": path,
+            "speed": float(speed),
+            "robots": list(robots),
+            "radius": RADIUS,
+            "recording": recording,
+        }
         settings = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
         node = [sys.executable, "-m", "sim.bridge", "--ros-args", *settings]
         command = shlex.join([sys.executable, "-m", "autograder", "ros", *node])
