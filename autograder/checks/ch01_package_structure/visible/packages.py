@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import group, hint
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -29,6 +29,14 @@ check = group("packages")
 def test_manifest(workspace: Workspace) -> None:
     """ROS takes square_dance/package.xml for that of a Python package."""
     expect_manifest(workspace, contract.SQUARE_DANCE)
+
+
+@check(points=1, depends=("manifest",), doc=contract.REP_149)
+@hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
+def test_licence(workspace: Workspace) -> None:
+    """package.xml names the licence Apache-2.0."""
+    licences = expect_manifest(workspace, contract.SQUARE_DANCE).licences
+    expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
 @check(points=1, depends=("manifest",), doc=contract.ROSDEP)

@@ -71,6 +71,20 @@ def test_nan(robot: Robot) -> None:
     expect_turn(robot.see(wall), "With a wall 0.6 m ahead and one beam nan")
 
 
+@check(points=1, depends=("drives", "turns"), doc=contract.REP_117)
+@hint("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers.")
+def test_too_near(robot: Robot) -> None:
+    """It turns when a reading straight ahead is -inf."""
+    expect_turn(robot.see(scan(Part(-2.0, 2.0, -math.inf))), "With -inf straight ahead")
+
+
+@check(points=1, depends=("drives", "turns"), doc=contract.REP_117)
+@hint("A finite reading counts only from range_min to range_max of the message.")
+def test_phantom(robot: Robot) -> None:
+    """A reading of 0.0 straight ahead is no wall."""
+    expect_forward(robot.see(scan(Part(-2.0, 2.0, 0.0))), "With 0.0 straight ahead")
+
+
 @check(points=1, depends=("drives",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")

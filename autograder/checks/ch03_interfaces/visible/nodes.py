@@ -26,6 +26,15 @@ def test_status(reporter: Reporter) -> None:
     expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
 
 
+@check(points=1, group="status", depends=("status",), doc=contract.BATTERY)
+@hint("int() cuts off. math.floor(percent + 0.5) goes to the nearest, and halves go up.")
+def test_rounding(reporter: Reporter) -> None:
+    """At percentage 0.278 battery_level is 28, not 27."""
+    reporter.publish_battery(0.278)
+    level = reporter.status().battery_level
+    expect(level == 28, f"At percentage 0.278 battery_level is {level}.")
+
+
 @check(points=1, group="service", depends=BUILT, doc=contract.SERVICE)
 @hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
@@ -37,6 +46,17 @@ def test_trip(reporter: Reporter) -> None:
         expect(
             answer.possible is (left == 20), f"Legs of {legs} are said to be {'' if answer.possible else 'im'}possible."
         )
+
+
+@check(points=1, group="service", depends=("trip",), doc=contract.SERVICE)
+@hint("A leg is a distance: at least 0, and finite. Look at the legs before you add them up.")
+def test_negative_leg(reporter: Reporter) -> None:
+    """With a leg of -1 m no trip is possible, and battery_at_end is -1."""
+    reporter.set_battery(60)
+    answer = reporter.ask([10.0, -1.0])
+    expect(not answer.possible, "With a leg of -1 m the trip is said to be possible.")
+    left = answer.battery_at_end
+    expect(left == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {left}, instead of {contract.UNKNOWN}.")
 
 
 @check(points=1, group="action", depends=BUILT, doc=contract.ACTION)

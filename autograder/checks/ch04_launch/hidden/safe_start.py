@@ -9,11 +9,11 @@ from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
+from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
 check = group("safe_start")
-RESPAWN_SECONDS = 10.0  # real time; half a second is asked for
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
 WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
@@ -79,12 +79,7 @@ def test_whole_battery(launches: Launches) -> None:
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
-    harness = launches.safe(battery=inputs.enough)
-    before = _pids(harness, "reporter")
-    harness.kill("reporter")
-    back = harness.wait_for(lambda: bool(_pids(harness, "reporter") - before), RESPAWN_SECONDS)
-    expect(back, "The reporter was killed, and stayed away.")
-    expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
+    expect_respawn(launches.safe(battery=inputs.enough))
 
 
 @check(points=2, depends=("order",), doc=contract.EVENTS)
@@ -110,7 +105,3 @@ def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> No
     expect(
         not harness.left(), f"{what} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
     )
-
-
-def _pids(harness: LaunchHarness, name: str) -> set[int]:
-    return {program.pid for program in harness.programs() if program.name == name}

@@ -12,6 +12,7 @@ from std_msgs.msg import String
 from autograder.checks import check, expect, hint
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
+from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
@@ -98,3 +99,10 @@ def test_safe_start(launches: Launches) -> None:
     ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
     expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
     expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+
+
+@check(points=1, group="safe_start", depends=("safe_start",), doc=contract.LAUNCH)
+@hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
+def test_respawn(launches: Launches) -> None:
+    """A reporter that is killed is started again."""
+    expect_respawn(launches.full)
