@@ -23,7 +23,6 @@ COPIED = (
     "autograder",
     "assets/worlds",
     "chapters/ros2-commands.md",
-    "docs/platform.md",
     "pyproject.toml",
     "requirements.lock",
     "LICENSE",

@@ -90,7 +90,7 @@ def versions(system: System) -> Finding:
     found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
     expected = all(package.differs and version for package, version in others.items())
     if expected:
-        return Finding("versions", Status.OK, f"those of Ubuntu 24.04 but {found}, see docs/platform.md")
+        return Finding("versions", Status.OK, f"those of Ubuntu 24.04, but {found}: the nearest for this Python")
     return Finding("versions", Status.WEAK, f"Ubuntu 24.04, the platform of Jazzy, has others: {found}", "make setup")
 
 

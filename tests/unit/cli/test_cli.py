@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import subprocess
 import sys
@@ -164,7 +165,7 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
         asked.append((assignment, workspace))
         return CheckReport(assignment, ())
 
-    monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", run_checks)
+    monkeypatch.setattr(importlib.import_module("autograder.cli.check"), "run_checks", run_checks)
     _run("check", "02_nodes")
     assert asked == [("02_nodes", Path(folder))]
 

@@ -84,10 +84,10 @@ def test_a_machine_with_everything_is_healthy_and_nothing_has_to_be_mended() -> 
     assert healthy(findings)
 
 
-def test_a_version_that_the_platform_page_explains_is_nothing_to_mend() -> None:
+def test_a_version_that_is_the_nearest_for_this_python_is_nothing_to_mend() -> None:
     found = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
     assert found.status is Status.OK
-    assert found.found == "those of Ubuntu 24.04 but numpy 2.1.3 for 1.26.4, see docs/platform.md"
+    assert found.found == "those of Ubuntu 24.04, but numpy 2.1.3 for 1.26.4: the nearest for this Python"
 
 
 def sysctl(name: str, value: str) -> Callable[[Path], str | None]:
