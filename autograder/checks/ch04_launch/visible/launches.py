@@ -104,5 +104,5 @@ def test_safe_start(launches: Launches) -> None:
 @check(points=1, group="safe_start", depends=("safe_start",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawn(launches: Launches) -> None:
-    """A reporter that is killed is started again."""
+    """A reporter that dies is started again."""
     expect_respawn(launches.full)
