@@ -1,7 +1,8 @@
 """Installing the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels (`make real-launch`).
 
-They have no wheels, but are pure Python: pip builds them from the source repositories, at the tags of one Jazzy
-release. Each source is an environment variable, so that a local clone serves where GitHub cannot be reached:
+These, and `ament_copyright`, have no wheels, but are pure Python: pip builds them from the source repositories, at the
+tags of one Jazzy release. Each source is an environment variable, so that a local clone serves where GitHub cannot be
+reached:
 
     ROS2_LAUNCH_SOURCE=/clones/launch python -m autograder.ros.real_launch
 
@@ -83,6 +84,8 @@ SOURCES = (
         "0.26.10",
         ("launch_ros", "ros2launch", "launch_testing_ros"),
     ),
+    # `ros2 pkg create` asks it for the texts of licences.
+    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", "0.17.3", ("ament_copyright",)),
     Source(
         "ROS2_CLI_SOURCE",
         "https://github.com/ros2/ros2cli.git",
