@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 from autograder.building import cmake_overlay
@@ -69,6 +70,8 @@ def require_contained(install: Path) -> None:
     while pending:
         path = pending.pop()
         try:
+            with suppress(FileNotFoundError):
+                path.stat()  # raises at a loop of links, which `resolve` has not done since Python 3.13
             inside = path.resolve().is_relative_to(install.parent.resolve() / install.name)
             children = [] if path.is_symlink() or not path.is_dir() else list(path.iterdir())
         except (OSError, RuntimeError):  # a name too long, a loop of links

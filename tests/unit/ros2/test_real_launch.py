@@ -125,7 +125,7 @@ def test_a_source_is_an_address_with_an_optional_tag(given: str | None, place: t
 def test_every_default_source_is_pinned_to_a_release() -> None:
     assert {"launch", "launch_ros", "ros2cli", "composition_interfaces"} <= {p for s in SOURCES for p in s.packages}
     for source in SOURCES:
-        assert source.url.startswith("https://github.com/ros2/")
+        assert source.url.startswith(("https://github.com/ros2/", "https://github.com/ament/"))
         assert source.tag.count(".") == 2
 
 
