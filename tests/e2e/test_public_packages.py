@@ -11,6 +11,7 @@ import re
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -93,7 +94,13 @@ def test_two_programs_talk(
     workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, said: str
 ) -> None:
     environment = {**os.environ, "ROS_DOMAIN_ID": str(ros_domain), "PYTHONUNBUFFERED": "1"}
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "env": environment}
+    pipes: dict[str, object] = {
+        "stdout": subprocess.PIPE,
+        "stderr": subprocess.STDOUT,
+        "text": True,
+        "env": environment,
+    }
+    pipes["start_new_session"] = True  # Ctrl-C of a terminal reaches `ros2 run` and its program
     with (
         subprocess.Popen(ros(workspace, f"ros2 run {first}"), **pipes) as server,  # type: ignore[call-overload]
         subprocess.Popen(ros(workspace, f"ros2 run {second}"), **pipes) as client,  # type: ignore[call-overload]
@@ -104,5 +111,6 @@ def test_two_programs_talk(
             assert any(said in line for line in client.stdout)
         finally:
             for process in (client, server):
-                process.send_signal(signal.SIGINT)
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGINT)
                 process.communicate(timeout=PATIENCE)
