@@ -40,9 +40,9 @@ def _left_over(mark: str) -> list[str]:
 def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """The mark that all processes of this test carry in their environment."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    monkeypatch.setenv(MARK, tmp_path.name)
+    monkeypatch.setenv(MARK, str(tmp_path))
     launch.logging.reset()
-    yield tmp_path.name
+    yield str(tmp_path)
     launch.logging.reset()
 
 
