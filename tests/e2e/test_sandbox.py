@@ -268,7 +268,7 @@ def end(*_):
     os.write(1, b"handled\\n")
     sys.exit(7)
 signal.signal(signal.SIGTERM, end)
-print("up", flush=True)
+os.write(1, b"up\\n")  # not print, which writes the end of the line apart: the signal could come in between
 while True: signal.pause()
 """
     assert in_cell(signalled, code) == [True, 7, "up\nhandled\n"]
