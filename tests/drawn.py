@@ -19,12 +19,8 @@ def commit() -> str:
     return found.stdout.strip()
 
 
-def is_drawn(name: str, one_in: int, draw: str | None = None) -> bool:
-    """Return whether a case is among the one in so many that a draw, by default the commit, chooses."""
-    text = f"{commit() if draw is None else draw} {name}"
-    return int(hashlib.sha256(text.encode()).hexdigest(), 16) % one_in == 0
-
-
 def marks(name: str, one_in: int, draw: str | None = None) -> list[pytest.MarkDecorator]:
-    """Return the marks of a case: one that is not drawn is for the night."""
-    return [] if is_drawn(name, one_in, draw) else [pytest.mark.nightly]
+    """Return the marks of a case: of a draw, by default the commit, one in so many runs, the others at night."""
+    text = f"{commit() if draw is None else draw} {name}"
+    chosen = int(hashlib.sha256(text.encode()).hexdigest(), 16) % one_in == 0
+    return [] if chosen else [pytest.mark.nightly]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from packaging.requirements import Requirement
 
+from autograder.course.markdown import table
 from autograder.layout import ROOT
 from autograder.ros.platform_versions import PACKAGES, PlatformPackage
 
@@ -23,13 +24,9 @@ that platform, so that what a student learns here holds there. `make setup` inst
 https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own package repository.
 
 `autograder course tables` writes this page from the lock; a test holds it.
-
-| package | apt's name | Ubuntu 24.04 | here | where a student meets it | why another version |
-| --- | --- | --- | --- | --- | --- |
 """
-
-TAIL = """
-## Interface packages without wheels
+COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student meets it", "why another version")
+TAIL = """## Interface packages without wheels
 
 The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for
 Python programs, from `autograder/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have the hashes of
@@ -50,7 +47,7 @@ def platform_page(lock: str) -> str:
         lock: the text of `requirements.lock`.
     """
     by_python = {python: locked(lock, python) for python in PYTHONS}
-    return HEAD + "".join(f"| {' | '.join(_row(package, by_python))} |\n" for package in PACKAGES) + TAIL
+    return "\n".join([HEAD, *table(COLUMNS, (_row(package, by_python) for package in PACKAGES)), TAIL])
 
 
 def locked(lock: str, python: str) -> dict[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from autograder.checks import suites
 from autograder.course.findings import Finding
+from autograder.course.markdown import table
 from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters
@@ -47,7 +48,7 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
         [
             HEAD,
             "## Chapters\n",
-            *_table(
+            *table(
                 ("chapter", "title", "points", "words", "code cells", "lines to write", "time of a beginner"),
                 [
                     (f"[{n}]({n}/{n}.ipynb)", t, f"{points[n]:g}" if points[n] else "", *_effort(efforts[n]))
@@ -57,11 +58,11 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
             f"The time is counted: a minute for {WORDS_A_MINUTE:g} words, {MINUTES_A_CELL:g} minute for a code cell, "
             f"{MINUTES_A_LINE:g} minutes for a line to write.\n",
             "## Objectives\n",
-            *_table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
+            *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
             "## The chapter's contents\n",
-            *_table(("what", "where"), [(syllabus.items[key], _where(found)) for key, found in covered.items.items()]),
+            *table(("what", "where"), [(syllabus.items[key], _where(found)) for key, found in covered.items.items()]),
             "## What the chapter gets wrong\n",
-            *_table(
+            *table(
                 ("#", "the chapter", "here", "where"),
                 [(str(n), *syllabus.errata[n], _where(found)) for n, found in covered.errata.items()],
             ),
@@ -89,9 +90,3 @@ def _objectives(syllabus: Syllabus, covered: SyllabusCoverage) -> Iterator[tuple
 
 def _where(locations: Sequence[Location]) -> str:
     return "; ".join(f"{location.chapter}: {location.heading}" for location in locations)
-
-
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]] | Iterator[tuple[str, ...]]) -> Iterator[str]:
-    for row in (head, tuple("---" for _ in head), *rows):
-        yield "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |"
-    yield ""

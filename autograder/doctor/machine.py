@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from autograder.doctor.finding import Finding, Status
@@ -86,16 +85,12 @@ def versions(system: System) -> Finding:
     """Look at whether what students' programs, builds and tests meet has the versions of Jazzy's platform."""
     others = platform_versions.differences({p.name: system.package(p.name) for p in platform_versions.PACKAGES})
     if not others:
-        return Finding("versions", Status.OK, f"those of Ubuntu 24.04: {_told(platform_versions.PACKAGES)}")
+        all_of_them = ", ".join(f"{p.name} {p.version}" for p in platform_versions.PACKAGES)
+        return Finding("versions", Status.OK, f"those of Ubuntu 24.04: {all_of_them}")
     found = "; ".join(f"{p.name} {version or 'is not found'} for {p.version}" for p, version in others.items())
-    expected = all(package.differs and version for package, version in others.items())
-    if expected:
+    if all(package.differs and version for package, version in others.items()):
         return Finding("versions", Status.OK, f"those of Ubuntu 24.04, but {found}: the nearest for this Python")
     return Finding("versions", Status.WEAK, f"Ubuntu 24.04, the platform of Jazzy, has others: {found}", "make setup")
-
-
-def _told(packages: Iterable[platform_versions.PlatformPackage]) -> str:
-    return ", ".join(f"{package.name} {package.version}" for package in packages)
 
 
 def notebooks(system: System) -> Finding:

@@ -29,8 +29,13 @@ def packages() -> dict[str, dict[str, str]]:
     return found
 
 
+def missing(prefix: Path) -> dict[str, dict[str, str]]:
+    """Return the packages that are not in `prefix`, or are there with other definitions, as `packages` does."""
+    return {name: files for name, files in packages().items() if not _installed(prefix, name, files)}
+
+
 def install(prefix: Path) -> list[str]:
-    """Build the packages that are not in `prefix`, or are there with other definitions; return their names.
+    """Build the packages that are missing in `prefix`; return their names.
 
     Args:
         prefix: the virtual environment, in which the ROS wheels are.
@@ -39,13 +44,13 @@ def install(prefix: Path) -> list[str]:
         InterfaceError: one cannot be built.
         RosError: there is no ROS 2 Jazzy.
     """
-    missing = {name: files for name, files in packages().items() if not _installed(prefix, name, files)}
+    lacking = missing(prefix)
     with tempfile.TemporaryDirectory() as scratch:
-        for name, files in missing.items():
+        for name, files in lacking.items():
             built = build(name, files, cache=Cache(Path(scratch)))
             for folder in INSTALLED:
                 shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True)
-    return list(missing)
+    return list(lacking)
 
 
 def _installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
@@ -60,14 +65,17 @@ def main() -> int:
 
     Without a compiler it is told how to do that later: much of the course needs neither.
     """
-    again = f"{sys.executable} -m autograder.interfaces.tutorials"
+    prefix = Path(sys.prefix)
     try:
-        if find().kind != "wheels":
+        if find().kind != "wheels" or not (lacking := missing(prefix)):
             return 0
+        names = ", ".join(lacking)
         if shutil.which("g++") is None:
-            print(f"g++ is missing, so {', '.join(packages())} are not installed; once it is there, run {again}")
+            again = f"{sys.executable} -m autograder.interfaces.tutorials"
+            print(f"g++ is missing, so {names} are not installed; once it is there, run {again}")
             return 0
-        install(Path(sys.prefix))
+        print(f"building {names}", flush=True)
+        install(prefix)
     except (InterfaceError, RosError) as error:
         print(f"The interface packages of ROS's tutorials cannot be installed: {error}", file=sys.stderr)
         return 1

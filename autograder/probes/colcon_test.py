@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 from autograder.building.colcon import HOST
 from autograder.probes import junit
+from autograder.probes.installed import Installed
 from autograder.probes.junit import Claims
 from autograder.probes.test_reports import Report
 from autograder.probes.test_runs import sandboxed
@@ -15,6 +17,8 @@ from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
+
+TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
 def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
@@ -33,19 +37,22 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
 
 
-def runs_pytest(workspace: Workspace, package: str) -> bool:
+def runs_pytest(workspace: Workspace, installed: Installed) -> bool:
     """Return whether `colcon test` runs pytest on a built package, as it does if setup.py names pytest.
 
-    Colcon itself answers, because the answer depends on the platform: every setuptools reads `extras_require`, and
-    those before 72.0, such as the 68.1.2 of Ubuntu 24.04, read `tests_require`, too. The tests are collected and not
-    run.
+    It does where `extras_require` names it, with every setuptools. Otherwise colcon itself answers, because the answer
+    depends on the platform: a setuptools before 72.0, such as the 68.1.2 of Ubuntu 24.04, reads `tests_require`, too.
+    The tests are collected and not run.
 
     Args:
         workspace: the built workspace; its build and test folders are written to.
-        package: the package.
+        installed: the package.
     """
-    colcon_test(workspace, package, "--pytest-args", "--collect-only")
-    return _report(workspace, package).is_file()
+    named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
+    if "pytest" in named:
+        return True
+    colcon_test(workspace, installed.package, "--pytest-args", "--collect-only")
+    return _report(workspace, installed.package).is_file()
 
 
 def _report(workspace: Workspace, package: str) -> Path:

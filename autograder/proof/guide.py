@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from autograder import layout
 from autograder.checks import Check, suites
+from autograder.course.markdown import table
 from autograder.proof.mutants import Mutant, mutants
 
 PAGE = layout.ROOT / "docs" / "checks.md"
@@ -15,20 +16,18 @@ For instructors; nothing of this page reaches students. Each check is named with
 and with the flawed versions of the reference that fail it by themselves: small, realistic errors, `mutants.yaml` beside
 the suite. `autograder verify` grades them all. `autograder course tables` writes this page.
 """
+COLUMNS = ("check", "points", "the student reads", "fails in a version that")
 
 
 def guide() -> str:
     """Return the guide as Markdown."""
     return HEAD + "".join(
-        "\n".join(["", f"## {name}", "", *_table(suites.hidden(name).checks, mutants(name)), ""])
+        "\n".join(["", f"## {name}", "", *table(COLUMNS, _rows(suites.hidden(name).checks, mutants(name)))])
         for name in suites.graded()
     )
 
 
-def _table(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[str]:
-    yield "| check | points | the student reads | fails in a version that |"
-    yield "| --- | --- | --- | --- |"
+def _rows(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:
     for check in checks:
         alone = [m.title for m in flawed if check.id in m.loses and not m.loses & set(check.depends)]
-        cells = (f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(alone))
-        yield "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+        yield f"`{check.id}`", f"{check.points:g}", check.title, "; ".join(alone)

@@ -79,8 +79,11 @@ def test_a_missing_package_is_built(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_without_a_compiler_it_says_how_to_install_them_later(
-    prefix: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    prefix: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    found = activate()
+    monkeypatch.setattr(tutorials, "find", lambda: found)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
     monkeypatch.setattr(shutil, "which", lambda name: None)
     assert tutorials.main() == 0
     told = capsys.readouterr().out

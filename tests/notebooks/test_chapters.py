@@ -13,23 +13,17 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 from _pytest.mark import ParameterSet
-from nbformat import NotebookNode
 
 from autograder.course import Chapter, Form, chapters, in_form, run_notebook
 from autograder.course.notebook_rules import images_without_alt
 from autograder.layout import ROOT
 from tests.drawn import marks
+from tests.notebooks.outputs import said
 
 CHAPTERS = chapters()
 STILL_TO_BE_WRITTEN = "still to be written"
 MARKS = ("# BEGIN SOLUTION", "# END SOLUTION")
 each_chapter = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.assignment)
-
-
-def said(notebook: NotebookNode) -> str:
-    """Return all text that an executed notebook shows."""
-    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
-    return "\n".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in outputs)
 
 
 def test_there_are_chapters() -> None:
@@ -119,11 +113,11 @@ def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: For
     result = run_notebook(chapter.path, form, timeout=400, report=tmp_path / chapter.path.name)
     assert result.ok, result.failure
     assert images_without_alt(result.notebook) == []
-    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook))
+    counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook.cells))
     solved = form is not Form.RELEASED
     assert all((passed == every) is solved for passed, every in counts)
     if counts:
-        assert (STILL_TO_BE_WRITTEN in said(result.notebook)) is not solved
+        assert (STILL_TO_BE_WRITTEN in said(result.notebook.cells)) is not solved
 
 
 def drawing(figure: Path) -> str:

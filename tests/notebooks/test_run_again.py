@@ -14,6 +14,7 @@ from autograder.course import Chapter, Form, chapters, in_form
 from autograder.course.execute import execute, working_copy
 from autograder.course.sync import write_notebook
 from autograder.ros.domains import Domain
+from tests.notebooks.outputs import said
 
 # What the text around a cell relies on: which error is shown, how many checks passed, what was not found.
 RELIED_ON = re.compile(
@@ -24,8 +25,7 @@ RELIED_ON = re.compile(
 
 def shown(cell: NotebookNode) -> set[str]:
     """Return what a cell shows of that on which the text may rely."""
-    texts = [output.get("text") or output.get("data", {}).get("text/plain", "") for output in cell.get("outputs", [])]
-    return set(RELIED_ON.findall("\n".join(texts)))
+    return set(RELIED_ON.findall(said([cell])))
 
 
 def twice(notebook: NotebookNode) -> NotebookNode:

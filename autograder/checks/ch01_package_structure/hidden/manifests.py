@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.checks.ch01_package_structure.support.assertions import expect_declared, expect_manifest, source_of
+from autograder.checks.ch01_package_structure.support.assertions import (
+    expect_declared,
+    expect_licence,
+    expect_manifest,
+    source_of,
+)
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.manifest import PLACEHOLDER
@@ -28,8 +33,7 @@ def test_manifest(workspace: Workspace) -> None:
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
-    licences = expect_manifest(workspace, contract.SQUARE_DANCE).licences
-    expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
+    expect_licence(workspace, contract.SQUARE_DANCE)
 
 
 @check(points=1, depends=("manifest",), doc=contract.CREATE)

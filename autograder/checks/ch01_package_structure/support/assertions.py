@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -17,8 +16,6 @@ from autograder.probes import imports, manifest
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
-
-TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
 def source_of(workspace: Workspace, name: str) -> Path:
@@ -44,6 +41,12 @@ def expect_manifest(workspace: Workspace, name: str) -> Manifest:
         f"The build type in <export> is {said}; a Python package's is {contract.BUILD_TYPE}.",
     )
     return found
+
+
+def expect_licence(workspace: Workspace, name: str) -> None:
+    """Fail the check unless package.xml names the one licence of the exercise."""
+    licences = expect_manifest(workspace, name).licences
+    expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
 def expect_declared(needed: Collection[imports.Import], declared: Collection[str], first: int = 0) -> None:
@@ -131,9 +134,8 @@ def licence(installed: Installed) -> str:
 
 def expect_pytest(workspace: Workspace, installed: Installed) -> None:
     """Fail the check unless setup.py names pytest in a way that colcon test sees."""
-    named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
     expect(
-        "pytest" in named or runs_pytest(workspace, installed.package),
+        runs_pytest(workspace, installed),
         "`colcon test` does not run pytest for this package, because setup.py does not name pytest for its tests: "
         "extras_require={'test': ['pytest']} names it.",
     )

@@ -77,8 +77,7 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
-    extras = look(workspace.install, PACKAGE).extras
-    named = any("pytest" in found for found in extras.get("test", ())) or runs_pytest(workspace, PACKAGE)
+    named = runs_pytest(workspace, look(workspace.install, PACKAGE))
     expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
     absent = _absent(workspace, LINTERS)
     expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")

@@ -10,7 +10,7 @@ real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
 from __future__ import annotations
 
 from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_submodules import NOT_COVERED, offer_submodules
 
 from . import (
     actions,
@@ -66,8 +66,6 @@ __all__ = [
     "utilities",
 ]
 
-_FRONTENDS = "XML and YAML launch files are read by launch_xml and launch_yaml, which have no stand-in"
-
-__getattr__ = guard(__name__, {"frontend": _FRONTENDS})
+__getattr__ = guard(__name__, {"frontend": NOT_COVERED["launch.frontend"]})
 
 offer_submodules(__name__)
