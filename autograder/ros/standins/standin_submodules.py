@@ -1,7 +1,7 @@
 """The public submodules of the real packages, for programs that import a name from the module in which it stands.
 
 The stand-ins divide their code in another way. So `launch.actions.group_action` is a module with the names of
-`launch.actions`. What has no stand-in, such as `launch.frontend`, raises the error that names it.
+`launch.actions`. What has no stand-in, such as `launch_ros.events`, raises the error that names it.
 """
 
 from __future__ import annotations
@@ -54,6 +54,8 @@ SUBMODULES = {
         "normalize_to_list_of_substitutions_impl perform_substitutions_impl signal_management typing_file_path "
         "visit_all_entities_and_collect_futures_impl"
     ),
+    "launch_xml.launch_description_sources": "xml_launch_description_source",
+    "launch_yaml.launch_description_sources": "yaml_launch_description_source",
     "launch_ros": "parameters_type remap_rule_type",
     "launch_ros.actions": (
         "composable_node_container lifecycle_node lifecycle_transition load_composable_nodes push_ros_namespace "
@@ -67,7 +69,6 @@ SUBMODULES = {
     ),
 }
 NOT_COVERED = {
-    "launch.frontend": "XML and YAML launch files are read by launch_xml and launch_yaml, which have no stand-in",
     "launch_ros.event_handlers": "It holds what launch does with lifecycle nodes, which have no stand-in",
     "launch_ros.events": "It holds the events of lifecycle nodes, which have no stand-in",
     "launch_ros.ros_adapters": "",

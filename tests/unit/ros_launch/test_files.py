@@ -129,7 +129,7 @@ def test_a_file_without_a_launch_description_is_refused(tmp_path: Path, text: st
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("def generate_launch_description(:", "exception when trying to load file of format [py]:\n - SyntaxError: "),
+        ("def generate_launch_description(:", "exceptions when trying to load file of format [py]:\n - SyntaxError: "),
         ("import no_such_module", "of format [py]:\n - ModuleNotFoundError: No module named 'no_such_module'"),
         ("x = {}['key']", "of format [py]:\n - KeyError: 'key'"),
     ],

@@ -17,7 +17,6 @@ from launch_ros.actions import (
     SetParameter,
     SetParametersFromFile,
     SetRemap,
-    SetUseSimTime,
 )
 from launch_ros.descriptions import Parameter
 from launch_ros.substitutions import ExecutableInPackage, FindPackagePrefix, FindPackageShare
@@ -54,8 +53,8 @@ def test_a_node_gets_name_namespace_and_remappings(run: Run) -> None:
     )
     run(node)
     assert node.words == [
-        "/bin/node", "--fast", "--ros-args", "--log-level", "debug", "-r", "__node:=driver", "-r", "__ns:=/robot_1",
-        "-r", "scan:=front/scan", "-r", "cmd:=/cmd_vel",
+        "/bin/node", "--fast", "--ros-args", "--log-level", "debug", "--ros-args", "-r", "__node:=driver",
+        "-r", "__ns:=/robot_1", "-r", "scan:=front/scan", "-r", "cmd:=/cmd_vel",
     ]  # fmt: skip
     assert node.node_name == "/robot_1/driver"
 
@@ -96,7 +95,6 @@ def test_parameters_for_all_nodes_come_before_own_ones_and_end_with_their_group(
                 SetParameter(name="rate", value=7),
                 SetParameter("text", "5"),
                 SetParameter("list", [1.0, 2.0]),
-                SetUseSimTime(True),
                 SetParametersFromFile([str(tmp_path), "/all.yaml"]),
                 inside,
             ]
@@ -104,7 +102,7 @@ def test_parameters_for_all_nodes_come_before_own_ones_and_end_with_their_group(
         outside,
     )
     assert inside.words[2:-2] == [
-        "-p", "rate:=7", "-p", "text:='5'", "-p", "list:=[1.0, 2.0]", "-p", "use_sim_time:=true",
+        "-p", "rate:=7", "-p", "text:=5", "-p", "list:=[1.0, 2.0]",
         "--params-file", str(tmp_path / "all.yaml"),
     ]  # fmt: skip
     assert inside.files[-1] == {"/**": {"ros__parameters": {"rate": 1}}}
@@ -114,8 +112,8 @@ def test_parameters_for_all_nodes_come_before_own_ones_and_end_with_their_group(
 def test_single_parameters_are_passed_for_the_named_node(run: Run) -> None:
     named, unnamed = Recorded(name="n", parameters=[Parameter("p", 1)]), Recorded(parameters=[Parameter("p", "x")])
     run(named, unnamed)
-    assert named.words[-2:] == ["-p", "n:p:=1"]
-    assert unnamed.words[-2:] == ["-p", "p:='x'"]
+    assert named.words[-2:] == ["-p", "n:p:=1\n...\n"]
+    assert unnamed.words[-2:] == ["-p", "p:=x\n...\n"]
 
 
 def test_a_parameter_file_that_is_missing_is_warned_of_and_left_out(
@@ -124,7 +122,10 @@ def test_a_parameter_file_that_is_missing_is_warned_of_and_left_out(
     node = Recorded(parameters=["/no/such.yaml"])
     run(node)
     assert node.words == ["/bin/node", "--ros-args"]
-    assert "[WARNING] [launch_ros]: Parameter file path is not a file: /no/such.yaml" in capsys.readouterr().out
+    assert (
+        "[WARNING] [launch_ros.actions.node]: Parameter file path is not a file: /no/such.yaml"
+        in capsys.readouterr().out
+    )
 
 
 def test_a_parameter_file_for_all_nodes_that_is_missing_is_an_error(
@@ -146,7 +147,7 @@ def test_an_invalid_name_is_an_error(
 ) -> None:
     assert run(Recorded(**arguments)) == 1
     out = capsys.readouterr().out
-    assert "[ERROR] [launch_ros]: Error while expanding or validating node name or namespace for 'package=None" in out
+    assert "[ERROR] [launch_ros.actions.node]: Error while expanding or validating node name or namespace for" in out
     assert message in out
 
 

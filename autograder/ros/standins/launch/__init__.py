@@ -2,22 +2,25 @@
 
 It is imported only where the real package is not. Names, signatures, semantics and errors are those of
 `launch` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch/); the code is the course's own. Covered are
-Python launch files: descriptions, arguments, substitutions, conditions, groups, includes, processes, events
-and timers. What is not covered, XML and YAML launch files above all, raises an error that names it. For the
-real package run `make real-launch`, or source an installation of ROS 2 Jazzy.
+launch files in Python, XML and YAML: descriptions, arguments, substitutions, conditions, groups, includes,
+processes, events and timers. What is not covered raises an error that names it. For the real package run
+`make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
 from __future__ import annotations
 
 from standin_notice import guard
-from standin_submodules import NOT_COVERED, offer_submodules
+from standin_submodules import offer_submodules
 
 from . import (
+    _frontend_actions,
+    _frontend_substitutions,
     actions,
     conditions,
     descriptions,
     event_handlers,
     events,
+    frontend,
     launch_description_sources,
     logging,
     substitutions,
@@ -55,17 +58,20 @@ __all__ = [
     "SomeSubstitutionsType",
     "SomeSubstitutionsType_types_tuple",
     "Substitution",
+    "_frontend_actions",
+    "_frontend_substitutions",
     "actions",
     "conditions",
     "descriptions",
     "event_handlers",
     "events",
+    "frontend",
     "launch_description_sources",
     "logging",
     "substitutions",
     "utilities",
 ]
 
-__getattr__ = guard(__name__, {"frontend": NOT_COVERED["launch.frontend"]})
+__getattr__ = guard(__name__)
 
 offer_submodules(__name__)

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
+from ._readers import READERS
 from .condition import Condition
 from .events import ExecutionComplete
 from .launch_context import LaunchContext
 from .launch_description_entity import LaunchDescriptionEntity, OptionalEntities
+
+if TYPE_CHECKING:
+    from .frontend import Entity, Parser
 
 
 class Action(LaunchDescriptionEntity):
@@ -21,6 +26,12 @@ class Action(LaunchDescriptionEntity):
                 f"got {type(condition).__name__}"
             )
         self.__condition = condition
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Return the class and the keyword arguments that an element of an XML or YAML launch file gives it."""
+        nearest = next(READERS[base] for base in cls.__mro__ if base in READERS)
+        return cls, {**nearest(entity, parser), **READERS[Action](entity, parser)}
 
     @property
     def condition(self) -> Condition | None:

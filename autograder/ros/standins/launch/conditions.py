@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable
 
 from standin_notice import guard
@@ -37,7 +38,8 @@ def evaluate_condition_expression(context: LaunchContext, expression: Iterable[S
     text = perform_substitutions(context, expression).strip().lower()
     if text not in _TRUE + _FALSE:
         raise InvalidConditionExpressionError(
-            f"invalid condition expression, expected one of {list(_TRUE + _FALSE)}, but got '{text}'"
+            f"invalid condition expression, expected one of [{', '.join(_TRUE + _FALSE)}] but got '{text}', "
+            f"expanded from '{', '.join(map(str, expression))}'"
         )
     return text in _TRUE
 
@@ -65,10 +67,16 @@ def _equals(context: LaunchContext, name: str, expected: list[Substitution] | No
     return bool(value == perform_substitutions(context, expected))
 
 
+def _warn(condition: Condition) -> None:
+    text = f"{type(condition).__name__} is deprecated: use IfCondition with EqualsSubstitution or NotEqualsSubstitution"
+    warnings.warn(text, UserWarning, stacklevel=3)
+
+
 class LaunchConfigurationEquals(Condition):
     """True when a launch configuration has the given text, or when it is not set and None is expected."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        _warn(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
         super().__init__(predicate=lambda context: _equals(context, launch_configuration_name, expected))
 
@@ -77,6 +85,7 @@ class LaunchConfigurationNotEquals(Condition):
     """The opposite of LaunchConfigurationEquals."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        _warn(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
         super().__init__(predicate=lambda context: not _equals(context, launch_configuration_name, expected))
 

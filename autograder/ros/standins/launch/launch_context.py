@@ -59,6 +59,7 @@ class LaunchContext:
         self._environment_stack: list[dict[str, str]] = []
         self._locals_stack: list[dict[str, Any]] = []
         self._locals: dict[str, Any] = {}
+        self._globals: dict[str, Any] = {}
         self._event_handlers: deque[Handler] = deque()
         self._event_queue: asyncio.Queue[Event] = asyncio.Queue()
         self._completion_futures: list[asyncio.Future[None]] = []
@@ -72,15 +73,19 @@ class LaunchContext:
     @property
     def locals(self) -> _Locals:
         """The local values, e.g. ``context.locals.event`` while an event is handled."""
-        return _Locals(self._locals)
+        return _Locals(self.get_locals_as_dict())
+
+    def extend_globals(self, extensions: dict[str, Any]) -> None:
+        """Add `extensions` to the local values for good; inner values of the same names hide them."""
+        self._globals.update(extensions)
 
     def extend_locals(self, extensions: dict[str, Any]) -> None:
         """Add `extensions` to the innermost local values."""
         self._locals.update(extensions)
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """Return the innermost local values."""
-        return self._locals
+        """Return the local values."""
+        return {**self._globals, **self._locals}
 
     def _push_locals(self) -> None:
         self._locals_stack.append(dict(self._locals))

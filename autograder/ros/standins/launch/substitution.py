@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from .launch_context import LaunchContext
 
 
 class Substitution:
     """Something that a launch context turns into a string."""
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[type[Substitution], dict[str, Any]]:
+        """Return the class and the keyword arguments that a substitution in text, such as ``$(env HOME)``, gives it."""
+        return cls, {}
 
     def describe(self) -> str:
         """Return how the substitution is shown before its value is known."""

@@ -8,12 +8,12 @@ from typing import Any
 
 import yaml
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
+from launch.frontend import parse_substitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
 from standin_notice import guard
 
-from ._substitute_text import substitute_text
 from ._temporary import temporary_parameter_file
 
 __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
@@ -74,14 +74,7 @@ class ParameterFile:
         path = Path(perform_substitutions(context, self.param_file))
         if not perform_typed_substitution(context, self.allow_substs, bool):
             return path
-        try:
-            # Once through YAML, so that comments are gone before anything is substituted.
-            text = yaml.safe_dump(yaml.safe_load(path.read_text(encoding="utf-8")))
-        except yaml.YAMLError as error:
-            raise SubstitutionFailure(
-                f"The parameter file '{path}' is not a valid yaml file, before applying substitutions: {error}"
-            ) from error
-        substituted = substitute_text(context, text)
+        substituted = perform_substitutions(context, parse_substitution(path.read_text(encoding="utf-8")))
         try:
             yaml.safe_load(substituted)
         except yaml.YAMLError as error:

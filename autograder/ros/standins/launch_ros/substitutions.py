@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
@@ -12,7 +14,7 @@ from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from standin_notice import guard
 
-__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare"]
+__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
 
 
 def _described(parts: list[Substitution]) -> str:
@@ -79,6 +81,34 @@ class ExecutableInPackage(FindPackagePrefix):
         if found is None:
             raise SubstitutionFailure(f"executable '{executable}' not found on the libexec directory '{libexec}' ")
         return found
+
+
+class Parameter(Substitution):
+    """The value of a parameter that was set for all nodes, as text."""
+
+    def __init__(self, name: SomeSubstitutionsType, *, default: Any = None) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+        plain = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
+        items = [default] if plain else default
+        self.default = (
+            None
+            if default is None
+            else normalize_to_list_of_substitutions([x if isinstance(x, Substitution) else str(x) for x in items])
+        )
+
+    def describe(self) -> str:
+        """Return a description with the name."""
+        return f"Parameter(name={_described(self.name)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value, or the default; SubstitutionFailure without either."""
+        name = perform_substitutions(context, self.name)
+        for item in context.launch_configurations.get("global_params", ()):
+            if isinstance(item, tuple) and item[0] == name:
+                return str(item[1])
+        if self.default is None:
+            raise SubstitutionFailure(f"parameter '{name}' not found")
+        return perform_substitutions(context, self.default)
 
 
 __getattr__ = guard(__name__)

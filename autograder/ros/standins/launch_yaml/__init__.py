@@ -1,5 +1,16 @@
-"""In place of `launch_yaml`, which reads YAML launch files: importing it says where it is to be had."""
+"""Stand-in for `launch_yaml`, which cannot be installed by pip: YAML launch files; see the stand-in for `launch`."""
 
-from standin_notice import not_covered
+from __future__ import annotations
 
-raise not_covered("launch_yaml", standin="launch", reason="Write the launch file in Python, as the course does")
+from standin_notice import guard
+from standin_submodules import offer_submodules
+
+from . import launch_description_sources
+from .entity import Entity
+from .parser import Parser
+
+__all__ = ["Entity", "Parser", "launch_description_sources"]
+
+__getattr__ = guard(__name__)
+
+offer_submodules(__name__)

@@ -12,6 +12,7 @@ from ..substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from ..utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
 
 
 class SetEnvironmentVariable(Action):
@@ -47,14 +48,14 @@ class AppendEnvironmentVariable(Action):
         self,
         name: SomeSubstitutionsType,
         value: SomeSubstitutionsType,
-        prepend: bool = False,
+        prepend: bool | SomeSubstitutionsType = False,
         separator: SomeSubstitutionsType = os.pathsep,
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
         self.value = normalize_to_list_of_substitutions(value)
-        self.prepend = prepend
+        self.prepend = normalize_typed_substitution(prepend, bool)
         self.separator = normalize_to_list_of_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
@@ -62,7 +63,8 @@ class AppendEnvironmentVariable(Action):
         name = perform_substitutions(context, self.name)
         parts = [perform_substitutions(context, self.value)]
         if name in context.environment:
-            parts.insert(1 if self.prepend else 0, context.environment[name])
+            prepend = perform_typed_substitution(context, self.prepend, bool)
+            parts.insert(1 if prepend else 0, context.environment[name])
         context.environment[name] = perform_substitutions(context, self.separator).join(parts)
 
 

@@ -178,20 +178,20 @@ class ExecuteLocal(Action):
         elif isinstance(event, SignalProcess):
             if self._child is None:
                 raise RuntimeError("Signal event received before execution.")
-            self._send(event.signal)
+            if self._child.returncode is None:
+                name = self.process_description.final_name
+                self._logger.info("sending signal '%s' to process[%s]", event.signal_name, name)
+            self._child.send_signal(event.signal)
 
     def _on_shutdown(self, event: Event, context: LaunchContext) -> None:
-        self._ask_to_end(quietly=cast(Shutdown, event).due_to_sigint)
+        self._ask_to_end(quietly=cast(Shutdown, event).due_to_sigint and not context.noninteractive)
 
     def _ask_to_end(self, *, quietly: bool) -> None:
         if self._shutdown_asked is not None and not self._shutdown_asked.done():
             self._shutdown_asked.set_result(quietly)
 
-    def _send(self, number: signal.Signals, *, quietly: bool = False) -> None:
-        assert self._child is not None
-        if self._child.returncode is None and not quietly:
-            self._logger.info("sending signal '%s' to process[%s]", number.name, self.process_description.final_name)
-        self._child.send_signal(number)
+    def _emit_signal(self, context: LaunchContext, number: signal.Signals) -> None:
+        context.emit_event_sync(SignalProcess(signal_number=number, process_matcher=lambda action: action is self))
 
     async def _run(self, context: LaunchContext) -> None:
         """Run the process, and again as long as it is to be respawned."""
@@ -267,7 +267,10 @@ class ExecuteLocal(Action):
             return
         first = float(perform_substitutions(context, self.sigterm_timeout))
         second = float(perform_substitutions(context, self.sigkill_timeout))
-        self._send(signal.SIGINT, quietly=self._shutdown_asked.result())
+        if self._shutdown_asked.result():
+            child.send_signal(signal.SIGINT)  # quietly: with the real launch the terminal sends it
+        else:
+            self._emit_signal(context, signal.SIGINT)
         for seconds, shown, previous, number in (
             (first, first, signal.SIGINT, signal.SIGTERM),
             (second, first + second, signal.SIGTERM, signal.SIGKILL),
@@ -282,7 +285,7 @@ class ExecuteLocal(Action):
                 previous.name,
                 number.name,
             )
-            self._send(number)
+            self._emit_signal(context, number)
 
     def _wants_tty(self, context: LaunchContext) -> bool:
         if "emulate_tty" not in context.launch_configurations:

@@ -47,14 +47,16 @@ class EmitEvent(Action):
 class Shutdown(EmitEvent):
     """Ends the launch."""
 
-    def __init__(self, *, reason: str = "reason not given", **kwargs: Any) -> None:
-        super().__init__(event=ShutdownEvent(reason=reason), **kwargs)
+    def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
+        super().__init__(event=ShutdownEvent(), **kwargs)
+        self._reason = normalize_to_list_of_substitutions(reason)
 
     def execute(self, context: LaunchContext) -> None:
         """End it; say so if it is because a process has exited."""
         event = context.get_locals_as_dict().get("event")
         if isinstance(event, ProcessExited):
             get_logger("launch").info("process[%s] was required: shutting down launched system", event.process_name)
+        self.event = ShutdownEvent(reason=perform_substitutions(context, self._reason))
         super().execute(context)
 
 

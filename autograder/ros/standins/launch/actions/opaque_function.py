@@ -51,7 +51,7 @@ class OpaqueCoroutine(Action):
     ) -> None:
         super().__init__(**left_over_kwargs)
         if not inspect.iscoroutinefunction(coroutine):
-            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{coroutine}'")
+            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{type(coroutine)}'")
         self._coroutine = coroutine
         self._args = tuple(args or ())
         self._kwargs = dict(kwargs or {})

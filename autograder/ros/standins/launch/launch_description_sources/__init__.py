@@ -1,28 +1,31 @@
-"""Launch descriptions from Python launch files."""
+"""Launch descriptions from launch files in Python, XML and YAML."""
 
 from __future__ import annotations
 
 import types
+from collections.abc import Callable
 from pathlib import Path
 
-from standin_notice import guard, not_covered
+from standin_notice import guard
 
 from ..exceptions import InvalidLaunchFileError, InvalidPythonLaunchFileError
+from ..frontend import InvalidFrontendLaunchFileError, Parser
 from ..launch_description import LaunchDescription
 from ..launch_description_source import LaunchDescriptionSource
 from ..substitution import SomeSubstitutionsType
 
 __all__ = [
     "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "InvalidFrontendLaunchFileError",
     "InvalidLaunchFileError",
     "InvalidPythonLaunchFileError",
     "PythonLaunchDescriptionSource",
     "get_launch_description_from_any_launch_file",
+    "get_launch_description_from_frontend_launch_file",
     "get_launch_description_from_python_launch_file",
     "load_python_launch_file_as_module",
 ]
-
-_FRONTENDS = "XML and YAML launch files are read by launch_xml and launch_yaml, which have no stand-in"
 
 
 def load_python_launch_file_as_module(python_launch_file_path: str) -> types.ModuleType:
@@ -55,18 +58,34 @@ def get_launch_description_from_python_launch_file(python_launch_file_path: str)
     return description
 
 
-def get_launch_description_from_any_launch_file(launch_file_path: str) -> LaunchDescription:
-    """Return the launch description of a launch file, whose ending must be ``.py``.
+def get_launch_description_from_frontend_launch_file(
+    frontend_launch_file_path: str, *, parser: type[Parser] = Parser
+) -> LaunchDescription:
+    """Return the launch description of a launch file in XML or YAML; the parser's errors pass through."""
+    root, found = parser.load(frontend_launch_file_path)
+    return found.parse_description(root)
 
-    Raises InvalidLaunchFileError that names what went wrong in it, NotInStandInError for XML and YAML.
+
+def get_launch_description_from_any_launch_file(launch_file_path: str) -> LaunchDescription:
+    """Return the launch description of a launch file: of Python if it ends in ``.py``, else of XML or YAML.
+
+    Whatever its ending says, the other formats are tried, too. Raises InvalidLaunchFileError that names what went
+    wrong in each.
     """
     extension = Path(launch_file_path).suffix.removeprefix(".")
-    if extension in ("xml", "yaml", "yml"):
-        raise not_covered(f"the launch file '{launch_file_path}'", standin="launch", reason=_FRONTENDS)
-    try:
-        return get_launch_description_from_python_launch_file(launch_file_path)
-    except Exception as error:
-        raise InvalidLaunchFileError(extension, likely_errors=[error]) from error
+    loaders: list[Callable[[str], LaunchDescription]]
+    loaders = [get_launch_description_from_frontend_launch_file, get_launch_description_from_python_launch_file]
+    if extension == "py":
+        loaders.reverse()
+    elif not Parser.is_filename_valid(Path(launch_file_path).name):
+        extension = ""
+    errors: list[Exception] = []
+    for load in loaders:
+        try:
+            return load(launch_file_path)
+        except Exception as error:
+            errors.append(error)
+    raise InvalidLaunchFileError(extension, likely_errors=errors)
 
 
 class PythonLaunchDescriptionSource(LaunchDescriptionSource):
@@ -80,8 +99,25 @@ class PythonLaunchDescriptionSource(LaunchDescriptionSource):
         )
 
 
+class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
+    """The launch description of a launch file in XML or YAML."""
+
+    def __init__(
+        self,
+        launch_file_path: SomeSubstitutionsType,
+        *,
+        method: str = "interpreted frontend launch file",
+        parser: type[Parser] = Parser,
+    ) -> None:
+        super().__init__(
+            location=launch_file_path,
+            method=method,
+            load=lambda path: get_launch_description_from_frontend_launch_file(path, parser=parser),
+        )
+
+
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """The launch description of a launch file of any kind, of which only Python is covered here."""
+    """The launch description of a launch file of any kind."""
 
     def __init__(self, launch_file_path: SomeSubstitutionsType) -> None:
         super().__init__(
@@ -91,11 +127,4 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
         )
 
 
-__getattr__ = guard(
-    __name__,
-    {
-        "XMLLaunchDescriptionSource": _FRONTENDS,
-        "YAMLLaunchDescriptionSource": _FRONTENDS,
-        "FrontendLaunchDescriptionSource": _FRONTENDS,
-    },
-)
+__getattr__ = guard(__name__)

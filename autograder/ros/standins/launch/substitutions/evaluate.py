@@ -105,18 +105,18 @@ class FindExecutable(Substitution):
 
 
 class PathJoinSubstitution(Substitution):
-    """A path from its components, each of which may be one substitution or several."""
+    """A path from its components, each of which is a text or one substitution."""
 
-    def __init__(self, substitutions: Iterable[SomeSubstitutionsType]) -> None:
-        self.substitutions = [normalize_to_list_of_substitutions(component) for component in substitutions]
+    def __init__(self, substitutions: Iterable[str | Substitution]) -> None:
+        self.substitutions = normalize_to_list_of_substitutions(substitutions)
 
     def describe(self) -> str:
         """Return a description with the components."""
-        return f"PathJoin({', '.join(describe_substitutions(part) for part in self.substitutions)})"
+        return f"PathJoin({', '.join(part.describe() for part in self.substitutions)})"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the joined path."""
-        parts = [perform_substitutions(context, part) for part in self.substitutions]
+        parts = [context.perform_substitution(part) for part in self.substitutions]
         return os.path.join(*parts)  # noqa: PTH118  # a Path would drop slashes and dots that belong
 
 

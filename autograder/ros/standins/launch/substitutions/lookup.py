@@ -6,7 +6,7 @@ import ast
 import os
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, cast
 
 from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
@@ -84,7 +84,7 @@ class LocalSubstitution(Substitution):
         return f"LocalVar('{self.description or self.expression}')"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value as text; SubstitutionFailure if the path leads nowhere."""
+        """Return the value as it is, even if it is no text; SubstitutionFailure if the path leads nowhere."""
         value: Any = context.locals
         position = 0
         while position < len(self.expression):
@@ -99,7 +99,7 @@ class LocalSubstitution(Substitution):
                     f"local expression '{self.expression}' cannot be resolved: {error}"
                 ) from error
             position = step.end()
-        return str(value)
+        return cast(str, value)
 
 
 class _OfLaunchFile(Substitution):

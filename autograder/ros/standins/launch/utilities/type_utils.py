@@ -73,11 +73,40 @@ def coerce_to_type(text: str, data_type: Any = None) -> Any:
     if scalar is str:
         return text
     if scalar is bool:
-        value = as_yaml()
+        value = {"1": True, "0": False}.get(text, as_yaml())
         if not isinstance(value, bool):
             raise ValueError(f"Cannot convert value '{text}' to '{bool}'")
         return value
     return scalar(text)
+
+
+def get_typed_value(value: str | list[str], data_type: Any, *, can_be_str: bool = False) -> Any:
+    """Return a text, or each text of a list, read as `data_type`, or by YAML's rules if that is None.
+
+    Raises ValueError if it cannot be read so, unless it `can_be_str` as well; TypeError for a list where none is meant.
+    """
+    if isinstance(value, list):
+        scalar, is_list = (None, True) if data_type is None else _split_type(data_type)
+        if not is_list:
+            raise TypeError(f"Cannot convert input '{value}' of type '{type(value)}' to '{data_type}'")
+        return [get_typed_value(item, scalar, can_be_str=can_be_str) for item in value]
+    try:
+        return coerce_to_type(value, data_type)
+    except ValueError:
+        if can_be_str:
+            return value
+        raise
+
+
+def is_instance_of(value: Any, data_type: Any, *, can_be_str: bool = False) -> bool:
+    """Whether `value` is of `data_type`, or of any type that parameters have if that is None."""
+    if data_type is None:
+        return isinstance(value, SCALARS) or (isinstance(value, list) and all(isinstance(x, SCALARS) for x in value))
+    scalar, is_list = _split_type(data_type)
+    allowed = (scalar, str) if can_be_str else scalar
+    if is_list:
+        return isinstance(value, list) and all(isinstance(item, allowed) for item in value)
+    return isinstance(value, allowed)
 
 
 def normalize_typed_substitution(value: Any, data_type: Any = None) -> Any:

@@ -6,7 +6,7 @@ from standin_notice import guard
 
 from .node import Node
 from .ros_timer import ROSTimer, RosTimer
-from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetUseSimTime
+from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetROSLogDir, SetUseSimTime
 
 PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
 
@@ -18,6 +18,7 @@ __all__ = [
     "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
+    "SetROSLogDir",
     "SetRemap",
     "SetUseSimTime",
 ]

@@ -6,12 +6,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import yaml
 from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import ExecuteProcess
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
-from .._temporary import parameter_text, temporary_parameter_file
+from .._temporary import temporary_parameter_file
 from ..substitutions import ExecutableInPackage
 from ..utilities import evaluate_parameters, make_namespace_absolute, prefix_namespace
 
@@ -25,7 +26,8 @@ class Node(ExecuteProcess):
 
     `name` and `namespace` replace those in the node's code; a relative namespace goes below the one that
     `PushRosNamespace` has set. `parameters` is a list of parameter files and dictionaries, in which later
-    ones win; a dictionary is written to a temporary parameter file. `remappings` is a list of pairs from, to.
+    ones win; a dictionary is written to a temporary parameter file, by YAML's rules: there the text ``1e3`` is no
+    longer a text, as in Jazzy. `remappings` is a list of pairs from, to.
     `arguments` go before ``--ros-args``, `ros_arguments` behind it. All other arguments are those of
     `launch.actions.ExecuteProcess`.
     """
@@ -51,9 +53,8 @@ class Node(ExecuteProcess):
         for what, given in (("arguments", arguments), ("ros_arguments", ros_arguments)):
             if isinstance(given, str):
                 raise TypeError(f"Node: {what} must be a list of strings, got the string {given!r}")
-        super().__init__(
-            cmd=[command, *(arguments or ()), "--ros-args", *(ros_arguments or ())], name=exec_name, **kwargs
-        )
+        more = () if ros_arguments is None else ("--ros-args", *ros_arguments)
+        super().__init__(cmd=[command, *(arguments or ()), *more, "--ros-args"], name=exec_name, **kwargs)
         self._package = package
         self._executable = executable
         self._name = name
@@ -117,7 +118,7 @@ class Node(ExecuteProcess):
                 validate_namespace(namespace)
                 arguments += ["-r", f"__ns:={namespace}"]
         except Exception:
-            get_logger("launch_ros").error(
+            get_logger("launch_ros.actions.node").error(
                 "Error while expanding or validating node name or namespace for 'package=%s, executable=%s, "
                 "name=%s, namespace=%s':",
                 self._package,
@@ -132,7 +133,7 @@ class Node(ExecuteProcess):
         """Return the arguments for the parameters: those set for all nodes first, so that own ones win."""
         arguments: list[str] = []
         for item in context.launch_configurations.get("global_params", ()):
-            arguments += ["--params-file", str(item)] if isinstance(item, Path) else ["-p", _rule(*item)]
+            arguments += ["--params-file", str(item)] if isinstance(item, Path) else ["-p", f"{item[0]}:={item[1]}"]
         for item in evaluate_parameters(context, self._parameters or ()):
             if isinstance(item, tuple):
                 rule = _rule(*item)
@@ -143,12 +144,12 @@ class Node(ExecuteProcess):
             elif item.is_file():
                 arguments += ["--params-file", str(item)]
             else:
-                get_logger("launch_ros").warning("Parameter file path is not a file: %s", item)
+                get_logger("launch_ros.actions.node").warning("Parameter file path is not a file: %s", item)
         return arguments
 
     def _parameter_file(self, parameters: dict[str, Any]) -> Path:
         key = self.node_name if self.is_node_name_fully_specified() else "/**"
-        return temporary_parameter_file(parameter_text({key: {"ros__parameters": parameters}}))
+        return temporary_parameter_file(yaml.dump({key: {"ros__parameters": parameters}}, default_flow_style=False))
 
     def _remap_arguments(self, context: LaunchContext) -> list[str]:
         rules = list(context.launch_configurations.get("ros_remaps", ()))
@@ -158,8 +159,9 @@ class Node(ExecuteProcess):
     def _warn_of_twins(self, context: LaunchContext) -> None:
         if not self.is_node_name_fully_specified():
             return
-        names: dict[str, int] = context.get_locals_as_dict().setdefault("unique_ros_node_names", {})
+        names: dict[str, int] = context.get_locals_as_dict().get("unique_ros_node_names", {})
         names[self.node_name] = names.get(self.node_name, 0) + 1
+        context.extend_globals({"unique_ros_node_names": names})
         if names[self.node_name] > 1:
             get_logger(self.node_name).warning(
                 "there are now at least %d nodes with the name %s created within this launch context",
@@ -174,4 +176,4 @@ def _perform(context: LaunchContext, value: SomeSubstitutionsType) -> str:
 
 def _rule(name: str, value: Any) -> str:
     """Return a parameter as an argument of ``-p``."""
-    return f"{name}:={parameter_text(value, one_line=True)}"
+    return f"{name}:={yaml.dump(value)}"

@@ -14,8 +14,7 @@ from launch.actions import TimerAction
 class RosTimer(TimerAction):
     """Executes `actions` once, `period` seconds of ROS time after it was itself executed.
 
-    That is wall time, or the time of ``/clock`` where ``use_sim_time`` is set for the nodes (by
-    `SetUseSimTime`, `SetParameter` or the launch argument of that name).
+    That is wall time, or the time of ``/clock`` after `SetUseSimTime`.
     """
 
     def __init__(
@@ -57,11 +56,7 @@ class RosTimer(TimerAction):
 
 
 def _uses_sim_time(context: LaunchContext) -> bool:
-    given: dict[str, Any] = dict(
-        item for item in context.launch_configurations.get("global_params", ()) if isinstance(item, tuple)
-    )
-    value = given.get("use_sim_time", context.launch_configurations.get("use_sim_time", False))
-    return str(value).lower() in ("true", "1")
+    return bool(context.get_locals_as_dict().get("use_sim_time", False))
 
 
 def _watch_clock(seconds: float, stop: threading.Event) -> None:

@@ -1,13 +1,16 @@
-"""Actions on all nodes that follow in the same scope: namespace, remappings, parameters."""
+"""Actions on all nodes that follow in the same scope: namespace, remappings, parameters, log files."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from launch import Action, LaunchContext, SomeSubstitutionsType
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from rclpy.logging import get_logging_directory
+from rclpy.parameter import Parameter
 from rclpy.validate_namespace import validate_namespace
 
 from ..parameter_descriptions import ParameterFile
@@ -67,11 +70,20 @@ class SetParameter(Action):
         context.launch_configurations["global_params"] = (*others, (name, value))
 
 
-class SetUseSimTime(SetParameter):
-    """Sets the parameter ``use_sim_time`` for the nodes that follow."""
+class SetUseSimTime(Action):
+    """Lets the launch itself, and with it `RosTimer`, go by the time of ``/clock``; the nodes do not follow.
 
-    def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(name="use_sim_time", value=value, **kwargs)
+    Raises ValueError when it is executed and the value is not a bool: no substitution is performed.
+    """
+
+    def __init__(self, value: bool, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.value = value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it for the whole launch."""
+        parameter = Parameter("use_sim_time", Parameter.Type.BOOL, self.value)
+        context.extend_globals({"use_sim_time": parameter.value})
 
 
 class SetParametersFromFile(Action):
@@ -90,6 +102,19 @@ class SetParametersFromFile(Action):
         if not path.is_file():
             raise FileNotFoundError(f"SetParametersFromFile: there is no parameter file '{path}'")
         _add(context, "global_params", path)
+
+
+class SetROSLogDir(Action):
+    """Sets the folder of the nodes' log files; a relative path goes below the folder that is set already."""
+
+    def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set the variable ``ROS_LOG_DIR``, which the nodes that follow inherit."""
+        current = context.environment.get("ROS_LOG_DIR") or get_logging_directory()
+        context.environment["ROS_LOG_DIR"] = str(Path(current) / perform_substitutions(context, self.log_dir))
 
 
 def _add(context: LaunchContext, key: str, item: Any) -> None:

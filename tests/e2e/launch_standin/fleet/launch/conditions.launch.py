@@ -2,8 +2,8 @@
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, LogInfo
-from launch.conditions import IfCondition, LaunchConfigurationEquals, UnlessCondition
-from launch.substitutions import LaunchConfiguration, NotSubstitution, PythonExpression
+from launch.conditions import IfCondition, UnlessCondition
+from launch.substitutions import EqualsSubstitution, LaunchConfiguration, NotSubstitution, PythonExpression
 from launch_ros.actions import Node
 
 
@@ -29,6 +29,6 @@ def generate_launch_description():
             ),
             LogInfo(msg="real hardware", condition=IfCondition(NotSubstitution(sim))),
             LogInfo(msg="a fleet", condition=IfCondition(PythonExpression([LaunchConfiguration("robots"), " > 1"]))),
-            LogInfo(msg="just one", condition=LaunchConfigurationEquals("robots", "1")),
+            LogInfo(msg="just one", condition=IfCondition(EqualsSubstitution(LaunchConfiguration("robots"), "1"))),
         ]
     )

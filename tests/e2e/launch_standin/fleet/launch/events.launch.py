@@ -35,7 +35,7 @@ def generate_launch_description():
                 OnProcessExit(
                     target_action=listing,
                     on_exit=[
-                        LogInfo(msg=["listing ended with ", LocalSubstitution("event.returncode")]),
+                        LogInfo(msg=["it was ", LocalSubstitution("event.process_name")]),
                         Shutdown(reason="that is all"),
                     ],
                 )

@@ -15,7 +15,7 @@ def generate_launch_description():
     robot = LaunchConfiguration("robot")
     return LaunchDescription(
         [
-            DeclareLaunchArgument("robot", default_value="1e3"),
+            DeclareLaunchArgument("robot", default_value="e3"),
             SetEnvironmentVariable("COURSE_SITE", "the harness"),
             SetParameter("rate", 9.0),
             Node(package="fleet", executable="beacon", name="a", parameters=[templated], output="screen"),

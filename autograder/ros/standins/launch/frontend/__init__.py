@@ -1,0 +1,22 @@
+"""Launch files in XML and YAML: `launch_xml` and `launch_yaml` read the files, this package makes actions of them."""
+
+from __future__ import annotations
+
+from standin_notice import guard
+
+from .entity import Entity
+from .expose import expose_action, expose_substitution
+from .parse_substitution import parse_if_substitutions, parse_substitution
+from .parser import InvalidFrontendLaunchFileError, Parser
+
+__all__ = [
+    "Entity",
+    "InvalidFrontendLaunchFileError",
+    "Parser",
+    "expose_action",
+    "expose_substitution",
+    "parse_if_substitutions",
+    "parse_substitution",
+]
+
+__getattr__ = guard(__name__)

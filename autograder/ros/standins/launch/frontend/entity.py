@@ -1,0 +1,45 @@
+"""One element of an XML or YAML launch file, such as an action with its attributes."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+
+class Entity(ABC):
+    """An element with a type, attributes and children; it knows which of them were read."""
+
+    @property
+    @abstractmethod
+    def type_name(self) -> str:
+        """The type, e.g. ``node``."""
+
+    @property
+    @abstractmethod
+    def parent(self) -> Entity | None:
+        """The element in which this one is."""
+
+    @property
+    @abstractmethod
+    def children(self) -> list[Entity]:
+        """The elements in this one."""
+
+    @abstractmethod
+    def assert_entity_completely_parsed(self) -> None:
+        """Raise ValueError if an attribute or a child was not read: nobody knows what it means."""
+
+    @abstractmethod
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
+        """Return an attribute.
+
+        Args:
+            name: its name.
+            data_type: `str`, `int`, `float`, `bool`, a list of one of these, `list[Entity]` for the children of that
+                name, or None for YAML's own rules.
+            optional: return None if the attribute is missing.
+            can_be_str: return text that is not of the type as it is; a substitution may be in it.
+
+        Raises:
+            AttributeError: the attribute is missing.
+            TypeError: it is not of the type.
+        """

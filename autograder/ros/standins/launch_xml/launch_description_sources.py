@@ -1,0 +1,21 @@
+"""Launch descriptions from XML launch files."""
+
+from __future__ import annotations
+
+from launch import SomeSubstitutionsType
+from launch.launch_description_sources import FrontendLaunchDescriptionSource
+from standin_notice import guard
+
+from .parser import Parser
+
+__all__ = ["XMLLaunchDescriptionSource"]
+
+
+class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
+    """The launch description of an XML launch file."""
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType) -> None:
+        super().__init__(launch_file_path, method="interpreted XML launch file", parser=Parser)
+
+
+__getattr__ = guard(__name__)

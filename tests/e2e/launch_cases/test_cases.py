@@ -1,0 +1,44 @@
+"""The stand-ins for launch do what the real packages do: the same launch descriptions, with the same records.
+
+`records.yaml` was written with the real packages by `runner.py`. With them installed, this test holds them to it, too.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import launch
+import pytest
+import yaml
+
+from autograder.layout import ROOT
+from tests.e2e.launch_cases.runner import HERE, RECORDS, cases
+
+EXPECTED: dict[str, dict[str, Any]] = yaml.safe_load(RECORDS.read_text())
+# Where the stand-ins say something else, and why.
+DIFFERENCES: dict[str, dict[str, Any]] = yaml.safe_load((HERE / "differences.yaml").read_text())
+STAND_IN = "standins" in str(launch.__file__)
+
+
+@pytest.fixture(scope="module")
+def records() -> dict[str, dict[str, Any]]:
+    program = [sys.executable, "-m", "tests.e2e.launch_cases.runner"]
+    done = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    found: dict[str, dict[str, Any]] = yaml.safe_load(done.stdout)
+    return found
+
+
+def test_each_case_has_a_record() -> None:
+    assert list(cases()) == list(EXPECTED)
+    assert set(DIFFERENCES) <= set(EXPECTED)
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_a_case_does_what_it_does_with_the_real_packages(name: str, records: dict[str, dict[str, Any]]) -> None:
+    expected = dict(EXPECTED[name])
+    if STAND_IN and name in DIFFERENCES:
+        assert DIFFERENCES[name]["log"] != expected["log"]
+        expected["log"] = DIFFERENCES[name]["log"]
+    assert records[name] == expected

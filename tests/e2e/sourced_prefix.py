@@ -1,0 +1,86 @@
+"""Lays the ROS 2 of this virtual environment out as an installation from packages is, such as /opt/ros/jazzy.
+
+`python -m tests.e2e.sourced_prefix FOLDER` copies the wheels, the real launch and ros2cli (`make real-launch`), and the
+packages that colcon has built into the environment. A shell that sources FOLDER/setup.bash then has a ROS 2 Jazzy as
+one from packages is, without the wheels' own start-up hook.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import sysconfig
+from collections.abc import Iterator
+from importlib.metadata import Distribution, distributions
+from pathlib import Path
+
+PREFIX = Path(sys.prefix)
+SITE = Path(sysconfig.get_path("purelib"))
+REAL = ("ament_copyright", "launch", "ros2", "rosidl_runtime_py", "osrf_pycommon")
+OURS = ("ros2-python-course", "ros2_python_course", "ros2-course-standins")
+SETUP = """# Source this file, as that of an installed ROS 2: it sets what the real setup.bash sets.
+export ROS_VERSION=2 ROS_PYTHON_VERSION=3 ROS_DISTRO=jazzy
+export AMENT_PREFIX_PATH="{prefix}${{AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}}"
+export CMAKE_PREFIX_PATH="{prefix}${{CMAKE_PREFIX_PATH:+:$CMAKE_PREFIX_PATH}}"
+export LD_LIBRARY_PATH="{libraries}${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}"
+export PYTHONPATH="{prefix}/{site}${{PYTHONPATH:+:$PYTHONPATH}}"
+export PATH="{prefix}/bin:$PATH"
+"""
+
+
+def is_ros(distribution: Distribution) -> bool:
+    """Whether a distribution is one of ROS's own; those of the package index are no part of the prefix."""
+    name = distribution.name.lower()
+    return name.startswith(("ros-", "ros_", *REAL)) and name not in OURS and not name.startswith("ros_wheels")
+
+
+def files() -> Iterator[Path]:
+    """Yield all files of the prefix: those of the distributions, and those that colcon has installed."""
+    for distribution in distributions():
+        if is_ros(distribution):
+            yield from (Path(os.path.normpath(str(distribution.locate_file(file)))) for file in distribution.files or ())
+    packages = {path.name for path in (PREFIX / "share/ament_index/resource_index/packages").iterdir()}
+    folders = [PREFIX / "share/ament_index", PREFIX / "include"]
+    folders += [root / package for package in packages for root in (PREFIX / "share", PREFIX / "lib", SITE)]
+    folders += SITE.glob("ros_*.libs")
+    yield from (PREFIX / "lib").glob("*.so*")
+    for folder in folders:
+        yield from folder.rglob("*")
+
+
+def lay_out(target: Path) -> None:
+    """Copy the files below `target`, which is made; programs get the interpreter without this environment.
+
+    Raises:
+        FileExistsError: `target` is there already.
+    """
+    target.mkdir(parents=True)
+    interpreter = f"#!{Path(sys.executable).resolve()}\n".encode()
+    for file in sorted(set(files())):
+        if not file.is_file() or not file.is_relative_to(PREFIX) or file.suffix == ".pyc":
+            continue
+        copy = target / file.relative_to(PREFIX)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(file, copy)
+        head, _, rest = copy.read_bytes().partition(b"\n")
+        if head.startswith(f"#!{PREFIX}".encode()):
+            copy.write_bytes(interpreter + rest)
+    site = SITE.relative_to(PREFIX)
+    libraries = ":".join(map(str, [target / "lib", *(target / site).glob("ros_*.libs")]))
+    (target / "setup.bash").write_text(SETUP.format(prefix=target, site=site, libraries=libraries))
+
+
+def main() -> int:
+    """Lay the prefix out and say where."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="where; it must not exist")
+    target = parser.parse_args().folder.absolute()
+    lay_out(target)
+    print(f"source {target}/setup.bash")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
