@@ -20,7 +20,7 @@ VERIFY_ARGS ?=
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
 LINTERS := lint-style lint-types lint-standins lint-imports
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch public-packages lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch sourced-layout public-packages lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -94,6 +94,11 @@ verify:         ## prove the grader: reference, release and mutants (WORKERS=4 V
 real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
 	@$(BOOTSTRAP)
 	@$(BIN)/python -m autograder.ros.real_launch
+	@$(BIN)/python -m pytest -q tests/e2e/launch_cases/test_cases.py -m "not nightly" $(PYTEST_ARGS)
+
+PREFIX ?= .build/opt/ros/jazzy
+sourced-layout: ## after real-launch: copy this ROS to PREFIX=, laid out as /opt/ros/jazzy is, for `source setup.bash`
+	@$(BIN)/python -m tests.e2e.sourced_prefix $(PREFIX)
 
 EXAMPLES = $(or $(ROS2_EXAMPLES_SOURCE),.build/public/examples)
 DEMOS = $(or $(ROS2_DEMOS_SOURCE),.build/public/demos)

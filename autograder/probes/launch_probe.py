@@ -24,7 +24,7 @@ KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has 
 
 _NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
-_CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>\[.*\])")
+_CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>[\[(].*[\])])")  # a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
 _CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
 _STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")

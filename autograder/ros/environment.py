@@ -36,7 +36,7 @@ class RosEnvironment:
 
     Attributes:
         kind: `wheels` (pip, in this virtual environment) or `sourced` (a `setup.bash` was sourced).
-        prefixes: ament prefixes, the first one wins.
+        prefixes: ament prefixes of the installation, the first one wins; sourced workspaces are none of them.
         rclpy: the folder that `import rclpy` would load.
     """
 
@@ -112,9 +112,11 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
             "open a shell without it, or source /opt/ros/jazzy/setup.bash"
         )
     prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
-    if not prefixes:
-        raise RosNotFoundError(f"rclpy is at {rclpy}, but AMENT_PREFIX_PATH is empty: source /opt/ros/jazzy/setup.bash")
-    return RosEnvironment("sourced", prefixes, rclpy)
+    # What is in front of the installation are workspaces: sourced by the user, or built and loaded by this process.
+    installed = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
+    if not installed:
+        raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source /opt/ros/jazzy/setup.bash")
+    return RosEnvironment("sourced", prefixes[installed[0] :], rclpy)
 
 
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:

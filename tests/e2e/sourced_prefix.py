@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import subprocess
 import sys
 import sysconfig
 from collections.abc import Iterator
@@ -18,8 +19,9 @@ from pathlib import Path
 
 PREFIX = Path(sys.prefix)
 SITE = Path(sysconfig.get_path("purelib"))
-REAL = ("ament_copyright", "launch", "ros2", "rosidl_runtime_py", "osrf_pycommon")
-OURS = ("ros2-python-course", "ros2_python_course", "ros2-course-standins")
+REAL = ("ament_copyright", "launch", "ros2", "rosidl_runtime_py")
+FROM_APT = ("argcomplete", "lark", "numpy", "osrf-pycommon", "packaging", "psutil", "pyyaml")
+OURS = ("ros2_python_course", "ros2_course_standins")
 SETUP = """# Source this file, as that of an installed ROS 2: it sets what the real setup.bash sets.
 export ROS_VERSION=2 ROS_PYTHON_VERSION=3 ROS_DISTRO=jazzy
 export AMENT_PREFIX_PATH="{prefix}${{AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}}"
@@ -32,15 +34,17 @@ export PATH="{prefix}/bin:$PATH"
 
 def is_ros(distribution: Distribution) -> bool:
     """Whether a distribution is one of ROS's own; those of the package index are no part of the prefix."""
-    name = distribution.name.lower()
-    return name.startswith(("ros-", "ros_", *REAL)) and name not in OURS and not name.startswith("ros_wheels")
+    name = distribution.name.lower().replace("-", "_")
+    return name.startswith(("ros_", *REAL)) and name not in OURS and not name.startswith("ros_wheels")
 
 
 def files() -> Iterator[Path]:
     """Yield all files of the prefix: those of the distributions, and those that colcon has installed."""
     for distribution in distributions():
         if is_ros(distribution):
-            yield from (Path(os.path.normpath(str(distribution.locate_file(file)))) for file in distribution.files or ())
+            yield from (
+                Path(os.path.normpath(str(distribution.locate_file(file)))) for file in distribution.files or ()
+            )
     packages = {path.name for path in (PREFIX / "share/ament_index/resource_index/packages").iterdir()}
     folders = [PREFIX / "share/ament_index", PREFIX / "include"]
     folders += [root / package for package in packages for root in (PREFIX / "share", PREFIX / "lib", SITE)]
@@ -51,13 +55,21 @@ def files() -> Iterator[Path]:
 
 
 def lay_out(target: Path) -> None:
-    """Copy the files below `target`, which is made; programs get the interpreter without this environment.
+    """Copy the files below `target`, which is made, with an interpreter for its programs.
+
+    That is a virtual environment in `target` with what ROS needs from the package index. It stands for the system's
+    Python, for which apt installs these packages.
 
     Raises:
         FileExistsError: `target` is there already.
+        subprocess.CalledProcessError: the environment cannot be made.
     """
     target.mkdir(parents=True)
-    interpreter = f"#!{Path(sys.executable).resolve()}\n".encode()
+    system = target / "python"
+    subprocess.run([Path(sys.executable).resolve(), "-m", "venv", system], check=True)
+    pinned = [f"{one.name}=={one.version}" for one in distributions() if one.name.lower() in FROM_APT]
+    subprocess.run([system / "bin/python", "-m", "pip", "install", "-qq", *pinned], check=True)
+    interpreter = f"#!{system}/bin/python\n".encode()
     for file in sorted(set(files())):
         if not file.is_file() or not file.is_relative_to(PREFIX) or file.suffix == ".pyc":
             continue
@@ -67,6 +79,8 @@ def lay_out(target: Path) -> None:
         head, _, rest = copy.read_bytes().partition(b"\n")
         if head.startswith(f"#!{PREFIX}".encode()):
             copy.write_bytes(interpreter + rest)
+        elif copy.suffix == ".cmake":  # they name numpy's headers
+            copy.write_bytes(copy.read_bytes().replace(bytes(PREFIX), bytes(system)))
     site = SITE.relative_to(PREFIX)
     libraries = ":".join(map(str, [target / "lib", *(target / site).glob("ros_*.libs")]))
     (target / "setup.bash").write_text(SETUP.format(prefix=target, site=site, libraries=libraries))

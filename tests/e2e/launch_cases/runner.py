@@ -24,7 +24,7 @@ import yaml
 
 HERE = Path(__file__).parent
 RECORDS = HERE / "records.yaml"
-DISTRIBUTIONS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ros2-course-standins")
+DISTRIBUTIONS = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 SECONDS = 60.0  # for one case, on a busy machine
 
 PYTHON = """
@@ -205,7 +205,8 @@ def records() -> Iterator[tuple[str, dict[str, Any]]]:
 
 def main() -> int:
     """Print the records."""
-    found = sorted(f"{one.name} {one.version}" for one in distributions() if one.name in DISTRIBUTIONS)
+    named = {one.name.replace("-", "_"): one.version for one in distributions()}
+    found = [f"{name} {named.get(name, 'stand-in')}" for name in DISTRIBUTIONS]
     print(f"# Recorded with {', '.join(found)}, Python {sys.version_info[0]}.{sys.version_info[1]}.")
     print(yaml.safe_dump(dict(records()), sort_keys=False, width=160, allow_unicode=True), end="")
     return 0

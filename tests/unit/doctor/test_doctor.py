@@ -404,7 +404,12 @@ def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> No
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").write_text("raise ImportError('half an installation')\n")
     code = "from autograder.doctor import *; f = examine(); print(render(f)); raise SystemExit(not healthy(f))"
-    environ = {**os.environ, "PYTHONPATH": str(tmp_path), "ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": sys.prefix}
+    environ = {
+        **os.environ,
+        "PYTHONPATH": str(tmp_path),
+        "ROS_DISTRO": "jazzy",
+        "AMENT_PREFIX_PATH": f"{tmp_path}:{sys.prefix}",
+    }
     done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1, done.stderr
     told = " ".join(done.stdout.split())

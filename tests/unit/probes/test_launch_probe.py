@@ -49,6 +49,11 @@ def test_shown_arguments_are_read_with_description_default_and_choices() -> None
     }
 
 
+def test_choices_may_be_a_tuple() -> None:
+    shown = SHOWN.replace("['drive', 'park']", "('drive', 'park')")
+    assert launch_probe.parse_arguments(shown) == launch_probe.parse_arguments(SHOWN)
+
+
 def test_a_launch_file_without_arguments_shows_none() -> None:
     assert launch_probe.parse_arguments("Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n") == {}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from .._arguments import ArgumentDeclaration, ArgumentScope
@@ -30,13 +30,13 @@ class DeclareLaunchArgument(ArgumentDeclaration):
         *,
         default_value: SomeSubstitutionsType | None = None,
         description: str | None = None,
-        choices: Iterable[str] | None = None,
+        choices: Collection[str] | None = None,
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
         self.name = name
         self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
-        self.choices = None if choices is None else list(choices)
+        self.choices = choices
         if self.choices is not None:
             if not self.choices:
                 self._refuse("Provided choices arg is empty. Use None to ignore the choice list.")
