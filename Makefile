@@ -50,7 +50,7 @@ nightly:        ## the tests that take hours: each chapter's class and tour, lau
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
 LINTED := autograder sim tests assets nbgrader_config.py
-STANDINS := launch launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice standin_submodules
+STANDINS := launch launch_xml launch_yaml launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice standin_submodules
 lint:           ## style, types and imports, all at once
 	@$(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync $(LINTERS)
 

@@ -5,7 +5,7 @@ The actions in question derive from the bases here, so that a description need n
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from .action import Action
 from .launch_description_entity import LaunchDescriptionEntity
@@ -18,7 +18,7 @@ class ArgumentDeclaration(Action):
     name: str
     description: str
     default_value: list[Substitution] | None
-    choices: list[str] | None
+    choices: Collection[str] | None
     # Set by `find_arguments`.
     _conditionally_included: bool
 
