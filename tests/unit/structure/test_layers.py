@@ -54,10 +54,11 @@ BREACHES = {
 }
 
 # The stand-ins are imported under names of their own, so they stand outside of the project's contracts.
+# Imports for type checkers do not count: as in Jazzy, an action's `parse` takes a parser, which returns actions.
 LAUNCH = """
 [tool.importlinter]
 root_package = "launch"
-exclude_type_checking_imports = false
+exclude_type_checking_imports = true
 [[tool.importlinter.contracts]]
 id = "circles"
 name = "No circle among the modules of the stand-in"
