@@ -1,7 +1,7 @@
 """The public submodules of the real packages, for programs that import a name from the module in which it stands.
 
 The stand-ins divide their code in another way. So `launch.actions.group_action` is a module with the names of
-`launch.actions`. What has no stand-in, such as `launch_ros.events`, raises the error that names it.
+`launch.actions`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
-
-from standin_notice import not_covered
 
 # The submodules of each module, as the packages of Jazzy have them.
 SUBMODULES = {
@@ -58,20 +56,17 @@ SUBMODULES = {
     "launch_yaml.launch_description_sources": "yaml_launch_description_source",
     "launch_ros": "parameters_type remap_rule_type",
     "launch_ros.actions": (
-        "composable_node_container lifecycle_node lifecycle_transition load_composable_nodes push_ros_namespace "
+        "composable_node_container load_composable_nodes push_ros_namespace "
         "set_parameter set_parameters_from_file set_remap set_ros_log_dir set_use_sim_time"
     ),
     "launch_ros.descriptions": "composable_node",
+    "launch_ros.event_handlers": "on_state_transition",
+    "launch_ros.events.lifecycle": "lifecycle_node_matchers",
     "launch_ros.substitutions": "executable_in_package find_package parameter",
     "launch_ros.utilities": (
         "evaluate_parameters namespace_utils normalize_parameters normalize_remap_rule plugin_support "
         "to_parameters_list track_node_names"
     ),
-}
-NOT_COVERED = {
-    "launch_ros.event_handlers": "It holds what launch does with lifecycle nodes, which have no stand-in",
-    "launch_ros.events": "It holds the events of lifecycle nodes, which have no stand-in",
-    "launch_ros.ros_adapters": "",
 }
 
 
@@ -80,8 +75,6 @@ class _Submodules(MetaPathFinder, Loader):
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         parent, _, name = fullname.rpartition(".")
-        if fullname in NOT_COVERED:
-            raise not_covered(fullname, standin=fullname.partition(".")[0], reason=NOT_COVERED[fullname])
         return ModuleSpec(fullname, self) if name in SUBMODULES.get(parent, "").split() else None
 
     def exec_module(self, module: ModuleType) -> None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from typing import Any
@@ -14,6 +15,7 @@ import pytest
 import yaml
 
 from autograder.layout import ROOT
+from autograder.ros.domains import Domain
 from tests.e2e.launch_cases.runner import HERE, RECORDS, cases
 
 EXPECTED: dict[str, dict[str, Any]] = yaml.safe_load(RECORDS.read_text())
@@ -25,7 +27,9 @@ STAND_IN = "standins" in str(launch.__file__)
 @pytest.fixture(scope="module")
 def records() -> dict[str, dict[str, Any]]:
     program = [sys.executable, "-m", "tests.e2e.launch_cases.runner"]
-    done = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    with Domain() as domain:
+        variables = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
+        done = subprocess.run(program, cwd=ROOT, env=variables, capture_output=True, text=True, check=True)
     found: dict[str, dict[str, Any]] = yaml.safe_load(done.stdout)
     return found
 

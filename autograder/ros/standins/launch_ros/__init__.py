@@ -2,8 +2,8 @@
 
 It is imported only where the real package is not. Names, signatures, semantics and errors are those of
 `launch_ros` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch_ros/); the code is the course's own.
-Covered are nodes with their parameters, remappings and namespaces, in launch files of Python, XML and YAML.
-Lifecycle nodes and composable nodes are not: they raise an error that says so. For the real package run
+Covered are nodes with their parameters, remappings, namespaces and life cycles, in launch files of Python, XML and
+YAML. Composable nodes are not: they raise an error that says so. For the real package run
 `make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
@@ -12,9 +12,29 @@ from __future__ import annotations
 from standin_notice import guard
 from standin_submodules import offer_submodules
 
-from . import _frontend, actions, descriptions, parameter_descriptions, substitutions, utilities
+from . import (
+    _frontend,
+    actions,
+    descriptions,
+    event_handlers,
+    events,
+    parameter_descriptions,
+    ros_adapters,
+    substitutions,
+    utilities,
+)
 
-__all__ = ["_frontend", "actions", "descriptions", "parameter_descriptions", "substitutions", "utilities"]
+__all__ = [
+    "_frontend",
+    "actions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "parameter_descriptions",
+    "ros_adapters",
+    "substitutions",
+    "utilities",
+]
 
 __getattr__ = guard(__name__)
 

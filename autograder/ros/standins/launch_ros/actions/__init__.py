@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from standin_notice import guard
 
+from .lifecycle_node import LifecycleNode
+from .lifecycle_transition import LifecycleTransition
 from .node import Node
 from .ros_timer import ROSTimer, RosTimer
 from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetROSLogDir, SetUseSimTime
@@ -11,6 +13,8 @@ from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRem
 PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
 
 __all__ = [
+    "LifecycleNode",
+    "LifecycleTransition",
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
@@ -23,14 +27,11 @@ __all__ = [
     "SetUseSimTime",
 ]
 
-_LIFECYCLE = "Lifecycle nodes need the launch events of lifecycle_msgs, which have no stand-in"
 _COMPOSABLE = "Composable nodes need C++ components and composition_interfaces, for which there is no wheel"
 
 __getattr__ = guard(
     __name__,
     {
-        "LifecycleNode": _LIFECYCLE,
-        "LifecycleTransition": _LIFECYCLE,
         "ComposableNodeContainer": _COMPOSABLE,
         "LoadComposableNodes": _COMPOSABLE,
     },

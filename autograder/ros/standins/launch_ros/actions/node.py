@@ -97,8 +97,12 @@ class Node(ExecuteProcess):
             *self._remap_arguments(context),
         ]
         self.cmd.extend(normalize_to_list_of_substitutions(argument) for argument in arguments)
+        self.before_start(context)
         self._warn_of_twins(context)
         return super().execute(context)
+
+    def before_start(self, context: LaunchContext) -> None:
+        """Do what a kind of node needs done when its name is known and before its process starts: here nothing."""
 
     def _name_arguments(self, context: LaunchContext) -> list[str]:
         from rclpy.validate_namespace import validate_namespace
