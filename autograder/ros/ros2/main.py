@@ -27,7 +27,7 @@ COMMANDS = {
     "doctor": Command("Check ROS setup and other potential issues", "doctor"),
     "interface": Command("Show information about ROS interfaces", "interface"),
     "launch": Command("Run a launch file", "launch"),
-    "lifecycle": Command("Various lifecycle related sub-commands"),
+    "lifecycle": Command("Various lifecycle related sub-commands", "lifecycle"),
     "multicast": Command("Various multicast related sub-commands"),
     "node": Command("Various node related sub-commands", "node"),
     "param": Command("Various param related sub-commands", "param"),

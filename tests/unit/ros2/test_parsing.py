@@ -42,7 +42,7 @@ def test_a_command_alone_prints_its_help(words: tuple[str, ...], capsys: pytest.
 
 @pytest.mark.parametrize(
     "words",
-    [("bag", "record"), ("daemon", "stop"), ("lifecycle", "list"), ("topic", "delay", "/x"), ("service", "echo", "/x")],
+    [("bag", "record"), ("daemon", "stop"), ("component", "list"), ("topic", "delay", "/x"), ("service", "echo", "/x")],
 )
 def test_what_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
     outcome = main(words)

@@ -1,0 +1,48 @@
+"""`ros2 lifecycle` says of real nodes what it says on a real Jazzy."""
+
+from __future__ import annotations
+
+import itertools
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+import yaml
+
+NODE = Path(__file__).parent / "launch_cases" / "prefix" / "lib" / "talk" / "live"
+RECORDS = Path(__file__).with_name("ros2_lifecycle.yaml")
+
+
+@pytest.fixture
+def nodes(ros_domain: int) -> Iterator[None]:
+    """Two nodes with a life cycle; the transition `activate` of `/live` fails."""
+    programs = [
+        subprocess.Popen([sys.executable, NODE, "--ros-args", "-p", "heard:=false", *arguments])
+        for arguments in (("-r", "__ns:=/left"), ("-p", "activate:=FAILURE"))
+    ]
+    yield
+    for program in programs:
+        program.terminate()
+    for program in programs:
+        program.wait()
+
+
+def lifecycle(*arguments: str, spin_time: str = "3") -> tuple[int, str]:
+    program = [sys.executable, "-m", "autograder.ros.ros2", "lifecycle", *arguments, "--spin-time", spin_time]
+    done = subprocess.run(program, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    return done.returncode, done.stdout
+
+
+@pytest.mark.usefixtures("nodes")
+def test_each_verb_says_what_it_says_on_jazzy() -> None:
+    for name in ("live", "left/live"):
+        assert lifecycle("get", name, spin_time="60") == (0, "unconfigured [1]\n")  # it is up
+    records = yaml.safe_load(RECORDS.read_text())
+    for _, group in itertools.groupby(records, lambda record: str(record["command"]).startswith("set ")):
+        together = list(group)  # questions change nothing, so they run side by side
+        with ThreadPoolExecutor(1 if together[0]["command"].startswith("set ") else 4) as pool:
+            found = list(pool.map(lambda record: lifecycle(*record["command"].split()), together))
+        assert found == [(record["status"], record["output"]) for record in together]
