@@ -10,6 +10,8 @@ from packaging.requirements import Requirement
 from autograder.course.markdown import table
 from autograder.layout import ROOT
 from autograder.ros.platform_versions import PACKAGES, PlatformPackage
+from autograder.ros.ros2.exceptions import NotCoveredError
+from autograder.ros.ros2.main import COMMANDS
 
 PAGE = ROOT / "docs" / "platform.md"
 LOCK = ROOT / "requirements.lock"
@@ -38,6 +40,24 @@ the real ones, so programs meet those of other computers. A CMake package cannot
 ros2/demos, as they are. It runs their tests by `colcon test`, and lets their servers and clients, publishers and
 subscribers meet.
 """
+STAND_INS = """## What the stand-ins do not cover
+
+`launch`, `launch_ros`, `launch_testing` and `ros2` are not on the package index, so the course has stand-ins for them.
+Tests hold them to records of the real packages: launch files in Python, XML and YAML, and `ros2 lifecycle`. The few
+places where a stand-in's words differ are in `tests/e2e/launch_cases/differences.yaml`, each with its reason. What is not
+covered raises an error that says so. All of it works after `make real-launch`, or with a sourced Jazzy.
+"""
+UNCOVERED = ("not covered", "why", "the error")
+COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
+INNER = "launch files do not use it: a helper inside the real package"
+RUNNER = "the runner of `launch_test` is not covered; `launch_pytest` does the same with pytest"
+LAUNCH = {
+    "launch_ros.actions.ComposableNodeContainer": COMPOSABLE,
+    "launch_ros.actions.LoadComposableNodes": COMPOSABLE,
+    "launch_ros.descriptions.ComposableNode": COMPOSABLE,
+    "launch_ros.utilities.normalize_parameters": INNER,
+    "launch_testing.post_shutdown_test": RUNNER,
+}
 
 
 def platform_page(lock: str) -> str:
@@ -47,7 +67,8 @@ def platform_page(lock: str) -> str:
         lock: the text of `requirements.lock`.
     """
     by_python = {python: locked(lock, python) for python in PYTHONS}
-    return "\n".join([HEAD, *table(COLUMNS, (_row(package, by_python) for package in PACKAGES)), TAIL])
+    versions = table(COLUMNS, (_row(package, by_python) for package in PACKAGES))
+    return "\n".join([HEAD, *versions, TAIL, STAND_INS, *table(UNCOVERED, _uncovered())])
 
 
 def locked(lock: str, python: str) -> dict[str, str]:
@@ -66,6 +87,16 @@ def _requirements(lock: str, python: str) -> Iterator[Requirement]:
         requirement = Requirement(line)
         if requirement.marker is None or requirement.marker.evaluate(environment):
             yield requirement
+
+
+def _uncovered() -> Iterator[tuple[str, str, str]]:
+    for name, reason in LAUNCH.items():
+        yield f"`{name}`", reason, f"'{name}' is not covered: this is the course's stand-in …"
+    for word, command in COMMANDS.items():
+        missing = [f"ros2 {word} {verb}" for verb in command.not_covered] if command.module else [f"ros2 {word}"]
+        for called in missing:
+            error = str(NotCoveredError(f"`{called}`")).partition(";")[0]
+            yield f"`{called}`", "the course does not use it", f"{error} …"
 
 
 def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:

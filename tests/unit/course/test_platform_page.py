@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 
-from autograder.course.platform_page import LOCK, PAGE, PYTHONS, locked, platform_page
+from autograder.course.platform_page import LAUNCH, LOCK, PAGE, PYTHONS, locked, platform_page
 from autograder.ros.platform_versions import PACKAGES
+from autograder.ros.ros2.main import STAND_INS
 
 LOCKED = """numpy==1.26.4 ; python_full_version < '3.13' \\
     --hash=sha256:00
@@ -35,3 +39,11 @@ def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not
         if versions[package.name] != package.version and not (package.differs and python == "3.13")
     }
     assert unexplained == {}
+
+
+@pytest.mark.parametrize("name", LAUNCH)
+def test_what_the_page_calls_not_covered_says_so(name: str) -> None:
+    module, _, last = name.rpartition(".")
+    program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {last}"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert f"'{name}' is not covered: this is the course's stand-in" in done.stderr
