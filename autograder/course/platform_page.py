@@ -44,8 +44,8 @@ STAND_INS = """## What the stand-ins do not cover
 
 `launch`, `launch_ros`, `launch_testing` and `ros2` are not on the package index, so the course has stand-ins for them.
 Tests hold them to records of the real packages: launch files in Python, XML and YAML, and `ros2 lifecycle`. The few
-places where a stand-in's words differ are in `tests/e2e/launch_cases/differences.yaml`, each with its reason. What is not
-covered raises an error that says so. All of it works after `make real-launch`, or with a sourced Jazzy.
+places where a stand-in's words differ are in `tests/e2e/launch_cases/differences.yaml`, each with its reason. What is
+not covered raises an error that says so. All of it works after `make real-launch`, or with a sourced Jazzy.
 """
 UNCOVERED = ("not covered", "why", "the error")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
