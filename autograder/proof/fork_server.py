@@ -6,7 +6,7 @@ Starting a worker costs about a core-second, as much as many a submission's chec
 submissions of its own, so it lets each lane's share one cell, one after another. Whoever grades students' submissions
 gives each a cell of its own (`pipeline.in_own_cell`); the sandboxes around students' code are the same in both.
 
-Orders are jobs, a line each. A reply is a line, too: the child's exit status and what it wrote.
+It reads jobs, a line each. A reply is a line, too: the child's exit status and what it wrote.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from autograder.sandbox.launcher import warm_up
 OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
 
 
-def serve(scratch: Path, orders: TextIO, replies: TextIO) -> None:
-    """Carry orders out until there are no more, each in a child of its own that leaves no file but MEMORY's."""
-    for line in orders:
+def serve(scratch: Path, jobs: TextIO, replies: TextIO) -> None:
+    """Do jobs until there are no more, each in a child of its own that leaves no file but MEMORY's."""
+    for line in jobs:
         said, job = scratch / "said.log", Job.from_json(line)
         suite = suites.hidden(job.assignment)
         assert suite.version  # read once for all, too
@@ -74,14 +74,14 @@ def _end_of(log: Path) -> str:
 
 def main() -> None:
     """Serve in the folder and on the descriptors that the command line names."""
-    scratch, orders, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    scratch, jobs, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     worker.prepare()
     for profile in PROFILES:  # a server that a child warmed up would end with it
         warm_up(profile)
     PROFILES["tests"].load()  # a worker needs most of that, too
     gc.collect()
     gc.freeze()  # what the children share is not theirs to look through
-    with os.fdopen(orders) as lines, os.fdopen(replies, "w") as answers:
+    with os.fdopen(jobs) as lines, os.fdopen(replies, "w") as answers:
         serve(scratch, lines, answers)
 
 

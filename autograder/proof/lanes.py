@@ -72,11 +72,11 @@ class _Lane:
 
     def __init__(self, tier: Tier) -> None:
         self._stack = ExitStack()
-        their_orders, self._orders = os.pipe()
+        their_jobs, self._jobs = os.pipe()
         self._replies, their_replies = os.pipe()
-        for descriptor in (self._orders, self._replies):
+        for descriptor in (self._jobs, self._replies):
             self._stack.callback(os.close, descriptor)
-        theirs = (their_orders, their_replies)
+        theirs = (their_jobs, their_replies)
 
         def command(scratch: Path) -> list[str]:
             server = [sys.executable, "-m", "autograder.proof.fork_server", str(scratch)]
@@ -95,7 +95,7 @@ class _Lane:
     def grade(self, job: Job) -> CellReport:
         """Order one job and wait for its end; any ending but `exited` is the server's, which is of no more use."""
         with suppress(BrokenPipeError):  # of a server that is no more; its end is seen below
-            os.write(self._orders, job.to_json().encode() + b"\n")
+            os.write(self._jobs, job.to_json().encode() + b"\n")
         reply, deadline = b"", time.monotonic() + GRADING_CELL.wall_seconds
         with selectors.DefaultSelector() as selector:
             selector.register(self._replies, selectors.EVENT_READ)
