@@ -213,6 +213,7 @@ def imports(scratch: Path, profile: str, code: str) -> list[str]:
         ("tests", "import std_msgs.msg\nstd_msgs.srv"),
         ("tests", "from geometry_msgs.msg import Twist\nimport sensor_msgs\nsensor_msgs.msg"),
         ("launch", "import rclpy\nrclpy.executors"),
+        ("launch", "import lifecycle_msgs\nlifecycle_msgs.msg"),
         ("colcon", "import setuptools\nsetuptools.no_such_thing"),
     ],
 )

@@ -1,4 +1,7 @@
-"""The node through which a launch itself takes part in ROS."""
+"""The node through which a launch itself takes part in ROS.
+
+rclpy is imported when it is needed: a launched program that is a fork must not find parts of it imported.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,8 @@ import threading
 from collections.abc import Sequence
 from typing import Any
 
-import rclpy
 from launch import LaunchContext
 from launch.event_handlers import OnShutdown
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from standin_notice import guard
 
 __all__ = ["ROSAdapter", "get_ros_adapter", "get_ros_node"]
@@ -26,15 +27,18 @@ class ROSAdapter:
 
     def __init__(self, *, argv: Sequence[str] | None = None, autostart: bool = True) -> None:
         self.argv = list(argv or ())
-        self.ros_context: rclpy.Context | None = None
+        self.ros_context: Any = None
         self.ros_node: Any = None
-        self.ros_executor: SingleThreadedExecutor | None = None
+        self.ros_executor: Any = None
         self._thread: threading.Thread | None = None
         if autostart:
             self.start()
 
     def start(self) -> None:
         """Create the node and begin to spin it; RuntimeError if it is already there."""
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+
         if self._thread is not None:
             raise RuntimeError("Cannot start a ROS adapter that is already running")
         self.ros_context = rclpy.Context()
@@ -46,7 +50,9 @@ class ROSAdapter:
         self._thread.start()
 
     @staticmethod
-    def _spin(executor: SingleThreadedExecutor) -> None:
+    def _spin(executor: Any) -> None:
+        from rclpy.executors import ExternalShutdownException
+
         try:
             executor.spin()
         except ExternalShutdownException:
@@ -60,7 +66,7 @@ class ROSAdapter:
         self._thread.join()
         self._thread = None
         self.ros_node.destroy_node()
-        rclpy.try_shutdown(context=self.ros_context)
+        self.ros_context.try_shutdown()
 
 
 def get_ros_adapter(context: LaunchContext) -> ROSAdapter:

@@ -9,8 +9,6 @@ from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import OpaqueFunction
 from launch.event_handler import EventHandler
 from launch.logging import get_logger
-from lifecycle_msgs.msg import TransitionEvent
-from lifecycle_msgs.srv import ChangeState as ChangeStateService
 
 from ..events.lifecycle import ChangeState, StateTransition
 from ..ros_adapters import get_ros_node
@@ -35,6 +33,10 @@ class LifecycleNode(Node):
         """Listen to the node's transitions, and register the handler that asks for transitions."""
         if self.UNSPECIFIED_NODE_NAME in self.node_name:
             raise RuntimeError("node_name unexpectedly incomplete for lifecycle node")
+        # Not before, as a launched program that is a fork must not find these imported.
+        from lifecycle_msgs.msg import TransitionEvent
+        from lifecycle_msgs.srv import ChangeState as ChangeStateService
+
         node = get_ros_node(context)
         self._transition_events = node.create_subscription(
             TransitionEvent, f"{self.node_name}/transition_event", lambda message: self._tell(context, message), 10
@@ -47,7 +49,7 @@ class LifecycleNode(Node):
             )
         )
 
-    def _tell(self, context: LaunchContext, message: TransitionEvent) -> None:
+    def _tell(self, context: LaunchContext, message: Any) -> None:
         loop = context.asyncio_loop
         if loop is not None:
             loop.call_soon_threadsafe(context.emit_event_sync, StateTransition(action=self, msg=message))
@@ -65,7 +67,7 @@ class LifecycleNode(Node):
             if context.is_shutdown:
                 logger.warning("Abandoning wait for the '%s' service, due to shutdown.", service)
                 return
-        request = ChangeStateService.Request()
+        request = self._change_state.srv_type.Request()
         request.transition.id = transition_id
         answered = threading.Event()
         answer = self._change_state.call_async(request)

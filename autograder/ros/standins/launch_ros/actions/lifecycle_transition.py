@@ -12,21 +12,21 @@ from launch.event import Event
 from launch.event_handler import EventHandler
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from lifecycle_msgs.msg import Transition
 
 from ..event_handlers import OnStateTransition
 from ..events.lifecycle import ChangeState, StateTransition
 from ..events.matchers import matches_node_name
 
-# The states, by their labels, between which a successful transition ends: the one in which the node works, the next.
+# For each constant of lifecycle_msgs/msg/Transition the states, by their labels, between which it ends when it
+# succeeds: the one in which the node works, the next.
 _STATES = {
-    Transition.TRANSITION_CONFIGURE: ("configuring", "inactive"),
-    Transition.TRANSITION_CLEANUP: ("cleaningup", "unconfigured"),
-    Transition.TRANSITION_ACTIVATE: ("activating", "active"),
-    Transition.TRANSITION_DEACTIVATE: ("deactivating", "inactive"),
-    Transition.TRANSITION_UNCONFIGURED_SHUTDOWN: ("shuttingdown", "finalized"),
-    Transition.TRANSITION_INACTIVE_SHUTDOWN: ("shuttingdown", "finalized"),
-    Transition.TRANSITION_ACTIVE_SHUTDOWN: ("shuttingdown", "finalized"),
+    1: ("configuring", "inactive"),
+    2: ("cleaningup", "unconfigured"),
+    3: ("activating", "active"),
+    4: ("deactivating", "inactive"),
+    5: ("shuttingdown", "finalized"),  # from unconfigured
+    6: ("shuttingdown", "finalized"),  # from inactive
+    7: ("shuttingdown", "finalized"),  # from active
 }
 
 

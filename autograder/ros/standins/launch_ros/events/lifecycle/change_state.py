@@ -6,11 +6,6 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 from launch.event import Event
-from lifecycle_msgs.msg import State, Transition
-
-
-def _named(message: Any, *names: str) -> dict[int, str]:
-    return {getattr(message, name): name for name in names}
 
 
 class ChangeState(Event):
@@ -21,8 +16,8 @@ class ChangeState(Event):
     """
 
     name = "launch_ros.events.lifecycle.ChangeState"
-    valid_transitions: ClassVar = _named(
-        Transition,
+    # The constants of lifecycle_msgs/msg/Transition and lifecycle_msgs/msg/State.
+    _TRANSITIONS = (
         "TRANSITION_CREATE",
         "TRANSITION_CONFIGURE",
         "TRANSITION_CLEANUP",
@@ -33,13 +28,15 @@ class ChangeState(Event):
         "TRANSITION_ACTIVE_SHUTDOWN",
         "TRANSITION_DESTROY",
     )
-    valid_states: ClassVar = _named(
-        State,
+    valid_transitions: ClassVar = dict(enumerate(_TRANSITIONS))
+    _PRIMARY = (
         "PRIMARY_STATE_UNKNOWN",
         "PRIMARY_STATE_UNCONFIGURED",
         "PRIMARY_STATE_INACTIVE",
         "PRIMARY_STATE_ACTIVE",
         "PRIMARY_STATE_FINALIZED",
+    )
+    _BETWEEN = (
         "TRANSITION_STATE_CONFIGURING",
         "TRANSITION_STATE_CLEANINGUP",
         "TRANSITION_STATE_SHUTTINGDOWN",
@@ -47,6 +44,7 @@ class ChangeState(Event):
         "TRANSITION_STATE_DEACTIVATING",
         "TRANSITION_STATE_ERRORPROCESSING",
     )
+    valid_states: ClassVar = {**dict(enumerate(_PRIMARY)), **dict(enumerate(_BETWEEN, 10))}
 
     def __init__(self, *, lifecycle_node_matcher: Callable[[Any], bool], transition_id: int) -> None:
         super().__init__()
