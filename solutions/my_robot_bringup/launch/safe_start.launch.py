@@ -29,7 +29,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 def generate_launch_description():
     """
-    Declare battery (80); start self_test and reporter at once, driver after the self-test.
+    Declare battery (80); start self_test and reporter immediately, driver after the self-test.
 
     battery: the self-test's parameter battery, always a float, in percent.
     self_test ends with 0: the driver starts. With anything else: everything shuts down.

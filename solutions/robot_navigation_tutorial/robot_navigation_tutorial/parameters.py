@@ -23,7 +23,7 @@ def declare(node, name, default, lowest, highest, description):
 
     rclpy refuses a value of another type, and one that is not from lowest to highest, at the
     start and later. The node asks get_parameter(name).value whenever it needs the number, so
-    a change has an effect at once.
+    a change has an effect immediately.
     """
     bounds = FloatingPointRange(from_value=lowest, to_value=highest)
     node.declare_parameter(

@@ -25,7 +25,7 @@ from robot_navigation_tutorial.parameters import declare
 from robot_navigation_tutorial.running import run
 
 REPORT_PERIOD = 0.5  # s
-# Who joins late gets the last report at once, if it asks for the same durability.
+# A node that joins late gets the last report immediately if it asks for the same durability.
 HEALTH_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 

@@ -24,7 +24,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
-# Who joins late gets the last status at once, if it asks for the same durability.
+# A node that joins late gets the last status immediately if it asks for the same durability.
 STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PERIOD = 1.0  # s
 

@@ -25,7 +25,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import BatteryState, JointState
 
-# A watcher that joins late gets the last status at once, if it asks for the same durability.
+# A node that joins late gets the last status immediately if it asks for the same durability.
 STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
