@@ -30,7 +30,6 @@ from sim.bridge.messages import clock_to_msg, odom_to_msg, scan_to_msg, twist_to
 from sim.bridge.settings import declare, simulation_of
 from sim.exceptions import SimError
 from sim.recording import Recorder
-from sim.state import State
 
 PERIOD = 0.01
 """Seconds of real time between two looks at the clock."""
@@ -39,7 +38,7 @@ LONGEST_LEAP = 0.25
 """Seconds of real time made up for at once. A machine that sleeps must not make the robot leap."""
 
 RECORD_NS = 50_000_000
-"""Simulated time between two states of a recording, in ns. A state with an event is recorded in any case."""
+"""Simulated time between two states of a recording, in ns. A state with an event or a scan is recorded in any case."""
 
 CLOCK_QOS = QoSProfile(depth=1, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that it matches every subscription; one deep, for only the newest time is worth having."""
@@ -117,15 +116,18 @@ class SimulatorNode(Node):
     def _advance(self, ticks: int) -> None:
         for sent in self._driver.run(ticks):
             self._publish(sent)
-            self._record(sent.state)
+            self._record(sent)
 
     def _new_recorder(self) -> Recorder | None:
         self._recorded_ns = self._driver.state.time_ns
         return Recorder(self._driver.simulation, self._driver.state) if self._recording else None
 
-    def _record(self, state: State) -> None:
-        if self._recorder is not None and (state.events or state.time_ns - self._recorded_ns >= RECORD_NS):
+    def _record(self, sent: Sent) -> None:
+        state, due = sent.state, sent.state.time_ns - self._recorded_ns >= RECORD_NS
+        if self._recorder is not None and (due or state.events or sent.scans):
             self._recorder.append(state)
+            for robot, scan in sent.scans.items():
+                self._recorder.scan(scan, robot)
             self._recorded_ns = state.time_ns
 
     def destroy_node(self) -> None:

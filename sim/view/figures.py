@@ -67,7 +67,7 @@ def plot(
 ) -> Picture:
     """Draw the tracks of a recording, its collisions and, if wanted, one marked instant.
 
-    `robot` picks one robot (all if None). `colour` says what the colour of the first drawn track means. `mark` is a
+    `robot` picks one robot (all if None). `colour` says what the colour of a track means. `mark` is a
     time in seconds: the robot is drawn as it was then, with its scan, a line to the nearest obstacle, and `note`.
 
     Raises:
@@ -84,7 +84,8 @@ def plot(
         prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices))
         _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
         for place in reversed(indices):
-            _draw_one(ax, recording, place, colour if place == indices[0] else None, scheme, now, row is not None)
+            _draw_one(ax, recording, place, colour, scheme, now, row is not None)
+        _add_scale(ax, recording, indices[0], colour, scheme)
         if row is not None:
             _draw_mark(ax, recording, indices[0], row, note, scheme)
     return Picture(_figure(ax), _track_alt(recording, indices, mark, note))
@@ -105,27 +106,31 @@ def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, na
         write_names(ax, world, theme)
 
 
-def _draw_one(
-    ax: Axes, recording: Recording, index: int, colour: str | None, theme: Theme, now: int, marked: bool
-) -> None:
-    points, times = recording.poses[:, index, :2], recording.times
-    own = theme.robot_colour(index)
-    if colour is None:
-        ax.plot(*points.T, color=own, linewidth=2.0, alpha=0.8, zorder=5)
-    elif colour == "time":
-        limits = (float(times[0]), float(max(times[-1], times[0] + 1e-9)))
-        artists.draw_track(ax, points, times, theme.time_colours, limits)
-        add_scale(ax, theme.time_colours, limits, "s", "time", theme)
+def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, marked: bool) -> None:
+    points, own = recording.poses[:, index, :2], theme.robot_colour(index)
+    if colour == "time":
+        artists.draw_track(ax, points, recording.times, theme.time_colours(index), _time_limits(recording))
     else:
-        limits = (0.0, CLEARANCE_SCALE)
-        artists.draw_track(ax, points, recording.clearances[:, index], theme.clearance_colours, limits)
-        add_scale(ax, theme.clearance_colours, limits, "m", "clearance", theme)
+        values = recording.clearances[:, index]
+        artists.draw_track(ax, points, values, theme.clearance_colours, (0.0, CLEARANCE_SCALE))
     spec = recording.simulation.robots[index]
     events = [event for event in recording.events if event.kind == "collision" and event.robot == spec.name]
     if not marked:
         _draw_last_scan(ax, recording, index, now, theme)
     artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
     artists.draw_robot(ax, spec, Pose(*recording.poses[now, index].tolist()), theme, own)
+
+
+def _add_scale(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme) -> None:
+    if colour == "time":
+        add_scale(ax, theme.time_colours(index), _time_limits(recording), "s", "time", theme)
+    else:
+        add_scale(ax, theme.clearance_colours, (0.0, CLEARANCE_SCALE), "m", "clearance", theme)
+
+
+def _time_limits(recording: Recording) -> tuple[float, float]:
+    first, last = recording.times[[0, -1]].tolist()
+    return first, max(last, first + 1e-9)
 
 
 def _draw_last_scan(ax: Axes, recording: Recording, index: int, row: int, theme: Theme) -> None:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from matplotlib.colors import LinearSegmentedColormap
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,13 @@ class Theme:
     goal: str
     alarm: str
     mover: str
-    track: tuple[str, str]
     near_far: tuple[str, str, str]
 
-    @cached_property
-    def time_colours(self) -> LinearSegmentedColormap:
-        """Early to late: one hue, its lightness carrying the meaning."""
-        return LinearSegmentedColormap.from_list(f"{self.name}-time", list(self.track))
+    def time_colours(self, index: int) -> LinearSegmentedColormap:
+        """Return early to late in the hue of the robot with that place: its lightness carries the meaning."""
+        own = np.array(to_rgb(self.robot_colour(index)))
+        early, late = (0.4 * own + 0.6 * np.array(to_rgb(end)) for end in (self.paper, self.ink))
+        return LinearSegmentedColormap.from_list(f"{self.name}-time-{index}", [early, own, late])
 
     @cached_property
     def clearance_colours(self) -> LinearSegmentedColormap:
@@ -74,7 +75,6 @@ LIGHT = Theme(
     goal="#00805E",
     alarm="#C8401A",
     mover="#8C5A86",
-    track=("#A9D0E8", "#00395C"),
     near_far=("#D55E00", "#C9B79C", "#0072B2"),
 )
 
@@ -95,7 +95,6 @@ DARK = Theme(
     goal="#2CC99B",
     alarm="#FF7A4D",
     mover="#D79BCF",
-    track=("#24506B", "#CDEBFB"),
     near_far=("#FF7A4D", "#8C8373", "#56B4E9"),
 )
 

@@ -64,6 +64,7 @@ def test_each_robots_run_is_recorded_with_its_events(capsys: pytest.CaptureFixtu
     assert (left[0] == left[-1]).all()
     assert not (right[0] == right[-1]).all()
     assert [(event.robot, event.kind) for event in robots.recording.events] == [("right", "watchdog")]
+    assert all(len(log.rows) for log in robots.recording.scans)
     assert "the lab" in repr(robots.track)
     said = capsys.readouterr().out
     assert "world 'the lab', 2 robot(s), speed 4" in said

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from sim import Recording, Simulation, World, box, start
@@ -79,7 +80,7 @@ def test_a_track_says_how_long_it_is_and_what_happened(recording: Recording) -> 
 
 @pytest.mark.parametrize(("colour", "values"), [("time", "times"), ("clearance", "clearances")])
 def test_a_track_is_coloured_by_time_or_clearance(recording: Recording, colour: str, values: str) -> None:
-    picture = plot(recording, colour=colour)  # type: ignore[arg-type]
+    picture = plot(recording, robot="one", colour=colour)  # type: ignore[arg-type]
     (track,) = tracks(picture.figure.axes[0])
     column = getattr(recording, values)
     column = column if column.ndim == 1 else column[:, 0]
@@ -93,6 +94,15 @@ def test_one_robot_can_be_picked(recording: Recording) -> None:
     (track,) = tracks(picture.figure.axes[0])
     assert track.get_segments()[0][0] == pytest.approx(recording.poses[0, 1, :2])
     assert "Track of two" in picture.alt
+
+
+def test_each_robot_has_the_colour_of_its_track(recording: Recording) -> None:
+    ax = plot(recording).figure.axes[0]
+    found = {tuple(track.get_segments()[0][0]): track.get_cmap()(0.5) for track in tracks(ax)}
+    for index in range(2):
+        assert found[tuple(recording.poses[0, index, :2])] == pytest.approx(
+            to_rgba(LIGHT.robot_colour(index)), abs=0.01
+        )
 
 
 def test_a_mark_writes_the_instant_and_the_note(recording: Recording) -> None:
