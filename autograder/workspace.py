@@ -11,7 +11,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.stepper import HOST
 from autograder.ros import RosEnvironment
-from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.ros.environment import LOGS_TO_STDOUT, WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
 from autograder.sandbox.spec import INTERPRETER
@@ -85,6 +85,7 @@ class Workspace:
         return {
             **inherited,
             **self.ros.variables(overlays=prefixes, domain=self.domain, log_dir=self.scratch / "ros-log"),
+            **LOGS_TO_STDOUT,
             "LD_LIBRARY_PATH": os.pathsep.join([*libraries, os.environ.get("LD_LIBRARY_PATH", "")]).strip(os.pathsep),
             "PYTHONPATH": os.pathsep.join(modules),
             **INTERPRETER,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import os
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -21,6 +22,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.result import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.sandbox.launcher import heed_interrupts
 
 # The same examples in each run: a test that fails now and then would be no gate. Looking further is a matter of hand:
@@ -35,6 +37,7 @@ hypothesis.settings.load_profile("course")
 _OURS = Domain()
 _NEXT = itertools.count(_OURS.number)  # one that was just left may still have somebody in it who is on the way out
 activate(domain=_OURS.number)
+os.environ.update(LOGS_TO_STDOUT)  # as for students' programs in the grader and in notebooks
 heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the background
 
 

@@ -23,6 +23,7 @@ from autograder.notebook.simulator_session import SimulatorSession, simulator
 from autograder.notebook.sourcing import source
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from autograder.ros.environment import LOGS_TO_STDOUT
 from sim.grading import grading
 
 __all__ = [
@@ -57,6 +58,7 @@ def ros() -> None:
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     given = os.environ.get("ROS_DOMAIN_ID")
     activate(domain=Domain().number if given is None else int(given))
+    os.environ.update(LOGS_TO_STDOUT)
 
 
 def grade(assignment: str, group: str) -> NotGraded:

@@ -19,6 +19,10 @@ DISTRO = "jazzy"
 # The wheels' start-up hook sets these two for one Python prefix; they must not leak into another one.
 WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
 
+# Logs go to stderr, and `ros2 launch` shows the stderr of each node. With this, they go to stdout: Jupyter shows stdout
+# in order, and stderr in red, and late. A terminal does without, so that it shows what a terminal with ROS shows.
+LOGS_TO_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1"}
+
 
 def without_wheel_bootstrap(environ: Mapping[str, str]) -> dict[str, str]:
     """Return the variables for a Python that has to run the wheels' start-up hook again.
@@ -77,8 +81,6 @@ class RosEnvironment:
             "ROS_PYTHON_VERSION": "3",
             # Shared memory between two /dev/shm discovers peers and then silently delivers nothing.
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-            # Jupyter shows stdout in order; stderr would be red, and late.
-            "RCUTILS_LOGGING_USE_STDOUT": "1",
             "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
             "ROS_LOG_DIR": str(log_dir or Path(tempfile.gettempdir()) / f"ros2-log-{os.getuid()}"),
         }

@@ -157,6 +157,14 @@ def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
     assert done.stdout.split() == ["jazzy"], done.stderr
 
 
+def test_a_terminal_has_logs_on_stderr_as_in_ros_and_a_notebook_on_stdout(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "RCUTILS_LOGGING_USE_STDOUT"
+    monkeypatch.delenv(name)
+    assert with_ros("sh", "-c", f"echo ${name}").stdout == "\n"
+    kernel = f"import os; from autograder.notebook import ros; ros(); print(os.environ['{name}'])"
+    assert with_ros(sys.executable, "-c", kernel).stdout == "1\n"
+
+
 def test_a_command_that_is_not_there_is_named() -> None:
     done = with_ros("no-such-command")
     assert (done.returncode, done.stderr) == (127, "no-such-command: No such file or directory\n")
