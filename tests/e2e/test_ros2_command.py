@@ -541,7 +541,7 @@ def test_doctor_passes_here_and_reports(lists: dict[str, Answer]) -> None:
     healthy, strict, report = lists["doctor"], lists["wtf --include-warnings"], lists["doctor --report"]
     assert healthy.code == 0
     assert healthy.out.endswith("\nAll 6 checks passed\n\n")
-    assert "WARNING: topic: Publisher without subscriber detected on /chatter.\n" in healthy.out
+    assert ": UserWarning: Publisher without subscriber detected on /chatter.\n" in healthy.err
     assert strict.code == 1
     assert "Failed modules:" in strict.out
-    assert "   MIDDLEWARE INFORMATION\nmiddleware name : rmw_fastrtps_cpp\n" in report.out
+    assert "   RMW MIDDLEWARE\nmiddleware name : rmw_fastrtps_cpp\n" in report.out

@@ -6,6 +6,7 @@ import argparse
 import os
 import platform
 import socket
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import metadata
@@ -25,12 +26,14 @@ class Check:
 
     Attributes:
         name: as in the summary of failed checks.
+        title: over its report.
         errors: yields what is broken.
         warnings: yields what may be.
         report: yields names and values for `--report`.
     """
 
     name: str
+    title: str
     errors: Callable[[Session], Iterator[str]]
     warnings: Callable[[Session], Iterator[str]]
     report: Callable[[Session], Iterator[Row]]
@@ -109,12 +112,12 @@ def _topic_report(session: Session) -> Iterator[Row]:
 
 
 CHECKS = (
-    Check("platform", _platform_errors, _nothing, _platform_report),
-    Check("network", _network_errors, _network_warnings, _network_report),
-    Check("installation", _nothing, _nothing, _installation_report),
-    Check("middleware", _nothing, _nothing, _rmw_report),
-    Check("package", _nothing, _nothing, _package_report),
-    Check("topic", _nothing, _topic_warnings, _topic_report),
+    Check("platform", "PLATFORM INFORMATION", _platform_errors, _nothing, _platform_report),
+    Check("network", "NETWORK CONFIGURATION", _network_errors, _network_warnings, _network_report),
+    Check("installation", "ROS 2 INFORMATION", _nothing, _nothing, _installation_report),
+    Check("middleware", "RMW MIDDLEWARE", _nothing, _nothing, _rmw_report),
+    Check("package", "PACKAGE VERSIONS", _nothing, _nothing, _package_report),
+    Check("topic", "TOPIC LIST", _nothing, _topic_warnings, _topic_report),
 )
 
 
@@ -159,17 +162,15 @@ def _run(args: argparse.Namespace) -> Outcome:
 
 def _passes(check: Check, session: Session, warnings_fail: bool) -> bool:
     errors, warnings = list(check.errors(session)), list(check.warnings(session))
-    for text in errors:
-        print(f"ERROR: {check.name}: {text}")
-    for text in warnings:
-        print(f"WARNING: {check.name}: {text}")
+    for text in (*(f"ERROR: {text}" for text in errors), *warnings):
+        print(f"ros2 doctor: {check.name}: UserWarning: {text}", file=sys.stderr)
     return not errors and not (warnings_fail and warnings)
 
 
 def _print_report(check: Check, session: Session) -> None:
     rows = list(check.report(session))
     width = max((len(name) for name, _ in rows), default=0)
-    print(f"\n   {check.name.upper()} INFORMATION")
+    print(f"\n   {check.title}")
     for name, value in rows:
         print(f"{name:<{width}} : {value}")
 
