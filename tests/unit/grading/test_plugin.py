@@ -204,6 +204,23 @@ def test_what_lies_around_the_suite_is_not_collected(grade: Grade, tmp_path: Pat
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
 
+def test_a_plug_in_of_the_machines_installation_is_not_loaded(
+    grade: Grade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    about = tmp_path / "site" / "launch_testing-9.9.dist-info"
+    about.mkdir(parents=True)
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: launch-testing\nVersion: 9.9\n")
+    (about / "entry_points.txt").write_text("[pytest11]\nlaunch_testing_of_somebody = broken_plug_in\n")
+    (tmp_path / "site" / "broken_plug_in.py").write_text("raise SystemExit('loaded')")
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    plugin = grade("""
+        @check(points=1, group="g")
+        def test_it():
+            '''It is so.'''
+        """)
+    assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
+
+
 def test_checks_see_what_became_of_each_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "")
     path = tmp_path / f"checks_{next(_NUMBERS)}.py"
