@@ -20,7 +20,7 @@ VERIFY_ARGS ?=
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
 LINTERS := lint-style lint-types lint-standins lint-imports
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch sourced-layout public-packages lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) lab tour classes bench verify real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -108,6 +108,12 @@ public-packages: ## build, test and run ROS's own examples and demos (ROS2_EXAMP
 	@test -d $(DEMOS) || git clone --depth 1 -b jazzy https://github.com/ros2/demos.git $(DEMOS)
 	ROS2_EXAMPLES_SOURCE=$(EXAMPLES) ROS2_DEMOS_SOURCE=$(DEMOS) $(BIN)/python -m pytest tests/e2e/test_public_packages.py \
 		-m nightly $(PYTEST_ARGS)
+
+DOCUMENTATION = $(or $(ROS2_DOCUMENTATION_SOURCE),.build/public/documentation)
+tutorials:      ## do what the Python tutorials of ROS say, and see what they say one sees (ROS2_DOCUMENTATION_SOURCE=)
+	@$(BOOTSTRAP) --dev
+	@test -d $(DOCUMENTATION) || git clone --depth 1 -b jazzy https://github.com/ros2/ros2_documentation.git $(DOCUMENTATION)
+	ROS2_DOCUMENTATION_SOURCE=$(DOCUMENTATION) $(BIN)/python -m pytest tests/e2e/test_tutorials.py -m nightly $(PYTEST_ARGS)
 
 # Universal: one lock serves Python 3.10 to 3.13. --no-emit-index-url keeps this machine's package source out of it.
 COMPILE = .build/lock/bin/uv pip compile --quiet --universal --python-version 3.10 --generate-hashes \

@@ -98,5 +98,4 @@ def tables() -> None:
         layout.judged_later(assignment).write_text(text, encoding="utf-8")
     PAGE.write_text(page, encoding="utf-8")
     guide.PAGE.write_text(guide.guide(), encoding="utf-8")
-    versions = platform_page.platform_page(platform_page.LOCK.read_text(encoding="utf-8"))
-    platform_page.PAGE.write_text(versions, encoding="utf-8")
+    platform_page.PAGE.write_text(platform_page.current(), encoding="utf-8")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import Any
 
+import yaml
 from packaging.requirements import Requirement
 
 from autograder.course.markdown import table
@@ -15,6 +17,7 @@ from autograder.ros.ros2.main import COMMANDS
 
 PAGE = ROOT / "docs" / "platform.md"
 LOCK = ROOT / "requirements.lock"
+TUTORIALS = ROOT / "tests" / "e2e" / "tutorials" / "pages.yaml"
 PYTHONS = ("3.10", "3.11", "3.12", "3.13")
 REQUIREMENT = re.compile(r"^([^\s#-][^\\\n]*)", re.MULTILINE)
 
@@ -27,6 +30,7 @@ https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own pa
 
 `autograder course tables` writes this page from the lock; a test holds it.
 """
+JAZZY = "https://docs.ros.org/en/jazzy"
 COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student meets it", "why another version")
 TAIL = """## Interface packages without wheels
 
@@ -40,6 +44,14 @@ the real ones, so programs meet those of other computers. A CMake package cannot
 ros2/demos, as they are. It runs their tests by `colcon test`, and lets their servers and clients, publishers and
 subscribers meet.
 """
+TUTORIAL_HEAD = """## The tutorials of ROS
+
+`make tutorials` does what the Python tutorials of Jazzy's documentation say, in "Beginner: Client libraries" and
+"Intermediate: Launch". It takes commands, code and changes of files from the pages, and expects to see what they say
+one sees. `make tutorials PYTEST_ARGS="-k NAME"` does one of them. turtlesim and `demo_nodes_cpp` are written in C++ and
+have no wheels. The tests use packages in Python that have the same names, topics, services and parameters.
+"""
+TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "what is left out, or why it does not run")
 STAND_INS = """## What the stand-ins do not cover
 
 `launch`, `launch_ros`, `launch_testing` and `ros2` are not on the package index, so the course has stand-ins for them.
@@ -60,15 +72,22 @@ LAUNCH = {
 }
 
 
-def platform_page(lock: str) -> str:
+def platform_page(lock: str, tutorials: str) -> str:
     """Return the page as Markdown.
 
     Args:
         lock: the text of `requirements.lock`.
+        tutorials: the text of `pages.yaml`, from which the tutorials are tested.
     """
     by_python = {python: locked(lock, python) for python in PYTHONS}
     versions = table(COLUMNS, (_row(package, by_python) for package in PACKAGES))
-    return "\n".join([HEAD, *versions, TAIL, STAND_INS, *table(UNCOVERED, _uncovered())])
+    pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
+    return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, STAND_INS, *table(UNCOVERED, _uncovered())])
+
+
+def current() -> str:
+    """Return the page for what the repository has now."""
+    return platform_page(LOCK.read_text(encoding="utf-8"), TUTORIALS.read_text(encoding="utf-8"))
 
 
 def locked(lock: str, python: str) -> dict[str, str]:
@@ -87,6 +106,13 @@ def _requirements(lock: str, python: str) -> Iterator[Requirement]:
         requirement = Requirement(line)
         if requirement.marker is None or requirement.marker.evaluate(environment):
             yield requirement
+
+
+def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
+    link = f"[{page['title']}]({JAZZY}/Tutorials/{page['page']}.html)"
+    if "missing" in page:
+        return link, "no", "", page["missing"]
+    return link, "yes", f"`{page['name']}`", page.get("but", "")
 
 
 def _uncovered() -> Iterator[tuple[str, str, str]]:
