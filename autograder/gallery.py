@@ -1,10 +1,12 @@
-"""Saves pictures of checks for the feedback."""
+"""Saves pictures of checks, and the runs that they show, for the feedback."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from autograder.checks.temporal import Verdict
 from autograder.result import Artifact
 from sim import Recording
 
@@ -32,9 +34,16 @@ class Gallery:
         return replace(self, check=check)
 
     def track(
-        self, name: str, recording: Recording, caption: str, *, mark: float | None = None, note: str = ""
+        self,
+        name: str,
+        recording: Recording,
+        caption: str,
+        *,
+        mark: float | None = None,
+        note: str = "",
+        rules: Mapping[str, Verdict] | None = None,
     ) -> None:
-        """Save a picture of a robot's track. The digest of its record is that of the run.
+        """Save a picture of a robot's track, and the run for the player. The digest of its record is that of the run.
 
         Args:
             name: name of the picture, unique in the check.
@@ -42,6 +51,8 @@ class Gallery:
             caption: alternative text of the picture.
             mark: the time to mark on the track, in seconds since the start of the run.
             note: text beside the mark.
+            rules: what became of each rule that the run was judged by, by the rule in words; its times count from the
+                start of the run.
         """
         if self.closed:
             return
@@ -51,4 +62,10 @@ class Gallery:
         self.folder.mkdir(parents=True, exist_ok=True)
         picture = sim.view.plot(recording, mark=mark, note=note)
         picture.save(self.folder / f"{stem}.png", dpi=DPI)
-        self.artifacts.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption))
+        margins = [
+            sim.view.Margin(rule, verdict.times, verdict.values, verdict.violated_at)
+            for rule, verdict in (rules or {}).items()
+        ]
+        run = f"{stem}.run.json"
+        (self.folder / run).write_text(sim.view.encode(recording, caption, margins), encoding="utf-8")
+        self.artifacts.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption, run))

@@ -105,6 +105,7 @@ class Artifact:
             differ from run to run.
         check: id of the check that saved it.
         caption: alternative text of the picture.
+        run: path of the file with the run that the picture shows, for the player, or an empty string.
     """
 
     name: str
@@ -112,6 +113,7 @@ class Artifact:
     sha256: str
     check: str
     caption: str = ""
+    run: str = ""
 
 
 @dataclass(frozen=True)

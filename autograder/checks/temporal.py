@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import typing
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 # rtamt's parser (antlr4 4.7) takes TextIO from typing.io, of which Python 3.11 warns and which 3.13 no longer has.
 sys.modules["typing.io"] = typing
@@ -23,10 +23,14 @@ class Verdict:
     Attributes:
         robustness: the smallest value of the condition; above 0 when it always holds.
         violated_at: the first time, in seconds, at which the condition does not hold; None when it always does.
+        times: the trace's times, in seconds.
+        values: the condition's value at each of them.
     """
 
     robustness: float
     violated_at: float | None
+    times: tuple[float, ...] = field(default=(), repr=False)
+    values: tuple[float, ...] = field(default=(), repr=False)
 
 
 def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequence[float]]) -> Verdict:
@@ -49,4 +53,5 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
     trace = {name: [float(value) for value in values] for name, values in signals.items()}
     values = [value for _, value in specification.evaluate({"time": list(range(len(times))), **trace})]
     bad = next((index for index, value in enumerate(values) if value <= 0.0), None)
-    return Verdict(float(min(values)), None if bad is None else float(times[bad]))
+    seconds = tuple(float(time) for time in times)
+    return Verdict(float(min(values)), None if bad is None else seconds[bad], seconds, tuple(map(float, values)))

@@ -14,10 +14,15 @@ from autograder.result import Artifact, CheckResult, Result, Status
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture on a page: its data URI, or None if the file is missing, and its alternative text."""
+    """A picture on a page: its data URI, or None if the file is missing, and its alternative text.
+
+    `run` is the run that it shows as JSON for the player, or None; `name` is unique on the page.
+    """
 
     uri: str | None
     caption: str
+    name: str = ""
+    run: str | None = None
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,12 @@ class PageView:
     groups: tuple[GroupView, ...]
     first: CheckView | None
     pictures: tuple[Picture, ...]
+
+    @property
+    def plays(self) -> bool:
+        """Whether the page has a run to play."""
+        shown = [*self.pictures, *(p for group in self.groups for check in group.checks for p in check.pictures)]
+        return self.graded and any(picture.run is not None for picture in shown)
 
     @property
     def percent(self) -> int:

@@ -1,9 +1,15 @@
-"""Renders the pages from the templates. All text is escaped. A page loads no other file and has no script."""
+"""Renders the pages from the templates. All text is escaped. A page loads no other file.
+
+The only script that a page lets run is the player's, which it names by its digest. A page without a run has none.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 from collections.abc import Sequence
 from functools import cache
+from html import escape
 from pathlib import Path
 from statistics import mean
 
@@ -12,7 +18,7 @@ from markupsafe import Markup
 
 from autograder import layout
 from autograder.checks import Outcome
-from autograder.feedback.model import page_view
+from autograder.feedback.model import Picture, page_view
 from autograder.feedback.pictures import picture_reader
 from autograder.feedback.text import NOT_GRADED, clean, number
 from autograder.result import Result, Status, write_atomically
@@ -38,6 +44,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     found.filters["number"] = number
+    found.filters["player"] = _player
     found.globals["not_graded"] = NOT_GRADED
     found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return found
@@ -55,7 +62,30 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
         UsageError: the path of an artifact leads out of its folder.
     """
     page = page_view(result, picture_reader(artifacts or folder))
-    return _write(folder / PAGE, environment().get_template("feedback.html.j2").render(page=page))
+    script, style = _player_assets() if page.plays else ("", "")
+    digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii") if script else ""
+    template = environment().get_template("feedback.html.j2")
+    return _write(
+        folder / PAGE,
+        template.render(page=page, script=Markup(script), script_digest=digest, player_style=Markup(style)),
+    )
+
+
+def _player_assets() -> tuple[str, str]:
+    """Return the player's script and style sheet."""
+    from sim.view import player  # matplotlib, which it imports, is slow, and most pages have no run
+
+    return player.SCRIPT, player.style()
+
+
+def _player(picture: Picture, first: bool = False) -> Markup:
+    """Return the player of a picture's run. A link to an instant that names no run means the first one."""
+    from sim.view import player
+
+    alt = escape(clean(picture.caption), quote=True)
+    still = f'<img class="run-still" src="{picture.uri}" alt="{alt}">' if picture.uri else ""
+    options = {"id": f"run-{picture.name}", "data-theme": "auto", **({"data-first": "yes"} if first else {})}
+    return Markup(player.markup(picture.run or "", still, **options))
 
 
 def write_summary(results: Sequence[Result], folder: Path) -> Path:

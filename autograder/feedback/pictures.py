@@ -1,8 +1,9 @@
-"""Reads the pictures beside a result as data URIs, for use in a page."""
+"""Reads the pictures and the runs beside a result, for use in a page."""
 
 from __future__ import annotations
 
 import base64
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,12 +22,7 @@ def picture_file(artifact: Artifact, folder: Path) -> Path | None:
     """
     if Path(artifact.name).suffix.lower() not in MEDIA_TYPES:
         return None
-    path = (folder / artifact.name).resolve()
-    if not path.is_relative_to(folder.resolve()):
-        raise UsageError(
-            f"{folder}: the artifact {artifact.name!r} lies outside the result's folder; correct result.json"
-        )
-    return path
+    return _inside(artifact.name, folder)
 
 
 def picture_reader(folder: Path) -> Callable[[Artifact], Picture | None]:
@@ -36,9 +32,29 @@ def picture_reader(folder: Path) -> Callable[[Artifact], Picture | None]:
         path = picture_file(artifact, folder)
         if path is None:
             return None
+        run = _run(artifact, folder)
         if not path.is_file():
-            return Picture(None, artifact.caption)
+            return Picture(None, artifact.caption, path.stem, run)
         data = base64.b64encode(path.read_bytes()).decode("ascii")
-        return Picture(f"data:{MEDIA_TYPES[path.suffix.lower()]};base64,{data}", artifact.caption)
+        return Picture(f"data:{MEDIA_TYPES[path.suffix.lower()]};base64,{data}", artifact.caption, path.stem, run)
 
     return read
+
+
+def _run(artifact: Artifact, folder: Path) -> str | None:
+    """Return an artifact's run as JSON that no script element ends in, or None if the file was not kept."""
+    path = _inside(artifact.run, folder)
+    if not artifact.run or not path.is_file():
+        return None
+    try:
+        run = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise UsageError(f"{path}: not a run: {error}; grade the submission again") from None
+    return json.dumps(run, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _inside(name: str, folder: Path) -> Path:
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise UsageError(f"{folder}: the artifact {name!r} lies outside the result's folder; correct result.json")
+    return path

@@ -1,4 +1,4 @@
-"""Pictures of worlds and runs, and a live view for JupyterLab.
+"""Pictures of worlds and runs, a player of recorded runs, and a live view for JupyterLab.
 
     >>> from sim.view import show, plot, live
 
@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from sim.view.figures import plot, show
 from sim.view.picture import Picture
+from sim.view.player import Player
+from sim.view.run_data import Margin, encode
 from sim.view.theme import DARK, LIGHT, Theme
 
-__all__ = ["DARK", "LIGHT", "LiveView", "Picture", "Theme", "live", "plot", "show"]
+__all__ = ["DARK", "LIGHT", "LiveView", "Margin", "Picture", "Player", "Theme", "encode", "live", "plot", "show"]
 
 if TYPE_CHECKING:
-    from sim.view.player import LiveView, live
+    from sim.view.live_view import LiveView, live
 
 
 def __getattr__(name: str) -> Any:
@@ -22,6 +24,6 @@ def __getattr__(name: str) -> Any:
     if name in ("live", "LiveView"):
         from importlib import import_module
 
-        module = import_module("sim.view.player")
+        module = import_module("sim.view.live_view")
         return getattr(module, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""What a live view plays: a run that grows as it is watched, or a recording; the past of both can be visited.
+"""What a live view plays: a run that grows as it is watched, whose past can be visited.
 
 No widget and no clock: `advance` is told how much simulated time to add, so a test plays a minute in a moment.
 """
@@ -17,7 +17,6 @@ from sim.lidar import Scan
 from sim.pose import Command, Pose
 from sim.rates import due
 from sim.recording import Recorder, Recording
-from sim.rows import newest_scan, state_at
 from sim.simulation import Simulation, State, observe, start, step
 
 Controller = Callable[[Scan], Command | None]
@@ -172,52 +171,6 @@ class Session:
         self.frames.append(Frame(state, tuple(fresh)))
         self._times.append(state.time_ns)
         self._track.append((state.robots[0].pose.x, state.robots[0].pose.y))
-
-
-class Replay:
-    """A finished recording, played frame by frame."""
-
-    paced = True
-    growing = False
-    can_be_released = False
-
-    def __init__(self, recording: Recording) -> None:
-        self.simulation = recording.simulation
-        self._recording = recording
-        self._times = recording.times_ns.tolist()
-
-    @property
-    def end_ns(self) -> int:
-        """The time of the last row, in nanoseconds."""
-        return int(self._times[-1])
-
-    def at(self, time_ns: int) -> Frame:
-        """Return the last row that is not later than `time_ns`."""
-        row = max(0, bisect.bisect_right(self._times, time_ns) - 1)
-        scans = tuple(newest_scan(self._recording, index, row) for index in range(len(self.simulation.robots)))
-        return Frame(state_at(self._recording, row), scans)
-
-    def trail(self, time_ns: int) -> NDArray[np.float64]:
-        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
-        count = bisect.bisect_right(self._times, time_ns)
-        return self._recording.poses[: count : 1 + count // TRAIL, 0, :2]
-
-    def reset(self) -> None:
-        """Do nothing: the past of a recording is fixed."""
-
-    def drive(self, command: Command | None) -> None:
-        """Do nothing: what has happened can't be steered."""
-
-    def hold(self, paused: bool) -> None:
-        """Do nothing: this run goes on only when it is told to."""
-
-    def advance(self, until_ns: int) -> int:
-        """Return the instant to be shown: `until_ns`, or the end of the recording if that is earlier."""
-        return min(until_ns, self.end_ns)
-
-    def recording(self) -> Recording:
-        """Return the recording."""
-        return self._recording
 
 
 def _is_new(frame: Frame) -> bool:

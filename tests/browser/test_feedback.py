@@ -9,9 +9,15 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from autograder import feedback
+from autograder.checks import temporal
+from autograder.gallery import Gallery
 from autograder.result import Artifact, Result
+from sim import Command, RobotSpec, Simulation, World, box, run
 
 pytestmark = pytest.mark.browser
+
+ROOM = World.from_segments(box(4.0, 3.0), name="a room")
+RUN = run(Simulation(ROOM, (RobotSpec(radius=0.18),)), lambda state, scans: Command(linear=0.5), seconds=5.0)
 
 
 @pytest.fixture
@@ -48,6 +54,33 @@ def test_the_track_is_shown_and_hints_unfold(
     expect(second).to_be_visible()
 
     page.screenshot(path=screenshots / "feedback.png", full_page=True)
+    assert complaints == []
+
+
+def test_the_run_of_a_failed_check_plays(
+    page: Page, make_result: Callable[..., Result], tmp_path: Path, complaints: list[str], screenshots: Path
+) -> None:
+    gallery = Gallery(tmp_path)
+    for check in ("starts", "turns"):
+        verdict = temporal.always("gap > 0.01", RUN.times.tolist(), {"gap": RUN.clearances[:, 0].tolist()})
+        gallery.of(check).track("track", RUN, f"The run of {check}.", mark=3.0, rules={"the gap, in m": verdict})
+    path = feedback.write(make_result(artifacts=tuple(gallery.artifacts)), tmp_path)
+    page.goto(f"{path.as_uri()}#t=2.5")
+    player = page.locator("#run-turns-track")
+    expect(player.locator("output")).to_have_text("2.50 s")  # of the failed check, not of the one that passed
+    player.get_by_role("button", name="broken at").click()
+    expect(player.locator(".run-hit")).to_contain_text("met")
+    expect(player.locator("canvas")).to_be_visible()
+    expect(player.get_by_role("img", name="The run of turns.")).to_have_count(1)
+    page.goto(f"{path.as_uri()}#run=run-starts-track&t=1.0")
+    expect(page.locator("#run-starts-track output")).to_have_text("1.00 s")
+    expect(page.locator("#run-starts-track canvas")).to_be_visible()  # its details have been opened
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        page.screenshot(path=screenshots / f"feedback-run-{scheme}.png", full_page=True)
+    page.emulate_media(media="print")
+    expect(player.locator("img")).to_be_visible()
+    expect(player.locator("canvas")).to_be_hidden()
     assert complaints == []
 
 

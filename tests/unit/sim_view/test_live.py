@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 
 from sim import Command, Recording, Scan, Simulation, World, load_world
-from sim.view import LiveView, Picture, live
+from sim.view import LiveView, Picture, Player, live, plot
 from sim.view.renderer import Renderer
 from sim.view.session import LONGEST_NS, Session
 from sim.view.theme import DARK, LIGHT
@@ -171,12 +171,13 @@ def test_a_callback_hears_each_scan_once(world: World) -> None:
     assert stamps == [0, SECOND // 5, 2 * SECOND // 5, 3 * SECOND // 5, 4 * SECOND // 5, SECOND]
 
 
-def test_a_recording_is_played_to_its_end(recording: Recording) -> None:
-    view = paused(recording)
-    assert "Forward" not in widgets_of(view)
-    view.step(99.0)
-    assert view.time == pytest.approx(8.0)
-    assert view.recording is recording
+def test_a_recording_is_played_by_the_page_alone(recording: Recording) -> None:
+    view = live(recording, speed=2.0, theme="dark")
+    assert isinstance(view, Player)
+    shown = view._repr_mimebundle_()[0]
+    assert 'data-theme="dark" data-speed="2" data-play="yes"' in shown["text/html"]
+    assert shown["text/plain"] == repr(view) == plot(recording).alt
+    assert shown["image/png"]
 
 
 def test_the_slider_seeks_while_time_stands_still(world: World) -> None:

@@ -52,17 +52,17 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
     with AutoHarness(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS) as harness:
         recording = drive(harness, simulation, SECONDS).recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
+    rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}
     if verdict.violated_at is not None:
         when = verdict.violated_at
         what = _nearest(recording, when)
         sentence = f"It touched {what} at t = {when:.1f} s."
-        gallery.track(
-            "track", recording, f"The robot's track in {world.name}. {sentence}", mark=when, note=f"touches {what}"
-        )
+        caption = f"The robot's track in {world.name}. {sentence}"
+        gallery.track("track", recording, caption, mark=when, note=f"touches {what}", rules=rules)
         raise CheckFailed(sentence, fraction=round(when / SECONDS, 2))
     path = _path_length(recording)
     caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
-    gallery.track("track", recording, caption)
+    gallery.track("track", recording, caption, rules=rules)
     expect(path >= LEAST_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
 
 

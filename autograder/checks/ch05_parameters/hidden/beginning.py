@@ -103,10 +103,11 @@ def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) ->
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
     end = ahead[-1]
     sentence = f"With a safety distance of {configured.safety} m, it stood {end:.2f} m before the wall in the end."
-    gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m")
     verdict = temporal.always(
         "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + NEAR for x in ahead]}
     )
+    rules = {f"the distance to the wall, in m, is above {configured.safety - NEAR:.2f}": verdict}
+    gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
     expect(end < configured.safety + NEAR, sentence, fraction=0.5)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch08_capstone.hidden import tracks
 from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
@@ -28,12 +30,13 @@ def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     driven = drives.room
     recording = driven.recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
+    rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}
     if verdict.violated_at is not None:
         when = verdict.violated_at
         what = clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
-        _fail(gallery, driven, f"It touched {what} at t = {when:.1f} s.", when, "touches", when / driven.seconds)
+        _fail(gallery, driven, f"It touched {what} at t = {when:.1f} s.", when, "touches", when / driven.seconds, rules)
     metres = float(tracks.path(recording)[-1])
-    _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.")
+    _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
     expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
 
 
@@ -43,13 +46,13 @@ def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
     """It does not swing to and fro between left and right."""
     for driven in (drives.room, drives.corridor):
-        times = [command.seconds for command in driven.commands]
+        times = [command.seconds - driven.began for command in driven.commands]
         rates = [command.message.angular.z for command in driven.commands]
         verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_mind(times, rates, MEMORY)})
         if verdict.violated_at is not None:
-            when = verdict.violated_at - driven.began
+            when, rules = verdict.violated_at, {f"at most three changes of mind in {MEMORY:.0f} s": verdict}
             sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
-            _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds)
+            _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds, rules)
 
 
 @check(points=3, depends=DRIVES)
@@ -70,19 +73,22 @@ def test_gets_on(drives: Drives, gallery: Gallery) -> None:
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
-    driven = drives.faulty
+    driven, rules = drives.faulty, {}
     for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
         times = driven.recording.times
         there = (times >= trouble.start) & (times < trouble.end)
         metres = tracks.driven_since(driven.recording, trouble.start)[there].tolist()
         verdict = temporal.always(f"metres < {most}", times[there].tolist(), {"metres": metres})
+        rules[f"the way since the lidar was {trouble.name}, in m, is below {most:.2f}"] = verdict
         if verdict.violated_at is not None:
             sentence = (
                 f"The lidar was {trouble.name} from t = {trouble.start:.0f} s on; at t = {verdict.violated_at:.1f} s "
                 f"the robot had driven {most:.2f} m since then and had not stopped."
             )
-            _fail(gallery, driven, sentence, verdict.violated_at, "still drives", 0.0 if trouble is DARK else 0.5)
-    _keep(gallery, driven, "the lidar died and came back, was blocked and came free; the robot stood still meanwhile.")
+            fraction = 0.0 if trouble is DARK else 0.5
+            _fail(gallery, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
+    caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
+    _keep(gallery, driven, caption, rules)
 
 
 @check(points=2, depends=("stops_in_time",))
@@ -101,12 +107,23 @@ def test_drives_again(drives: Drives, gallery: Gallery) -> None:
             _fail(gallery, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
 
 
-def _keep(gallery: Gallery, driven: Driven, caption: str) -> None:
+Rules = Mapping[str, temporal.Verdict]
+
+
+def _keep(gallery: Gallery, driven: Driven, caption: str, rules: Rules | None = None) -> None:
     world = driven.recording.simulation.world.name
-    gallery.track("track", driven.recording, f"The robot's track in {world}: {caption}")
+    gallery.track("track", driven.recording, f"The robot's track in {world}: {caption}", rules=rules)
 
 
-def _fail(gallery: Gallery, driven: Driven, sentence: str, when: float, note: str, fraction: float) -> None:
+def _fail(
+    gallery: Gallery,
+    driven: Driven,
+    sentence: str,
+    when: float,
+    note: str,
+    fraction: float,
+    rules: Rules | None = None,
+) -> None:
     world = driven.recording.simulation.world.name
     gallery.track(
         "track",
@@ -114,5 +131,6 @@ def _fail(gallery: Gallery, driven: Driven, sentence: str, when: float, note: st
         f"The robot's track in {world}. {sentence}",
         mark=min(when, driven.seconds),
         note=note,
+        rules=rules,
     )
     raise CheckFailed(sentence, fraction=round(min(max(fraction, 0.0), 0.95), 2))

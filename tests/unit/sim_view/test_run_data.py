@@ -1,0 +1,71 @@
+"""A run as the player reads it: what comes out is what went in, rounded, and it is small."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from sim import Command, Recording, RobotSpec, Simulation, World, load_world, run
+from sim.view import Margin, encode
+from sim.view.run_data import MOST_BYTES, NO_RETURN, pack
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def unpack(packed: dict[str, Any]) -> npt.NDArray[np.float64]:
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
+    coded = np.ascontiguousarray(planes.reshape(4, -1).T).view("<u4").astype(np.int64).reshape(-1, packed["columns"])
+    whole: npt.NDArray[np.float64] = np.where(coded % 2, -(coded + 1) // 2, coded // 2).cumsum(axis=0) * packed["step"]
+    return whole
+
+
+def test_a_table_comes_back_rounded_to_its_steps() -> None:
+    table = np.random.default_rng(7).normal(scale=40.0, size=(50, 3))
+    assert unpack(pack(table, 0.001)) == pytest.approx(table, abs=0.00051)
+    assert unpack(pack([2.5, -1.0], 0.5)).tolist() == [[2.5], [-1.0]]
+    assert unpack(pack(np.empty((0, 4)), 0.001)).shape == (0, 4)
+
+
+def test_a_run_keeps_its_poses_scans_commands_and_collisions(recording: Recording) -> None:
+    margin = Margin("the gap, in m", (0.0, 1.0), (0.5, -math.inf), 1.0)
+    data = json.loads(encode(recording, "what it shows", [margin]))
+    robot = data["robots"][0]
+    assert data["alt"] == "what it shows"
+    assert unpack(data["times"])[:, 0] == pytest.approx(recording.times, abs=0.00051)
+    assert unpack(robot["poses"])[:, :2] == pytest.approx(recording.poses[:, 0, :2], abs=0.00051)
+    assert unpack(robot["commands"])[-1].tolist() == pytest.approx([0.4, 0.3])
+    ranges, kept = recording.scans[0].ranges, unpack(robot["scans"]["ranges"])
+    assert kept[np.isfinite(ranges)] == pytest.approx(ranges[np.isfinite(ranges)], abs=0.0051)
+    assert (kept[ranges == math.inf] == NO_RETURN).all()
+    assert [when for when, *_ in data["collisions"]] == [
+        pytest.approx(event.time_ns / 1e9, abs=0.001) for event in recording.events if event.kind == "collision"
+    ]
+    (shown,) = data["margins"]
+    assert (shown["broken"], unpack(shown["values"])[:, 0].tolist()) == (1.0, [0.5, -1000.0])
+
+
+def test_a_minute_in_the_lab_is_small_and_a_fleet_for_an_hour_is_thinned_out() -> None:
+    world = load_world(ROOT / "assets" / "worlds" / "lab.yaml")
+    minute = run(Simulation(world), lambda state, scans: Command(0.3, 0.2), 60.0)
+    assert len(encode(minute, "")) < MOST_BYTES / 3
+    fleet = tuple(RobotSpec(name=f"robot{number}") for number in range(6))
+    commands = {spec.name: Command(0.3, 0.2) for spec in fleet}
+    busy = run(Simulation(World.from_segments(world.segments.tolist()), fleet), lambda state, scans: commands, 60.0)
+    text = encode(busy, "")
+    assert len(text) <= MOST_BYTES
+    assert unpack(json.loads(text)["robots"][0]["scans"]["ranges"]).shape[1] < 360
+
+
+def test_a_name_cannot_end_the_script() -> None:
+    evil = "</script><script>alert(1)</script>"
+    text = encode(run(Simulation(World(name=evil)), lambda state, scans: None, 0.5), evil)
+    assert "<" not in text
+    assert json.loads(text)["world"]["name"] == json.loads(text)["alt"] == evil
