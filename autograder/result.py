@@ -40,6 +40,7 @@ class CheckResult:
         message: what is wrong, or an empty string.
         doc: address of a page to read, or None.
         seconds: wall time of the check.
+        holds: ids of the sentences of the contract that it holds.
     """
 
     id: str
@@ -53,6 +54,7 @@ class CheckResult:
     doc: str | None
     visibility: Visibility
     seconds: float
+    holds: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -81,6 +83,7 @@ class CheckResult:
             doc=check.doc,
             visibility=check.visibility,
             seconds=round(seconds, 3),
+            holds=check.holds,
         )
 
 
@@ -233,6 +236,7 @@ def _check_from_json(item: dict[str, Any]) -> CheckResult:
             "outcome": Outcome(item["outcome"]),
             "visibility": Visibility(item["visibility"]),
             "hints": tuple(item["hints"]),
+            "holds": tuple(item.get("holds", ())),
         }
     )
 

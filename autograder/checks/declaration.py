@@ -4,7 +4,7 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 
     check = group("reaction")
 
-    @check(points=2, depends=("starts",), doc=contract.LASER_SCAN)
+    @check(points=2, holds="turns", depends=("starts",), doc=contract.LASER_SCAN)
     @hint("Where is 0 rad in a scan?")
     @hint("Compare the smallest forward range with 1.0.")
     def test_turns_when_blocked(robot: Robot) -> None:
@@ -68,6 +68,7 @@ class Check:
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
         depends: ids of checks that must have passed first; they stand earlier in the suite.
+        holds: ids of the sentences of the contract that it holds; see `autograder.checks.contract`.
     """
 
     id: str
@@ -78,6 +79,7 @@ class Check:
     hints: tuple[str, ...]
     doc: str | None
     depends: tuple[str, ...]
+    holds: tuple[str, ...] = ()
 
 
 class CheckFailed(Exception):
@@ -94,7 +96,14 @@ class CheckFailed(Exception):
 class Declare(Protocol):
     """Declares a function a check of one group; see `check`."""
 
-    def __call__(self, *, points: float, depends: tuple[str, ...] = ..., doc: str | None = ...) -> Callable[[F], F]: ...
+    def __call__(
+        self,
+        *,
+        points: float,
+        holds: str | tuple[str, ...] = ...,
+        depends: tuple[str, ...] = ...,
+        doc: str | None = ...,
+    ) -> Callable[[F], F]: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,13 +119,21 @@ class Row:
     points: float
     hints: tuple[str, ...]
     doc: str
+    holds: str | tuple[str, ...] = ()
 
 
 R = TypeVar("R", bound=Row)
 
 
-def check(*, points: float, group: str, depends: tuple[str, ...] = (), doc: str | None = None) -> Callable[[F], F]:
-    """Declare a pytest function a check; what the arguments are, `Check` says.
+def check(
+    *,
+    points: float,
+    group: str,
+    holds: str | tuple[str, ...] = (),
+    depends: tuple[str, ...] = (),
+    doc: str | None = None,
+) -> Callable[[F], F]:
+    """Declare a pytest function a check; what the arguments are, `Check` says. One sentence needs no tuple.
 
     Raises:
         GraderError: the function's name, docstring or points break the contract of a check.
@@ -134,7 +151,8 @@ def check(*, points: float, group: str, depends: tuple[str, ...] = (), doc: str 
         visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
         visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
         hints = getattr(function, "__hints__", ())
-        declared = Check(name.removeprefix(PREFIX), title, float(points), group, visibility, hints, doc, depends)
+        held = (holds,) if isinstance(holds, str) else holds
+        declared = Check(name.removeprefix(PREFIX), title, float(points), group, visibility, hints, doc, depends, held)
         function.__check__ = declared  # type: ignore[attr-defined]
         return function
 
@@ -146,9 +164,13 @@ def group(name: str, *, depends: tuple[str, ...] = (), doc: str | None = None) -
     default_depends, default_doc = depends, doc
 
     def check_of_group(
-        *, points: float, depends: tuple[str, ...] = default_depends, doc: str | None = default_doc
+        *,
+        points: float,
+        holds: str | tuple[str, ...] = (),
+        depends: tuple[str, ...] = default_depends,
+        doc: str | None = default_doc,
     ) -> Callable[[F], F]:
-        return check(points=points, group=name, depends=depends, doc=doc)
+        return check(points=points, group=name, holds=holds, depends=depends, doc=doc)
 
     return check_of_group
 
@@ -186,7 +208,7 @@ def each(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
         if body.__name__.startswith("test"):
             raise GraderError(f"body {body.__name__!r}: its name must not start with 'test', its checks' names do")
         for row in rows:
-            declare = check(points=row.points, doc=row.doc)
+            declare = check(points=row.points, holds=row.holds, doc=row.doc)
             body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))
         return body
 

@@ -11,6 +11,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course import judged_later, platform_page
 from autograder.course.cells import is_graded
+from autograder.course.contract_rules import broken_contract
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.course.minutes import wrong_promise
@@ -82,7 +83,8 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
     found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         try:
-            found += wrong_points(name, notebook, suites.hidden(chapter.assignment).checks)
+            hidden, visible = suites.hidden(chapter.assignment).checks, suites.visible(chapter.assignment).checks
+            found += [*wrong_points(name, notebook, hidden), *broken_contract(name, notebook, (*visible, *hidden))]
         except UsageError as error:
             found.append(Finding(name, None, str(error)))
     return found

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from urllib.parse import urlsplit
 
 from autograder.checks import Outcome
+from autograder.checks.contract import Sentence
 from autograder.diagnosis import Kind
 from autograder.feedback.text import clean
 from autograder.result import Artifact, CheckResult, Result, Status
@@ -27,7 +28,11 @@ class Picture:
 
 @dataclass(frozen=True)
 class CheckView:
-    """A check on a page. `outcome` is in words. `doc` is an http or https address, or None."""
+    """A check on a page.
+
+    `outcome` is in words. `doc` is an http or https address, or None. `contract` holds the sentences that a check which
+    failed holds a student to.
+    """
 
     id: str
     title: str
@@ -37,6 +42,7 @@ class CheckView:
     message: str
     hints: tuple[str, ...]
     doc: str | None
+    contract: tuple[str, ...]
     pictures: tuple[Picture, ...]
 
 
@@ -81,12 +87,15 @@ class PageView:
         return int(self.result.percent + 1e-9)
 
 
-def page_view(result: Result, picture: Callable[[Artifact], Picture | None]) -> PageView:
+def page_view(
+    result: Result, picture: Callable[[Artifact], Picture | None], contract: Mapping[str, Sentence] = {}
+) -> PageView:
     """Return the content of the page of a result.
 
     Args:
         result: the result to show.
         picture: function that returns the picture of an artifact, or None if the artifact is not a picture.
+        contract: the sentences of the assignment's contract, by their ids.
     """
     known = {check.id for check in result.checks}
     pictures: dict[str, list[Picture]] = {}
@@ -94,7 +103,9 @@ def page_view(result: Result, picture: Callable[[Artifact], Picture | None]) -> 
         found = picture(artifact)
         if found is not None:
             pictures.setdefault(artifact.check if artifact.check in known else "", []).append(found)
-    groups = tuple(_group(name, result.group(name), pictures) for name in dict.fromkeys(c.group for c in result.checks))
+    groups = tuple(
+        _group(name, result.group(name), pictures, contract) for name in dict.fromkeys(c.group for c in result.checks)
+    )
     checks = [check for group in groups for check in group.checks]
     return PageView(
         result=result,
@@ -106,8 +117,13 @@ def page_view(result: Result, picture: Callable[[Artifact], Picture | None]) -> 
     )
 
 
-def _group(name: str, checks: Sequence[CheckResult], pictures: dict[str, list[Picture]]) -> GroupView:
-    views = [_check(check, tuple(pictures.get(check.id, ()))) for check in checks]
+def _group(
+    name: str,
+    checks: Sequence[CheckResult],
+    pictures: dict[str, list[Picture]],
+    contract: Mapping[str, Sentence],
+) -> GroupView:
+    views = [_check(check, tuple(pictures.get(check.id, ())), contract) for check in checks]
     views = [
         replace(after, message="") if _repeats(before, after) else after
         for before, after in zip([None, *views], views, strict=False)
@@ -126,7 +142,8 @@ def _repeats(before: CheckView | None, after: CheckView) -> bool:
     return before is not None and skipped and (before.outcome, before.message) == (after.outcome, after.message)
 
 
-def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:
+def _check(check: CheckResult, pictures: tuple[Picture, ...], contract: Mapping[str, Sentence]) -> CheckView:
+    held = check.holds if check.outcome is Outcome.FAILED else ()
     return CheckView(
         id=check.id,
         title=check.title,
@@ -136,6 +153,7 @@ def _check(check: CheckResult, pictures: tuple[Picture, ...]) -> CheckView:
         message=clean(check.message).strip(),
         hints=() if check.outcome is Outcome.PASSED else check.hints,
         doc=safe_link(check.doc),
+        contract=tuple(contract[name].text for name in held if name in contract),
         pictures=pictures,
     )
 

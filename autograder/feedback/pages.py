@@ -18,6 +18,7 @@ from markupsafe import Markup
 
 from autograder import layout
 from autograder.checks import Outcome
+from autograder.checks.contract import contract
 from autograder.feedback.model import Picture, page_view
 from autograder.feedback.pictures import picture_reader
 from autograder.feedback.text import NOT_GRADED, clean, number
@@ -61,7 +62,8 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
     Raises:
         UsageError: the path of an artifact leads out of its folder.
     """
-    page = page_view(result, picture_reader(artifacts or folder))
+    known = contract(result.assignment) if result.assignment in layout.assignments() else {}
+    page = page_view(result, picture_reader(artifacts or folder), known)
     script, style = _player_assets() if page.plays else ("", "")
     digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii") if script else ""
     template = environment().get_template("feedback.html.j2")

@@ -16,15 +16,16 @@ from autograder.course import judged_later
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
-CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, ()),)
+CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, (), ("runs",)),)
 
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS))
+    monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
     (tmp_path / "solutions").mkdir()
     (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
-    origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"]}
+    origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"], "contract": {"runs": "Run."}}
     chapter(
         tmp_path,
         notebook(

@@ -12,6 +12,7 @@ import pytest
 
 from autograder import feedback
 from autograder.checks import Check, Outcome
+from autograder.checks.contract import contract
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.feedback.text import NOT_GRADED
@@ -78,6 +79,16 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     assert re.search(r"<details[^>]*><summary>Hint</summary>.*<details[^>]*><summary>Second hint</summary>", html, re.S)
     assert "open" not in page.all("class")
     assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
+
+
+def test_a_check_that_failed_quotes_the_sentence_of_the_contract_that_it_holds(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    stops = make_check("stops", "It stops.", 1, "graph", holds=("stale", "no-such-sentence"))
+    page = Page(feedback.write(make_result(checks=(CheckResult.of(stops, Outcome.FAILED, "it drove"),)), tmp_path))
+    assert f"The contract: {contract('02_nodes')['stale'].text}" in page.text
+    page = Page(feedback.write(make_result(checks=(CheckResult.of(stops, Outcome.PASSED),)), tmp_path))
+    assert "The contract:" not in page.text
 
 
 def test_a_link_that_is_no_web_address_is_not_followed(

@@ -25,7 +25,7 @@ from autograder.probes.installed import INDEX, Installed
 check = group("install")
 
 
-@check(points=2, doc=contract.COLCON)
+@check(points=2, holds="builds", doc=contract.COLCON)
 @hint("Run colcon build in ws and read the first line that says error.")
 @hint("A syntax error in setup.py, a file that data_files names and that is not there: colcon quotes Python.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -33,7 +33,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds=("files", "empty-files"), depends=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
 def test_marker(installed_dance: Installed) -> None:
@@ -52,7 +52,7 @@ def test_marker(installed_dance: Installed) -> None:
     )
 
 
-@check(points=2, depends=("builds",), doc=contract.DEVELOP)
+@check(points=2, holds="program", depends=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
 def test_executable(installed_dance: Installed) -> None:
@@ -60,7 +60,7 @@ def test_executable(installed_dance: Installed) -> None:
     expect_executable(installed_dance, contract.DANCER)
 
 
-@check(points=2, depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=2, holds=("modules", "empty-files"), depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("packages=[package_name] means one folder, not those in it.")
 @hint("find_packages takes a folder for a package when there is an __init__.py in it.")
 def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
@@ -68,21 +68,21 @@ def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
     expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
 @hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
 def test_launch_file(workspace: Workspace, installed_dance: Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_LAUNCH)
 
 
-@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
 @hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
 def test_config(workspace: Workspace, installed_dance: Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_CONFIG)
 
 
-@check(points=1, depends=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds="same-facts", depends=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("package.xml and setup.py each say the version, the licence and the maintainer.")
 @hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
 def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
@@ -90,7 +90,7 @@ def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
     expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, depends=("builds",), doc=contract.COLCON)
+@check(points=1, holds="pytest", depends=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
@@ -98,7 +98,7 @@ def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
     expect_pytest(workspace, installed_dance)
 
 
-@check(points=2, depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
+@check(points=2, holds=("modules", "files"), depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
 @hint("A list of names written by hand is wrong on the day when somebody adds a file.")
 @hint("find_packages(...) and glob(...) look at what is there when the package is built.")
 def test_grows(grown: Grown) -> None:
@@ -109,7 +109,7 @@ def test_grows(grown: Grown) -> None:
     expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 3)
 
 
-@check(points=1, depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=1, holds="tests-stay", depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 def test_tests_stay(grown: Grown) -> None:
     """Its tests are not installed as a module called test, also with an __init__.py beside them."""

@@ -27,7 +27,7 @@ check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file
 
 
-@check(points=2, doc=contract.COLCON)
+@check(points=2, holds="alarm-builds", doc=contract.COLCON)
 @hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -35,7 +35,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=2, depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=2, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
 def test_alarm_executable(installed_alarm: Installed) -> None:
@@ -43,7 +43,7 @@ def test_alarm_executable(installed_alarm: Installed) -> None:
     expect_executable(installed_alarm, contract.ALARM)
 
 
-@check(points=2, depends=("alarm_builds",), doc=contract.SUBPACKAGES)
+@check(points=2, holds="alarm-runs", depends=("alarm_builds",), doc=contract.SUBPACKAGES)
 @hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
 @hint("packages=find_packages(exclude=['test']) in setup.py.")
 def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -51,14 +51,14 @@ def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> 
     expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
 
 
-@check(points=1, depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-config", depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
 def test_alarm_config(workspace: Workspace, installed_alarm: Installed) -> None:
     """Its configuration is installed."""
     expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
 
 
-@check(points=2, doc=contract.ROSDEP)
+@check(points=2, holds="alarm-dependencies", doc=contract.ROSDEP)
 @hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
@@ -68,7 +68,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
 
 
-@check(points=1, depends=("alarm_builds",), doc=contract.REP_149)
+@check(points=1, holds="alarm-licence", depends=("alarm_builds",), doc=contract.REP_149)
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
 def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None:
     """Both files name the licence Apache-2.0."""
@@ -81,7 +81,7 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None
     )
 
 
-@check(points=1, depends=("alarm_builds",), doc=contract.COLCON)
+@check(points=1, holds="alarm-pytest", depends=("alarm_builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -89,7 +89,12 @@ def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) ->
     expect_pytest(workspace, installed_alarm)
 
 
-@check(points=2, depends=("alarm_executable", "alarm_subpackages"), doc=contract.CREATE)
+@check(
+    points=2,
+    holds=("alarm-runs", "alarm-given"),
+    depends=("alarm_executable", "alarm_subpackages"),
+    doc=contract.CREATE,
+)
 @hint("ros2 run wall_alarm alarm in a new shell, after source install/setup.bash: what does it print?")
 @hint("The node was right from the start: take it as it was given.")
 def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
@@ -99,7 +104,7 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
         robots.expect_alarm(harness, round(draw.uniform(1.0, 8.0), 2), False)
 
 
-@check(points=1, depends=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
+@check(points=1, holds=("alarm-config", "alarm-given"), depends=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
 @hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
 def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""

@@ -24,7 +24,7 @@ from autograder.probes.installed import Installed
 check = group("packages")
 
 
-@check(points=1, doc=contract.CREATE)
+@check(points=1, holds=("manifest", "build-type"), doc=contract.CREATE)
 @hint("Name, version, description, maintainer, licence and <export><build_type>: look at what ros2 pkg create wrote.")
 @hint('The tags stand between <package format="3"> and </package>; <export> stands last.')
 def test_manifest(workspace: Workspace) -> None:
@@ -32,14 +32,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, depends=("manifest",), doc=contract.REP_149)
+@check(points=1, holds="licence", depends=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, depends=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
 @hint("Read the import lines of each file in square_dance: all that is neither Python's own nor the package's.")
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
@@ -48,7 +48,7 @@ def test_dependencies(workspace: Workspace) -> None:
     expect_declared(imports.imported(source_of(workspace, contract.SQUARE_DANCE)), manifest.needs())
 
 
-@check(points=1, doc=contract.COLCON)
+@check(points=1, holds="builds", doc=contract.COLCON)
 @hint("Run colcon build in ws and read the first line that says error.")
 @hint("can't copy 'resource/square_dance' means: the empty marker file is not there.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -56,7 +56,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds=("program", "given"), depends=("builds",), doc=contract.DEVELOP)
 @hint("Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.")
 @hint("find_packages finds folders that have an __init__.py; setup.cfg says where programs go.")
 def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
@@ -67,7 +67,7 @@ def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
         robots.expect_dance(harness, 1.0)
 
 
-@check(points=1, depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
 @hint("Each entry of data_files is a pair: a folder below the install prefix, and a list of files.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')); config goes the same way.")
 def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
@@ -76,7 +76,7 @@ def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
-@check(points=1, doc=contract.COLCON)
+@check(points=1, holds="alarm-builds", doc=contract.COLCON)
 @hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
 @hint("The marker is an empty file: resource/wall_alarm.")
 def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -84,7 +84,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=1, depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Mend it rung by rung: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
 def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -96,7 +96,7 @@ def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
         robots.expect_alarm(harness, 3.0, False)
 
 
-@check(points=1, doc=contract.ROSDEP)
+@check(points=1, holds="alarm-dependencies", doc=contract.ROSDEP)
 @hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:

@@ -6,12 +6,14 @@ from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
 from autograder.exceptions import StudentError
+from autograder.harness import Workspace
 from autograder.lockstep.failures import diagnose_ending
+from autograder.probes.namespaces import left_behind
 
 check = group("graph")
 
 
-@check(points=1, doc=contract.NODES)
+@check(points=1, holds="node-name", doc=contract.NODES)
 @hint("Run the cell that builds the workspace and read its last lines.")
 @hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
@@ -20,7 +22,7 @@ def test_starts(robot: Robot) -> None:
         raise StudentError(diagnose_ending(robot.process))
 
 
-@check(points=1, depends=("starts",))
+@check(points=1, holds="node-name", depends=("starts",))
 @hint("The name is the argument of super().__init__.")
 def test_node_name(robot: Robot) -> None:
     """The node is called robot_controller."""
@@ -28,14 +30,14 @@ def test_node_name(robot: Robot) -> None:
     expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
 
 
-@check(points=2, depends=("starts",))
+@check(points=1, holds="scan", depends=("starts",))
 @hint("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.")
 def test_subscribes_scan(robot: Robot) -> None:
     """It subscribes to scan as sensor_msgs/msg/LaserScan."""
     _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
 
 
-@check(points=2, depends=("subscribes_scan",), doc=contract.QOS)
+@check(points=2, holds="scan", depends=("subscribes_scan",), doc=contract.QOS)
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
@@ -44,18 +46,27 @@ def test_scan_qos(robot: Robot) -> None:
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
 
 
-@check(points=1, depends=("starts",))
+@check(points=1, holds=("cmd-vel", "twist"), depends=("starts",))
 @hint("create_publisher(Twist, 'cmd_vel', 10) in __init__.")
 def test_publishes_cmd_vel(robot: Robot) -> None:
     """It publishes cmd_vel as geometry_msgs/msg/Twist."""
     _expect_endpoint(robot, "publisher", "/cmd_vel", "geometry_msgs/msg/Twist")
 
 
-@check(points=1, depends=("starts",))
+@check(points=1, holds="status", depends=("starts",))
 @hint("create_subscription(String, 'status', self.status_callback, 10) in __init__.")
 def test_subscribes_status(robot: Robot) -> None:
     """It subscribes to status as std_msgs/msg/String."""
     _expect_endpoint(robot, "subscription", "/status", "std_msgs/msg/String")
+
+
+@check(points=1, holds="relative", depends=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"))
+@hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
+@hint("'scan' is relative, '/scan' is not.")
+def test_relative(workspace: Workspace) -> None:
+    """All its topics are relative: in a namespace, it takes them with it."""
+    left = left_behind(workspace, contract.PACKAGE, contract.EXECUTABLE, ("scan", "status", "cmd_vel"))
+    expect(not left, left)
 
 
 def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> None:

@@ -23,14 +23,14 @@ HINTS = (
 )
 
 
-@check(points=2, depends=("publishes_cmd_vel",))
+@check(points=2, holds="ends", depends=("publishes_cmd_vel",))
 @hint(*HINTS)
 def test_sigint(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, on Ctrl-C (SIGINT)."""
     _expect_clean_end(workspace, signal.SIGINT)
 
 
-@check(points=2, depends=("publishes_cmd_vel",))
+@check(points=2, holds="ends", depends=("publishes_cmd_vel",))
 @hint(*HINTS)
 def test_sigterm(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, when a launch system stops it (SIGTERM)."""

@@ -13,7 +13,7 @@ check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 
 
-@check(points=2, depends=TALKS)
+@check(points=2, holds=("clear", "in-range"), depends=TALKS)
 @hint(contract.RULE_FORWARD, "Look at the last branch of control_loop.")
 def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     """It drives straight on at 0.3 m/s while the nearest thing in front is far away."""
@@ -21,7 +21,7 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
 
 
-@check(points=2, depends=TALKS)
+@check(points=2, holds=("near", "in-range"), depends=TALKS)
 @hint(contract.RULE_TURN, "Look at the middle branch of control_loop.")
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
@@ -30,7 +30,7 @@ def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead, at {bearing:.0f}°")
 
 
-@check(points=2, depends=("forward_when_clear", "turns_when_blocked"))
+@check(points=2, holds=("near", "clear"), depends=("forward_when_clear", "turns_when_blocked"))
 @hint("The limit is 1.0 m: nearer blocks, farther does not.", "Compare metres with metres, and with < rather than <=.")
 def test_threshold(robot: Robot, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
@@ -40,7 +40,7 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(Part(-3.0, 3.0, far))), f"With something {far:.2f} m ahead")
 
 
-@check(points=3, depends=("forward_when_clear",), doc=contract.LASER_SCAN)
+@check(points=3, holds="sector", depends=("forward_when_clear",), doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
@@ -53,7 +53,7 @@ def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
         expect_turn(robot.see(edge), f"With something {near:.2f} m away at {bearing:.0f}°, inside the forward sector")
 
 
-@check(points=2, depends=("forward_when_clear", "turns_when_blocked"), doc=contract.LASER_SCAN)
+@check(points=2, holds="bearings", depends=("forward_when_clear", "turns_when_blocked"), doc=contract.LASER_SCAN)
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")
 @hint("Use angle_min and angle_increment of the message, never a fixed index or a fixed number of beams.")
 def test_other_lidars(robot: Robot, draw: random.Random) -> None:

@@ -13,7 +13,7 @@ check = group("safety")
 MARGIN = 0.15  # s beyond the time-out that a timer at 10 Hz may need
 
 
-@check(points=2, depends=("publishes_cmd_vel",))
+@check(points=2, holds=("no-scan", "cmd-vel"), depends=("publishes_cmd_vel",))
 @hint("obstacle_detected = False at the start means: drive before anything was seen.")
 @hint("Start with last_scan = None, and let None mean stop.")
 def test_stops_before_first_scan(fresh_robot: Robot) -> None:
@@ -21,7 +21,7 @@ def test_stops_before_first_scan(fresh_robot: Robot) -> None:
     expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
 
 
-@check(points=3, depends=("forward_when_clear",))
+@check(points=3, holds=("stale", "ros-time"), depends=("forward_when_clear",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
 def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
@@ -34,7 +34,7 @@ def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
     expect_stop(late, f"More than {contract.STALE_AFTER} s after the last scan")
 
 
-@check(points=1, depends=("stops_when_stale",))
+@check(points=1, holds=("stale", "clear"), depends=("stops_when_stale",))
 @hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
 def test_recovers(robot: Robot, draw: random.Random) -> None:
     """It drives again when scans come again."""

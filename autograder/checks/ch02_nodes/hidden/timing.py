@@ -1,6 +1,10 @@
-"""Timing: ten commands a second, and a log that stays readable."""
+"""Timing: ten commands a second, and a log that says what it should and stays readable."""
 
 from __future__ import annotations
+
+import random
+
+from std_msgs.msg import String
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.robot import Robot
@@ -8,9 +12,10 @@ from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("timing")
 SECONDS = 20.0
+WRITTEN_SECONDS = 5.0  # of real time until a line that was logged is read; only a silent node takes so long
 
 
-@check(points=2, depends=("publishes_cmd_vel",))
+@check(points=2, holds="cmd-vel", depends=("publishes_cmd_vel",))
 @hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 @hint("Publish in the timer's callback and nowhere else, once each time.")
 def test_ten_hertz(robot: Robot) -> None:
@@ -25,7 +30,7 @@ def test_ten_hertz(robot: Robot) -> None:
         expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second {situation}, instead of 10.")
 
 
-@check(points=2, depends=("subscribes_scan",))
+@check(points=1, holds="warns", depends=("subscribes_scan",))
 @hint("A warning at every scan is 10 lines a second, and nobody reads them.")
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
@@ -34,3 +39,34 @@ def test_no_flood(robot: Robot) -> None:
     robot.see(scan(Part(-10.0, 10.0, 0.5)), SECONDS)
     lines = len(robot.output.splitlines()) - before
     expect(lines <= 2 * SECONDS, f"Blocked for {SECONDS:.0f} s, it logged {lines} lines.")
+
+
+@check(points=1, holds="warns", depends=("turns_when_blocked",))
+@hint("A warning has its own level: self.get_logger().warning(...), in the branch that turns.")
+def test_warns(fresh_robot: Robot) -> None:
+    """It warns while something is in the way, and not while the way is clear."""
+    fresh_robot.see(scan(), 2.0)
+    expect(not _has_logged(fresh_robot, "WARN"), "The way was clear, and it logged a warning.")
+    fresh_robot.see(scan(Part(-10.0, 10.0, 0.5)), 2.0)
+    expect(_logs(fresh_robot, "WARN"), "Blocked for 2 s, it logged no warning.")
+
+
+@check(points=1, holds="logs-status", depends=("subscribes_status",))
+@hint("self.get_logger().info(msg.data), in status_callback.")
+def test_logs_status(robot: Robot, draw: random.Random) -> None:
+    """It logs each status at level info."""
+    for _ in range(2):
+        words = f"battery {draw.randrange(10**6)}"
+        robot.publish("/status", String(data=words))
+        robot.run(0.3)
+        expect(_logs(robot, "INFO", words), f"The status {words!r} came, and it logged nothing of it at level info.")
+
+
+def _logs(robot: Robot, level: str, words: str = "") -> bool:
+    """Wait for a line with these words at this level; return whether it comes."""
+    return robot.wait_for(lambda: _has_logged(robot, level, words), WRITTEN_SECONDS)
+
+
+def _has_logged(robot: Robot, level: str, words: str = "") -> bool:
+    """Return whether the robot has logged a line with these words at this level."""
+    return any(line.startswith(f"[{level}]") and words in line for line in robot.output.splitlines())

@@ -30,7 +30,7 @@ EXECUTOR = (
 )
 
 
-@check(points=1, depends=("drive_distance", "generated"), doc=contract.ACTION)
+@check(points=1, holds=("drive-action", "drive-node"), depends=("drive_distance", "generated"), doc=contract.ACTION)
 @hint("Start it with ros2 run my_robot_package distance_driver and read its last lines.")
 @hint("ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.")
 def test_drive_serves(driver: Driver) -> None:
@@ -49,7 +49,7 @@ def test_drive_serves(driver: Driver) -> None:
     expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
 
 
-@check(points=1, depends=("drive_serves",), doc=contract.ACTION)
+@check(points=1, holds="no-odometry", depends=("drive_serves",), doc=contract.ACTION)
 @hint("Start with self.position = None, and reject while it is None.")
 def test_drive_needs_odometry(driver: Driver) -> None:
     """Before any odometry has come, a goal is rejected."""
@@ -60,7 +60,7 @@ def test_drive_needs_odometry(driver: Driver) -> None:
     expect(not driver.messages(COMMANDS), "The robot was moved before the first odometry.")
 
 
-@check(points=2, depends=("drive_serves",), doc=contract.GROUPS)
+@check(points=2, holds=("drives", "drive-cmd-vel"), depends=("drive_serves",), doc=contract.GROUPS)
 @hint(*EXECUTOR)
 def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
@@ -77,7 +77,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
 
 
-@check(points=2, depends=MOVES, doc=contract.ACTION)
+@check(points=2, holds=("arrives", "stop", "odom", "overshoot"), depends=MOVES, doc=contract.ACTION)
 @hint(*EXECUTOR)
 def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
@@ -95,7 +95,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
-@check(points=2, depends=("drive_succeeds",), doc=contract.ACTION)
+@check(points=2, holds=("driven", "arrives"), depends=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
@@ -109,7 +109,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
 
 
-@check(points=2, depends=MOVES, doc=contract.ACTION)
+@check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)
 @hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
 def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     """Feedback comes on the way: driven grows, and remaining is what is left."""
@@ -125,7 +125,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     expect(driven == sorted(driven) and driven[-1] > driven[0], "driven did not grow on the way.")
 
 
-@check(points=2, depends=("drive_serves",), doc=contract.ACTION)
+@check(points=2, holds="rejects", depends=("drive_serves",), doc=contract.ACTION)
 @hint("goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.")
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
@@ -151,7 +151,7 @@ def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
     expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
 
 
-@check(points=1, depends=MOVES, doc=contract.ACTION)
+@check(points=1, holds=("rejects", "drives"), depends=MOVES, doc=contract.ACTION)
 @hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
 def test_drive_limits(placed_driver: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""

@@ -17,7 +17,7 @@ TABLES = (
 )
 
 
-@check(points=1, doc=contract.DEFINE)
+@check(points=1, holds="names-and-order", doc=contract.DEFINE)
 @hint("The files are msg/RobotStatus.msg, srv/CheckTrip.srv and action/DriveDistance.action in my_robot_interfaces.")
 @hint("`colcon build` names the line that it cannot read.")
 def test_readable(workspace: Workspace) -> None:
@@ -26,42 +26,93 @@ def test_readable(workspace: Workspace) -> None:
         read(workspace, wanted)
 
 
-@check(points=2, depends=READABLE, doc=contract.DEFINE)
+@check(
+    points=2,
+    holds=(
+        "names-and-order",
+        "battery-unknown",
+        "status-header",
+        "status-name",
+        "status-level",
+        "status-charging",
+        "status-joints",
+    ),
+    depends=READABLE,
+    doc=contract.DEFINE,
+)
 @hint(*TABLES)
 def test_robot_status(workspace: Workspace) -> None:
     """msg/RobotStatus.msg has the contract's fields, with their types, in their order."""
     expect_like(workspace, contract.ROBOT_STATUS, *FIELDS)
 
 
-@check(points=2, depends=READABLE, doc=contract.LANGUAGE)
+@check(
+    points=2,
+    holds=(
+        "names-and-order",
+        "metres-per-percent",
+        "trip-legs",
+        "trip-reserve",
+        "trip-possible-field",
+        "trip-at-end",
+        "trip-reason-field",
+    ),
+    depends=READABLE,
+    doc=contract.LANGUAGE,
+)
 @hint(*TABLES)
 def test_check_trip(workspace: Workspace) -> None:
     """srv/CheckTrip.srv has the contract's fields in request and response, with their types, in their order."""
     expect_like(workspace, contract.CHECK_TRIP, *FIELDS)
 
 
-@check(points=2, depends=READABLE, doc=contract.LANGUAGE)
+@check(
+    points=2,
+    holds=(
+        "names-and-order",
+        "goal-constants",
+        "goal-distance",
+        "goal-speed",
+        "result-driven",
+        "result-reason",
+        "feedback-fields",
+    ),
+    depends=READABLE,
+    doc=contract.LANGUAGE,
+)
 @hint(*TABLES)
 def test_drive_distance(workspace: Workspace) -> None:
     """action/DriveDistance.action has the contract's fields in goal, result and feedback, with types, in order."""
     expect_like(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
-@check(points=1, depends=READABLE, doc=contract.LANGUAGE)
+@check(
+    points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), depends=READABLE, doc=contract.LANGUAGE
+)
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
     _expect_all(workspace, Aspect.CONSTANTS, 4)
 
 
-@check(points=1, depends=READABLE, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    holds=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
+    depends=READABLE,
+    doc=contract.LANGUAGE,
+)
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
 def test_defaults(workspace: Workspace) -> None:
     """The four defaults of the definitions have the contract's values."""
     _expect_all(workspace, Aspect.DEFAULTS, 4)
 
 
-@check(points=1, depends=READABLE, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    holds=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
+    depends=READABLE,
+    doc=contract.LANGUAGE,
+)
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
 def test_bounds(workspace: Workspace) -> None:
     """The array and the strings that have a bound in the contract have that bound, and the other array has none."""

@@ -16,7 +16,7 @@ from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
 check = group("action", doc=contract.ACTION)
 
 
-@check(points=3, depends=MOVES)
+@check(points=3, holds=("cancels", "stop"), depends=MOVES)
 @hint("Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().")
 @hint("cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.")
 def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
@@ -43,7 +43,7 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
 
 
-@check(points=2, depends=("drive_cancels",))
+@check(points=2, holds=("busy", "next-goal"), depends=("drive_cancels",))
 @hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(placed_driver: Driver) -> None:
@@ -65,7 +65,7 @@ def test_drive_one_at_a_time(placed_driver: Driver) -> None:
     placed_driver.finish(third, LONG, "With 0.10 m to drive")
 
 
-@check(points=2, depends=MOVES)
+@check(points=2, holds=("stuck", "slow-goal"), depends=MOVES)
 @hint("Remember how far the robot had come, and when; a centimetre more sets both anew.")
 @hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
 def test_drive_stuck(placed_driver: Driver) -> None:
@@ -86,7 +86,7 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.7)
 
 
-@check(points=2, depends=("drive_stuck",))
+@check(points=2, holds="stuck", depends=("drive_stuck",))
 @hint("Without odometry the position stays as it was, and that is no progress, either.")
 def test_drive_blind(placed_driver: Driver) -> None:
     """When the odometry falls silent on the way, the robot is stopped and the goal ends ABORTED."""

@@ -17,7 +17,7 @@ SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
-@check(points=1, depends=("status_starts",))
+@check(points=1, holds="trip-service", depends=("status_starts",))
 @hint("self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.")
 @hint("check_trip(self, request, response) returns the response.")
 def test_trip_answers(reporter: Reporter) -> None:
@@ -38,14 +38,14 @@ def test_trip_answers(reporter: Reporter) -> None:
     reporter.ask([])
 
 
-@check(points=2, depends=ANSWERS)
+@check(points=2, holds="trip-unknown", depends=ANSWERS)
 @hint("An unknown battery makes no trip possible; start with possible = False.")
 def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
     _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
 
 
-@check(points=2, depends=ANSWERS)
+@check(points=2, holds="trip-rule", depends=ANSWERS)
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
@@ -64,7 +64,7 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
         expect(answer.battery_at_end == left, f"{situation}, battery_at_end is {answer.battery_at_end}, not {left}.")
 
 
-@check(points=2, depends=("trip_level",))
+@check(points=2, holds=("trip-rule", "trip-enough"), depends=("trip_level",))
 @hint(RULE, "Exactly the reserve left is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
@@ -79,7 +79,7 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
             expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
 
 
-@check(points=1, depends=("trip_level",))
+@check(points=1, holds="trip-far", depends=("trip_level",))
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
@@ -89,7 +89,7 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
 
 
-@check(points=2, depends=ANSWERS)
+@check(points=2, holds="trip-unknown", depends=ANSWERS)
 @hint("A leg is a distance: at least 0, and finite. nan is not at least 0.")
 @hint("0.0 <= leg < math.inf holds for distances alone.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
@@ -101,7 +101,7 @@ def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
         _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
 
 
-@check(points=1, depends=("trip_possible",))
+@check(points=1, holds="trip-reason", depends=("trip_possible",))
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""

@@ -18,7 +18,7 @@ CASES = 4
 SOME_SECONDS = 5.0  # until a status has come, even where its period is wrong
 
 
-@check(points=1, depends=("robot_status", "check_trip", "generated"), doc=contract.DEFINE)
+@check(points=1, holds="status-node", depends=("robot_status", "check_trip", "generated"), doc=contract.DEFINE)
 @hint("Start it with ros2 run my_robot_package status_publisher and read its last lines.")
 @hint("setup.py is given: it names my_robot_package.nodes.status_publisher:main.")
 def test_status_starts(reporter: Reporter) -> None:
@@ -27,7 +27,7 @@ def test_status_starts(reporter: Reporter) -> None:
     expect(f"/{contract.STATUS}" in names, f"The graph holds {', '.join(names) or 'no node'}, but no status_publisher.")
 
 
-@check(points=1, depends=("status_starts",), doc=contract.DEFINE)
+@check(points=1, holds="status-topic", depends=("status_starts",), doc=contract.DEFINE)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS) in __init__.")
 def test_publishes_status(reporter: Reporter) -> None:
     """It publishes robot_status as my_robot_interfaces/msg/RobotStatus."""
@@ -43,7 +43,7 @@ def test_publishes_status(reporter: Reporter) -> None:
     expect(there == [wanted], f"/robot_status carries {', '.join(there)}, it should carry {wanted}.")
 
 
-@check(points=1, depends=NEEDS, doc=contract.QOS)
+@check(points=1, holds="status-topic", depends=NEEDS, doc=contract.QOS)
 @hint("STATUS_QOS is defined above the class; use it instead of a number.")
 def test_status_for_late_joiners(reporter: Reporter) -> None:
     """Its quality of service keeps the last status for whoever joins late."""
@@ -54,7 +54,7 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
         expect(reliable, "The publisher sends best effort; a status should arrive.")
 
 
-@check(points=1, depends=NEEDS)
+@check(points=1, holds=("status-topic", "status-period"), depends=NEEDS)
 @hint("create_timer(period, self.publish_status), with the period that read_parameters() returns.")
 def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     """It publishes once a second, and at another rate when status_period says so."""
@@ -72,7 +72,7 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     )
 
 
-@check(points=1, depends=NEEDS, doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html")
+@check(points=1, holds="status-stamp", depends=NEEDS, doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html")
 @hint("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.")
 def test_status_stamp(reporter: Reporter) -> None:
     """Each status carries the time at which it was put together."""
@@ -83,7 +83,7 @@ def test_status_stamp(reporter: Reporter) -> None:
     expect(abs(age) <= 0.2, f"header.stamp is {age:.1f} s older than the message.")
 
 
-@check(points=2, depends=NEEDS, doc=contract.BATTERY)
+@check(points=2, holds="unknown", depends=NEEDS, doc=contract.BATTERY)
 @hint("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.")
 def test_status_unknown(silent_reporter: Reporter) -> None:
     """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
@@ -93,7 +93,7 @@ def test_status_unknown(silent_reporter: Reporter) -> None:
     expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
 
 
-@check(points=1, depends=NEEDS)
+@check(points=1, holds="status-name", depends=NEEDS)
 @hint("self.robot_name comes from read_parameters(); put it into each message.")
 def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     """The status carries the name that the parameter robot_name holds."""
@@ -104,7 +104,7 @@ def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     expect(said == tuned_name, f"With robot_name {tuned_name!r} the status says {said!r}.")
 
 
-@check(points=2, depends=NEEDS, doc=contract.BATTERY)
+@check(points=2, holds=("battery-topic", "percent", "newest"), depends=NEEDS, doc=contract.BATTERY)
 @hint("percentage goes from 0.0 to 1.0; 0.855 is 86 percent.")
 @hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would cut.")
 def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
@@ -120,7 +120,7 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
         )
 
 
-@check(points=1, depends=NEEDS, doc=contract.BATTERY)
+@check(points=1, holds="percent-unknown", depends=NEEDS, doc=contract.BATTERY)
 @hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
@@ -132,7 +132,7 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(said == UNKNOWN, f"At percentage {percentage:.2f} battery_level is {said}, instead of {UNKNOWN}.")
 
 
-@check(points=1, depends=NEEDS, doc=contract.BATTERY)
+@check(points=1, holds="charging", depends=NEEDS, doc=contract.BATTERY)
 @hint("Compare power_supply_status with BatteryState.POWER_SUPPLY_STATUS_CHARGING.")
 def test_status_charging(reporter: Reporter) -> None:
     """is_charging follows the battery's power_supply_status."""
@@ -142,7 +142,7 @@ def test_status_charging(reporter: Reporter) -> None:
         expect(said is charging, f"is_charging is {said} while the battery is {'' if charging else 'dis'}charging.")
 
 
-@check(points=1, depends=NEEDS)
+@check(points=1, holds=("joint-topic", "newest"), depends=NEEDS)
 @hint("msg.joint_positions = list(self.joints.position), when there are joints.")
 def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
     """joint_positions are the newest joint state's positions, as many as there are."""

@@ -20,28 +20,64 @@ TABLES = (
 )
 
 
-@check(points=1, doc=contract.DEFINE)
+@check(
+    points=1,
+    holds=(
+        "names-and-order",
+        "battery-unknown",
+        "status-header",
+        "status-name",
+        "status-level",
+        "status-charging",
+        "status-joints",
+    ),
+    doc=contract.DEFINE,
+)
 @hint(*TABLES)
 def test_robot_status(workspace: Workspace) -> None:
     """msg/RobotStatus.msg is as the table says."""
     expect_like(workspace, contract.ROBOT_STATUS, *ALL)
 
 
-@check(points=1, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    holds=(
+        "names-and-order",
+        "metres-per-percent",
+        "trip-legs",
+        "trip-reserve",
+        "trip-possible-field",
+        "trip-at-end",
+        "trip-reason-field",
+    ),
+    doc=contract.LANGUAGE,
+)
 @hint(*TABLES)
 def test_check_trip(workspace: Workspace) -> None:
     """srv/CheckTrip.srv is as the table says."""
     expect_like(workspace, contract.CHECK_TRIP, *ALL)
 
 
-@check(points=1, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    holds=(
+        "names-and-order",
+        "goal-constants",
+        "goal-distance",
+        "goal-speed",
+        "result-driven",
+        "result-reason",
+        "feedback-fields",
+    ),
+    doc=contract.LANGUAGE,
+)
 @hint(*TABLES)
 def test_drive_distance(workspace: Workspace) -> None:
     """action/DriveDistance.action is as the table says."""
     expect_like(workspace, contract.DRIVE_DISTANCE, *ALL)
 
 
-@check(points=1, doc=contract.DEFINE)
+@check(points=1, holds="interfaces-manifest", doc=contract.DEFINE)
 @hint("Read the first error above; `colcon build` in a terminal shows the same.")
 @hint("CMakeLists.txt names each file in rosidl_generate_interfaces; package.xml says ament_cmake in <export>.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:

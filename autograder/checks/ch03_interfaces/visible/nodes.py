@@ -12,7 +12,7 @@ from autograder.checks.ch03_interfaces.support.reporter import Reporter
 BUILT = ("robot_status", "check_trip", "drive_distance", "builds")
 
 
-@check(points=1, group="status", depends=BUILT, doc=contract.BATTERY)
+@check(points=1, holds=("status-topic", "unknown", "percent"), group="status", depends=BUILT, doc=contract.BATTERY)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS), and a timer that calls publish_status.")
 @hint("A stamp is a message: self.get_clock().now().to_msg(). A level is an int: math.floor gives one.")
 def test_status(reporter: Reporter) -> None:
@@ -26,7 +26,7 @@ def test_status(reporter: Reporter) -> None:
     expect(level == 40, f"At percentage 0.4 battery_level is {level}.")
 
 
-@check(points=1, group="status", depends=("status",), doc=contract.BATTERY)
+@check(points=1, holds="percent", group="status", depends=("status",), doc=contract.BATTERY)
 @hint("int() cuts off. math.floor(percent + 0.5) goes to the nearest, and halves go up.")
 def test_rounding(reporter: Reporter) -> None:
     """At percentage 0.278 battery_level is 28, not 27."""
@@ -35,7 +35,7 @@ def test_rounding(reporter: Reporter) -> None:
     expect(level == 28, f"At percentage 0.278 battery_level is {level}.")
 
 
-@check(points=1, group="service", depends=BUILT, doc=contract.SERVICE)
+@check(points=1, holds=("trip-rule", "trip-enough"), group="service", depends=BUILT, doc=contract.SERVICE)
 @hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
@@ -48,7 +48,7 @@ def test_trip(reporter: Reporter) -> None:
         )
 
 
-@check(points=1, group="service", depends=("trip",), doc=contract.SERVICE)
+@check(points=1, holds="trip-unknown", group="service", depends=("trip",), doc=contract.SERVICE)
 @hint("A leg is a distance: at least 0, and finite. Look at the legs before you add them up.")
 def test_negative_leg(reporter: Reporter) -> None:
     """With a leg of -1 m no trip is possible, and battery_at_end is -1."""
@@ -59,7 +59,7 @@ def test_negative_leg(reporter: Reporter) -> None:
     expect(left == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {left}, instead of {contract.UNKNOWN}.")
 
 
-@check(points=1, group="action", depends=BUILT, doc=contract.ACTION)
+@check(points=1, holds=("drives", "arrives"), group="action", depends=BUILT, doc=contract.ACTION)
 @hint("goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.")
 @hint("Without a MultiThreadedExecutor, execute never hears of the odometry.")
 def test_drive(driver: Driver) -> None:
@@ -73,7 +73,7 @@ def test_drive(driver: Driver) -> None:
     expect(stopped(commands), "After the goal had ended, the last command was no stop.")
 
 
-@check(points=1, group="action", depends=("drive",), doc=contract.ACTION)
+@check(points=1, holds="cancels", group="action", depends=("drive",), doc=contract.ACTION)
 @hint("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.")
 def test_cancel(driver: Driver) -> None:
     """A cancel stops the robot, and the goal ends CANCELED."""

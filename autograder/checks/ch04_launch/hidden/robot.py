@@ -15,7 +15,7 @@ check = group("robot")
 TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
 
-@check(points=2, doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("robot-name", "speed", "report", "described"), doc=contract.SUBSTITUTIONS)
 @hint("ros2 launch -s my_robot_bringup robot.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
 def test_arguments(launches: Launches) -> None:
@@ -25,7 +25,7 @@ def test_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, depends=("arguments",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds="report", depends=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
 def test_choices(workspace: Workspace, launches: Launches) -> None:
@@ -38,7 +38,7 @@ def test_choices(workspace: Workspace, launches: Launches) -> None:
         expect(ended and harness.status != 0, "With report:=maybe, the launch goes on as if nothing were wrong.")
 
 
-@check(points=2, doc=contract.LAUNCH)
+@check(points=2, holds=("driver", "reporter"), doc=contract.LAUNCH)
 @hint("Run the launch file in the notebook and read its first lines that say ERROR.")
 @hint("Node(package='my_robot_bringup', executable='driver', name='driver', ...), and the same for the reporter.")
 def test_starts(launches: Launches) -> None:
@@ -46,7 +46,7 @@ def test_starts(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
 
 
-@check(points=1, depends=("starts",))
+@check(points=1, holds=("argument-wins", "robot-name", "speed"), depends=("starts",))
 @hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
 def test_defaults(launches: Launches) -> None:
     """Without arguments, the robot is called robot1 and drives at 0.2 m/s, whatever the parameters file says."""
@@ -54,7 +54,7 @@ def test_defaults(launches: Launches) -> None:
     launch_probe.expect_parameters(launches.robot(), REPORTER, {"robot_name": contract.ROBOT_NAME})
 
 
-@check(points=2, depends=("starts",), doc=contract.LARGE)
+@check(points=2, holds=("file", "driver", "reporter"), depends=("starts",), doc=contract.LARGE)
 @hint("config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').")
 @hint("parameters=[config, {...}] is a list: first the file, then what has to win over it.")
 def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
@@ -63,7 +63,7 @@ def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(launches.robot(), REPORTER, {"report_period": inputs.file["report_period"]})
 
 
-@check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("speed", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
 def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
@@ -72,7 +72,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, DRIVER, {"speed": inputs.speed})
 
 
-@check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("robot-name", "reporter"), depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
 def test_name(launches: Launches, inputs: Inputs) -> None:
     """The argument robot_name reaches the reporter, even if it looks like a number."""
@@ -85,7 +85,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, REPORTER, {"robot_name": inputs.number_name})
 
 
-@check(points=2, depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("report", "reporter"), depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 @hint("UnlessCondition is the other way round.")
 def test_quiet(launches: Launches, inputs: Inputs) -> None:
@@ -98,7 +98,7 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
     )
 
 
-@check(points=1, depends=("speed",))
+@check(points=1, holds="speed", depends=("speed",))
 @hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
@@ -111,7 +111,7 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, DRIVER, {"speed": float(inputs.whole_speed)})
 
 
-@check(points=2, depends=("starts",))
+@check(points=2, holds="ctrl-c", depends=("starts",))
 @hint("What a launch file starts with Node(...) ends with the launch.")
 @hint("A program that the launch file starts by other means, such as subprocess, is nobody's child in the end.")
 def test_clean_stop(launches: Launches) -> None:

@@ -19,7 +19,7 @@ WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=aft
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
 
-@check(points=3, doc=contract.EVENTS)
+@check(points=3, holds=("self-test", "safe-driver"), doc=contract.EVENTS)
 @hint("The driver is in no list but the one that after_self_test returns.", WAITS)
 def test_order(launches: Launches, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
@@ -35,7 +35,7 @@ def test_order(launches: Launches, inputs: Inputs) -> None:
     expect("self_test" in launch_probe.ended(before), "The driver was started before the self-test had ended.")
 
 
-@check(points=2, depends=("order",), doc=contract.EVENTS)
+@check(points=2, holds="safe-reporter", depends=("order",), doc=contract.EVENTS)
 @hint("The reporter waits for nobody: it stands in the LaunchDescription itself.")
 @hint("What stands in the list is started at once, one thing after the other, without waiting.")
 def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
@@ -46,7 +46,7 @@ def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 
 
-@check(points=3, doc=contract.EVENTS)
+@check(points=3, holds="self-test", doc=contract.EVENTS)
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 @hint("return [Shutdown(reason='...')] where it is not 0.")
 def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
@@ -63,7 +63,7 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
-@check(points=1, depends=("order",))
+@check(points=1, holds="battery", depends=("order",))
 @hint("80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.")
 @hint("ParameterValue(LaunchConfiguration('battery'), value_type=float)")
 def test_whole_battery(launches: Launches) -> None:
@@ -75,21 +75,21 @@ def test_whole_battery(launches: Launches) -> None:
     )
 
 
-@check(points=2, depends=("reporter_first",), doc=contract.LAUNCH)
+@check(points=2, holds="safe-reporter", depends=("reporter_first",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.safe(battery=inputs.enough))
 
 
-@check(points=2, depends=("order",), doc=contract.EVENTS)
+@check(points=2, holds="safe-driver", depends=("order",), doc=contract.EVENTS)
 @hint("The handler's target_action is the very Node that is started.", FOLLOWS)
 def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
     _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
 
 
-@check(points=1, depends=("whole_battery",), doc=contract.EVENTS)
+@check(points=1, holds="safe-driver", depends=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
 def test_driver_end(launches: Launches) -> None:
     """When the driver ends by itself, with exit status 0, everything ends too."""

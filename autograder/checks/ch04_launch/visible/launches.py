@@ -47,7 +47,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         )
 
 
-@check(points=1, group="robot", doc=contract.SUBSTITUTIONS)
+@check(points=1, holds=("robot-name", "speed", "report"), group="robot", doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
 @hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
@@ -57,7 +57,13 @@ def test_arguments(workspace: Workspace) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=1, group="robot", depends=("arguments",), doc=contract.LAUNCH)
+@check(
+    points=1,
+    holds=("driver", "reporter", "speed", "robot-name", "ctrl-c"),
+    group="robot",
+    depends=("arguments",),
+    doc=contract.LAUNCH,
+)
 @hint("Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
 @hint("parameters=[config, {'speed': speed}]: what stands later wins.")
 def test_robot(launches: Launches) -> None:
@@ -68,14 +74,14 @@ def test_robot(launches: Launches) -> None:
     launch_probe.expect_clean_stop(launches.robot)
 
 
-@check(points=1, group="robot", depends=("robot",), doc=contract.SUBSTITUTIONS)
+@check(points=1, holds="report", group="robot", depends=("robot",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 def test_quiet(launches: Launches) -> None:
     """With report:=false, robot.launch.py starts the driver alone."""
     launch_probe.expect_nodes(launches.quiet, [DRIVER])
 
 
-@check(points=1, group="fleet", doc=contract.LARGE)
+@check(points=1, holds=("included", "fleet-status"), group="fleet", doc=contract.LARGE)
 @hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
 @hint("SetRemap must stand before the include: it holds for what follows it in its group.")
 def test_two_robots(launches: Launches) -> None:
@@ -89,7 +95,7 @@ def test_two_robots(launches: Launches) -> None:
     )
 
 
-@check(points=1, group="safe_start", doc=contract.EVENTS)
+@check(points=1, holds=("self-test", "battery"), group="safe_start", doc=contract.EVENTS)
 @hint("The driver is in no list but the one that after_self_test returns.")
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 def test_safe_start(launches: Launches) -> None:
@@ -101,7 +107,7 @@ def test_safe_start(launches: Launches) -> None:
     expect(ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
-@check(points=1, group="safe_start", depends=("safe_start",), doc=contract.LAUNCH)
+@check(points=1, holds="safe-reporter", group="safe_start", depends=("safe_start",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawn(launches: Launches) -> None:
     """A reporter that dies is started again."""

@@ -17,7 +17,7 @@ SPEED = 0.3  # m/s, the default
 ROUNDED = 0.051  # a value in a sentence may be rounded to one decimal
 
 
-@check(points=3, depends=("names",), doc=contract.PARAMETERS)
+@check(points=3, holds=("contradiction", "refused", "keep-value"), depends=("names",), doc=contract.PARAMETERS)
 @hint("add_on_set_parameters_callback(self.validate) in __init__; it returns SetParametersResult(successful=...).")
 @hint("A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).")
 def test_contradiction(robot: Robot, draw: random.Random) -> None:
@@ -36,7 +36,7 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It refused {_told(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=1, depends=("contradiction",))
+@check(points=1, holds=("reason", "refused"), depends=("contradiction",))
 @hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
 def test_reason(robot: Robot, draw: random.Random) -> None:
     """Its reason names both parameters and their values."""
@@ -50,7 +50,7 @@ def test_reason(robot: Robot, draw: random.Random) -> None:
     )
 
 
-@check(points=2, depends=("contradiction",))
+@check(points=2, holds="validate", depends=("contradiction",))
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
@@ -64,7 +64,7 @@ def test_together(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It took {_told(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=2, depends=("contradiction",), doc=contract.PARAMETERS)
+@check(points=2, holds="no-effect", depends=("contradiction",), doc=contract.PARAMETERS)
 @hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
 @hint("What is to be done once a request was accepted stands in apply.")
 def test_no_side_effects(fresh_robot: Robot) -> None:
@@ -81,7 +81,7 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
     expect_rate(robot.command_rate(), before, "After a refused request for 25 Hz")
 
 
-@check(points=2, depends=("names",), doc=contract.IN_A_CLASS)
+@check(points=2, holds="at-once", depends=("names",), doc=contract.IN_A_CLASS)
 @hint("A value that was copied to an attribute in __init__ stays what it was.")
 @hint("speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.")
 def test_speed_change(robot: Robot, draw: random.Random) -> None:
@@ -92,7 +92,7 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
     expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
 
 
-@check(points=2, depends=("together",))
+@check(points=2, holds="at-once", depends=("together",))
 @hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide at once where it slows down and where it stops."""
@@ -104,7 +104,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
         expect_speed(robot.speed_at(distance), speed, situation)
 
 
-@check(points=1, depends=("names",))
+@check(points=1, holds="at-once", depends=("names",))
 @hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides at once whether it stands still."""
@@ -114,7 +114,7 @@ def test_threshold_change(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
 
 
-@check(points=3, depends=("names",))
+@check(points=3, holds="apply-rate", depends=("names",))
 @hint("add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...")
 @hint("A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.")
 def test_rate_change(robot: Robot, draw: random.Random) -> None:
@@ -124,7 +124,7 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
         expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
 
 
-@check(points=1, depends=("rate_change", "speed_change"))
+@check(points=1, holds=("apply-rate", "lets-pass"), depends=("rate_change", "speed_change"))
 @hint("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.")
 def test_undisturbed(robot: Robot) -> None:
     """Its commands keep coming while somebody turns at another parameter all the time."""
@@ -139,7 +139,7 @@ def test_undisturbed(robot: Robot) -> None:
     expect_rate(rate, 10.0, "While max_linear_velocity was changed all the time")
 
 
-@check(points=1, depends=("names",))
+@check(points=1, holds="lets-pass", depends=("names",))
 @hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
 def test_passes(robot: Robot) -> None:
     """Requests that have nothing to do with the distances pass."""

@@ -21,7 +21,18 @@ SPELT = {
 }
 
 
-@check(points=1, doc=contract.IN_A_CLASS)
+@check(
+    points=1,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    doc=contract.IN_A_CLASS,
+)
 @hint("Read the sentence above, then the last lines of the traceback below it.")
 @hint("python -m my_robot_package.nodes.configured_node, run in ws/src/my_robot_package, shows the same.")
 def test_starts(robot: Robot) -> None:
@@ -30,7 +41,19 @@ def test_starts(robot: Robot) -> None:
     expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
 
 
-@check(points=2, depends=("starts",), doc=contract.PARAMETERS)
+@check(
+    points=2,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("starts",),
+    doc=contract.PARAMETERS,
+)
 @hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
 @hint("Compare the names letter by letter with ros2 param list /configured_node.")
 def test_names(robot: Robot) -> None:
@@ -40,7 +63,19 @@ def test_names(robot: Robot) -> None:
     expect(not missing, missing_sentence(WANTED, found), fraction=_share(len(missing)))
 
 
-@check(points=2, depends=("names",), doc=contract.PARAMETERS)
+@check(
+    points=2,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("names",),
+    doc=contract.PARAMETERS,
+)
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
 @hint("A default of None leaves the type open.")
 def test_types(robot: Robot) -> None:
@@ -53,7 +88,18 @@ def test_types(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, depends=("types",))
+@check(
+    points=1,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("types",),
+)
 @hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
     """Started without any values, it has the defaults of the table."""
@@ -61,7 +107,7 @@ def test_defaults(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, depends=("names",))
+@check(points=1, holds="described", depends=("names",))
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
@@ -71,7 +117,19 @@ def test_descriptions(robot: Robot) -> None:
     expect(not poor, f"The description is missing, or names no unit: {', '.join(named)}.", fraction=_share(len(poor)))
 
 
-@check(points=3, depends=("names",), doc=contract.PARAMETERS)
+@check(
+    points=3,
+    holds=(
+        "ranges",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("names",),
+    doc=contract.PARAMETERS,
+)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.")
 def test_ranges(robot: Robot, draw: random.Random) -> None:
@@ -90,7 +148,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
 
-@check(points=1, depends=("names",))
+@check(points=1, holds="robot_name", depends=("names",))
 @hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
     """The robot's name is fixed once it has started."""
@@ -102,7 +160,18 @@ def test_read_only(robot: Robot) -> None:
     expect(fixed == ["robot_name"], f"Its descriptors say read-only of: {', '.join(fixed) or 'nothing'}.")
 
 
-@check(points=1, depends=("types",))
+@check(
+    points=1,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("types",),
+)
 @hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
@@ -119,7 +188,7 @@ def test_typed(robot: Robot) -> None:
     expect(not taken, f"It took {', '.join(taken)}.")
 
 
-@check(points=1, depends=("names",))
+@check(points=1, holds="no-others", depends=("names",))
 @hint("Every declared name has work to do: what is not in the table is not declared.")
 @hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:

@@ -11,7 +11,7 @@ check = group("changes")
 PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 
 
-@check(points=1, depends=("table",), doc=contract.PARAMETERS)
+@check(points=1, holds=("contradiction", "reason"), depends=("table",), doc=contract.PARAMETERS)
 @hint("proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.")
 @hint("proposed.get('slow_distance', self.value('slow_distance')) is what it will be.")
 def test_contradiction(robot: Robot) -> None:
@@ -22,7 +22,7 @@ def test_contradiction(robot: Robot) -> None:
     expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
 
 
-@check(points=1, depends=("contradiction",))
+@check(points=1, holds=("keep-value", "at-once"), depends=("contradiction",))
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 @hint("speed, which is given, asks for both distances at each command.")
 def test_together(robot: Robot) -> None:
@@ -33,7 +33,7 @@ def test_together(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.1), 0.3, "With a slow distance of 2.0 m and a wall 2.1 m ahead")
 
 
-@check(points=1, depends=("table",))
+@check(points=1, holds="apply-rate", depends=("table",))
 @hint("In apply, look for control_frequency among the names of what has changed.")
 @hint("self.timer.timer_period_ns = round(1e9 / frequency)")
 def test_rate(robot: Robot) -> None:

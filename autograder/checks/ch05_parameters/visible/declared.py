@@ -11,7 +11,18 @@ from autograder.probes.parameters import TYPES, Value, differences, missing_sent
 check = group("declaration")
 
 
-@check(points=1, doc=contract.IN_A_CLASS)
+@check(
+    points=1,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    doc=contract.IN_A_CLASS,
+)
 @hint("Read the sentence above, then the last lines of the traceback below it.")
 @hint("Both files have to be saved: run the cells of exercise 1 and of exercise 2.")
 def test_starts(robot: Robot) -> None:
@@ -20,7 +31,19 @@ def test_starts(robot: Robot) -> None:
     expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
 
 
-@check(points=1, depends=("starts",), doc=contract.PARAMETERS)
+@check(
+    points=1,
+    holds=(
+        "robot_name",
+        "max_linear_velocity",
+        "safety_distance",
+        "slow_distance",
+        "control_frequency",
+        "battery_threshold",
+    ),
+    depends=("starts",),
+    doc=contract.PARAMETERS,
+)
 @hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
 def test_table(robot: Robot) -> None:
@@ -35,7 +58,7 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(points=1, depends=("table",), doc=contract.PARAMETERS)
+@check(points=1, holds=("ranges", "no-others"), depends=("table",), doc=contract.PARAMETERS)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:

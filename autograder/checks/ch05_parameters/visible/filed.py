@@ -12,7 +12,7 @@ from autograder.probes.parameters import differences, read_file
 check = group("files")
 
 
-@check(points=1, depends=("starts",), doc=contract.ARGUMENTS)
+@check(points=1, holds="types", depends=("starts",), doc=contract.ARGUMENTS)
 @hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(workspace: Workspace) -> None:
@@ -20,7 +20,20 @@ def test_file(workspace: Workspace) -> None:
     expect(bool(read_file(fleet_path(workspace))), "It names no node.")
 
 
-@check(points=1, depends=("file", "table"), doc=contract.ARGUMENTS)
+@check(
+    points=1,
+    holds=(
+        "fleet-robot-name",
+        "fleet-max-linear-velocity",
+        "fleet-safety-distance",
+        "fleet-slow-distance",
+        "fleet-control-frequency",
+        "fleet-battery-threshold",
+        "empty-field",
+    ),
+    depends=("file", "table"),
+    doc=contract.ARGUMENTS,
+)
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_scout(workspace: Workspace) -> None:

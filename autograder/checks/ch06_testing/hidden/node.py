@@ -12,14 +12,14 @@ check = group("node")
 RIGHT = ("guard_right",)
 
 
-@check(points=2, doc=contract.PYTEST)
+@check(points=2, holds="guard-pass", doc=contract.PYTEST)
 @hint("Run them: colcon test, or python -m pytest test/test_guard.py in the package's folder.", contract.SPIN)
 def test_guard_pass(examination: Examination) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
     expect_passed(GUARD, examination.trial.get(GUARD))
 
 
-@check(points=1, depends=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, holds=("guard-pass", "over-topics"), depends=("guard_pass",), doc=contract.PYTEST)
 @hint("Ask over topics, as another robot would; attributes of the node may have other names tomorrow.")
 @hint("Each test starts its own guard and leaves nothing behind.")
 def test_guard_right(examination: Examination) -> None:
@@ -27,7 +27,7 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, SECOND, BACKWARDS)
 
 
-@check(points=2, depends=RIGHT, doc=contract.DOMAIN)
+@check(points=2, holds="own-domain", depends=RIGHT, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
@@ -38,7 +38,7 @@ def test_alone(examination: Examination) -> None:
     )
 
 
-@check(points=1, depends=RIGHT, doc=contract.FIXTURES)
+@check(points=1, holds="guard-pass", depends=RIGHT, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
@@ -50,6 +50,7 @@ def test_nothing_left(examination: Examination) -> None:
 LINES = (
     Line(
         id="name",
+        holds=("name", "node-lines"),
         title="A test fails when the node has another name.",
         promise="the node is called speed_guard.",
         points=1,
@@ -61,6 +62,7 @@ LINES = (
     ),
     Line(
         id="first_distance",
+        holds=("first-distance", "node-lines"),
         title="A test fails when the robot drives before the first distance has come.",
         promise="a distance is not known before the first one has come.",
         points=1,
@@ -71,6 +73,7 @@ LINES = (
     ),
     Line(
         id="newest",
+        holds=("newest", "node-lines"),
         title="A test fails when an earlier distance decides.",
         promise="linear.x becomes the safe_speed for the newest distance.",
         points=2,
@@ -81,6 +84,7 @@ LINES = (
     ),
     Line(
         id="turn",
+        holds=("turn", "node-lines"),
         title="A test fails when a turn is lost on the way.",
         promise="all fields but linear.x stay as they are.",
         points=1,
@@ -92,6 +96,7 @@ LINES = (
     ),
     Line(
         id="one_answer",
+        holds=("one-answer", "node-lines"),
         title="A test fails when a command is answered more than once.",
         promise="each command is answered with exactly one command.",
         points=1,
@@ -102,6 +107,7 @@ LINES = (
     ),
     Line(
         id="parameters",
+        holds=("parameters", "node-lines"),
         title="A test fails when the parameters stop_distance and slow_distance have no effect.",
         promise="stop_distance and slow_distance are parameters of the node.",
         points=2,
@@ -113,6 +119,7 @@ LINES = (
     ),
     Line(
         id="sensor_qos",
+        holds="node-lines",
         title="A test fails when the node cannot hear a sensor that publishes best-effort.",
         promise="distance is subscribed to with qos_profile_sensor_data.",
         points=1,
@@ -124,6 +131,7 @@ LINES = (
     ),
     Line(
         id="stale",
+        holds=("stale", "node-lines"),
         title="A test fails when an old distance is still believed.",
         promise="a distance that came more than timeout seconds ago is not known.",
         points=2,
@@ -134,6 +142,7 @@ LINES = (
     ),
     Line(
         id="watchdog",
+        holds=("watchdog", "node-lines"),
         title="A test fails when the motors are not stopped, just once, after the planner has fallen silent.",
         promise="after timeout seconds without a command, one command of zeros is published, "
         "and none before the first.",

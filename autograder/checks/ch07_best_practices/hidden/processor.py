@@ -16,7 +16,7 @@ check = group("processor")
 SECONDS = 20.0
 
 
-@check(points=1)
+@check(points=1, holds=("scan", "scan-filtered", "mean-topic", "processor-name"))
 @hint("setup.py must name sensor_processor = my_robot_package.nodes.sensor_processor:main.")
 @hint("create_publisher twice and create_subscription once, in __init__; the names are relative.")
 def test_endpoints(processor: Processor) -> None:
@@ -27,7 +27,7 @@ def test_endpoints(processor: Processor) -> None:
         expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
 
 
-@check(points=2, depends=("endpoints",), doc=QOS)
+@check(points=2, holds=("scan", "scan-filtered"), depends=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
     """It asks for scans as a lidar offers them, and offers its own likewise: best effort."""
@@ -39,7 +39,7 @@ def test_sensor_qos(processor: Processor) -> None:
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
 
 
-@check(points=2, depends=("endpoints",))
+@check(points=2, holds=("scan-filtered", "other-fields"), depends=("endpoints",))
 @hint("msg.ranges = self.processor.process(...).", "Hand on the message's own range_min and range_max.")
 def test_filtered(processor: Processor, draw: random.Random) -> None:
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
@@ -52,7 +52,7 @@ def test_filtered(processor: Processor, draw: random.Random) -> None:
     expect(right, f"{sent} (0.05 to {far + 1.0} m) came out as {[round(r, 3) for r in got]}.")
 
 
-@check(points=1, depends=("filtered",))
+@check(points=1, holds="all-else", depends=("filtered",))
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, limits and intensities come out as they went in."""
@@ -68,7 +68,7 @@ def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
         expect(alike, f"{field} went in as {wanted} and came out as {got}.")
 
 
-@check(points=2, depends=("filtered",))
+@check(points=2, holds=("mean-of-ten", "mean-topic"), depends=("filtered",))
 @hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
@@ -81,7 +81,7 @@ def test_mean_of_ten(fresh_processor: Processor, draw: random.Random) -> None:
     expect(wrong is None, f"After {i + 1} scans it said {said[i]:.3f} m instead of {wanted[i]:.3f} m.")
 
 
-@check(points=1, depends=("filtered",))
+@check(points=1, holds="blind", depends=("filtered",))
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
 def test_blind_scan(processor: Processor) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
@@ -90,7 +90,7 @@ def test_blind_scan(processor: Processor) -> None:
     expect(not means, f"A scan without any distance made it say {means} m.")
 
 
-@check(points=2, depends=("blind_scan",), doc=LOGGING)
+@check(points=2, holds="warns", depends=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
 def test_warns_now_and_then(processor: Processor) -> None:
     """While the lidar sees nothing, it warns, at most once a second."""
@@ -101,7 +101,7 @@ def test_warns_now_and_then(processor: Processor) -> None:
     expect(warnings <= SECONDS + 2, f"Blind for {SECONDS:.0f} s, it warned {warnings} times.", fraction=0.5)
 
 
-@check(points=1, depends=("filtered",))
+@check(points=1, holds="any-length", depends=("filtered",))
 @hint("Loop over what is there.", "Other lidars have other numbers of beams.")
 def test_any_lidar(processor: Processor) -> None:
     """It takes scans of any length, an empty one too."""

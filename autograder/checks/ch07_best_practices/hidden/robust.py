@@ -21,7 +21,7 @@ DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
-@check(points=1)
+@check(points=1, holds=("once-a-second", "ok"))
 @hint("create_timer(PERIOD, self.timer_callback) in __init__.", "Publish once in each call of timer_callback.")
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node says once a second on status how it goes; with a sensor that never fails, ok."""
@@ -33,7 +33,7 @@ def test_once_a_second(workspace: Workspace) -> None:
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 
-@check(points=2, depends=("once_a_second",), doc=QOS)
+@check(points=2, holds="once-a-second", depends=("once_a_second",), doc=QOS)
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.", "STATUS_QOS, not 10.")
 def test_late_joiners(workspace: Workspace) -> None:
     """Who joins late can have the last status at once: it is offered transient local."""
@@ -43,7 +43,7 @@ def test_late_joiners(workspace: Workspace) -> None:
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
 
 
-@check(points=3, depends=("once_a_second",))
+@check(points=3, holds=("failed", "ok", "generator", "read-sensor"), depends=("once_a_second",))
 @hint(RULE_STATUS, "A success sets the count back to 0.")
 def test_counts(workspace: Workspace, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
@@ -57,7 +57,7 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     expect(said == wanted, f"{sentence} instead of {wanted[min(wrong, 39)]!r}.", fraction=0.0)
 
 
-@check(points=1, depends=("once_a_second",), doc=RANDOM)
+@check(points=1, holds=("seed", "generator"), depends=("once_a_second",), doc=RANDOM)
 @hint("random.Random() without a seed takes one from the operating system.", "seed 0: random.Random().")
 def test_no_seed(workspace: Workspace) -> None:
     """Without a seed, two runs differ."""
@@ -68,7 +68,7 @@ def test_no_seed(workspace: Workspace) -> None:
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
 
 
-@check(points=2, depends=("once_a_second",))
+@check(points=2, holds=("unstable", "max-errors"), depends=("once_a_second",))
 @hint(RULE_STATUS, "More than max_errors, not as many as.")
 def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
@@ -79,7 +79,7 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     expect(said == wanted, f"With max_errors {most} and a dead sensor it said {said}, instead of {wanted}.")
 
 
-@check(points=1, depends=("once_a_second",), doc=LOGGING)
+@check(points=1, holds="error-log", depends=("once_a_second",), doc=LOGGING)
 @hint("error(..., throttle_duration_sec=5.0).", "A dead sensor fails every second; one line in five is enough.")
 def test_errors_throttled(workspace: Workspace) -> None:
     """It logs failures as errors, at most one line in 5 s."""
@@ -90,7 +90,7 @@ def test_errors_throttled(workspace: Workspace) -> None:
     expect(errors <= 8, f"Its sensor failed for 30 s, and it logged {errors} errors.", fraction=0.5)
 
 
-@check(points=1, depends=("once_a_second",), doc=LOGGING)
+@check(points=1, holds="fatal-log", depends=("once_a_second",), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
 def test_fatal_once(workspace: Workspace) -> None:
     """That it became unstable is logged as fatal, once."""
@@ -103,7 +103,7 @@ def test_fatal_once(workspace: Workspace) -> None:
     expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
 
 
-@check(points=1, depends=("counts",))
+@check(points=1, holds="recovery-log", depends=("counts",))
 @hint("Log before the count is set back to 0.", "Only if there were errors: if self.error_count:")
 def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     """Each recovery is logged with the number of errors before it."""
@@ -118,7 +118,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     expect(logged == wanted, f"It recovered after {counts} errors, and logged {logged or 'nothing of it'}.")
 
 
-@check(points=2, depends=("once_a_second",), doc=ERRORS)
+@check(points=2, holds="catch", depends=("once_a_second",), doc=ERRORS)
 @hint("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen.")
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
@@ -140,7 +140,7 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
     )
 
 
-@check(points=1, depends=("once_a_second",))
+@check(points=1, holds=("failure-probability", "seed", "max-errors"), depends=("once_a_second",))
 @hint("The table of the exercise names type, default and range of each.")
 @hint("declare_parameter(name, default, descriptor)")
 def test_declared(workspace: Workspace) -> None:
@@ -158,7 +158,7 @@ def test_declared(workspace: Workspace) -> None:
         expect(found == [limits], f"{name} is declared with {found or 'no range'}, and should have {limits}.")
 
 
-@check(points=1, depends=("once_a_second",))
+@check(points=1, holds=("failure-probability", "max-errors"), depends=("once_a_second",))
 @hint("FloatingPointRange(from_value=0.0, to_value=1.0) in the descriptor.", "IntegerRange for max_errors.")
 def test_ranges(workspace: Workspace) -> None:
     """It refuses to start with a probability above 1, or with max_errors below 1."""

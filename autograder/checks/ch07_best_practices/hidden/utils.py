@@ -22,7 +22,7 @@ check = group("utils")
 LOW, HIGH = 0.2, 6.0
 
 
-@check(points=1, doc=REP_117)
+@check(points=1, holds=("mask", "places"), doc=REP_117)
 @hint(RULE_PLACE, "A list comprehension with a conditional expression.")
 def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
@@ -35,7 +35,7 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
 
 
-@check(points=2, depends=("keeps_places",), doc=REP_117)
+@check(points=2, holds=("phantoms", "mask"), depends=("keeps_places",), doc=REP_117)
 @hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
@@ -45,7 +45,7 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     expect(not wrong, f"{wrong[0] if wrong else ''} is outside {LOW} to {HIGH} m, and was not replaced by nan.")
 
 
-@check(points=1, depends=("keeps_places",))
+@check(points=1, holds="mask", depends=("keeps_places",))
 @hint(RULE_MASK, "Both limits belong to the range: <=.")
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
@@ -53,7 +53,7 @@ def test_limits_count(workspace: Workspace) -> None:
     expect(same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
-@check(points=2, depends=("keeps_places",), doc=REP_117)
+@check(points=2, holds=("infinities", "mask"), depends=("keeps_places",), doc=REP_117)
 @hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
@@ -61,7 +61,7 @@ def test_infinities_stay(workspace: Workspace) -> None:
     expect(same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
-@check(points=2, depends=("keeps_places",))
+@check(points=2, holds="mask", depends=("keeps_places",))
 @hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
@@ -73,7 +73,7 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     expect(same(masked, [near, far, nan, nan]), f"{shown} returned {masked}.")
 
 
-@check(points=1, depends=("keeps_places",))
+@check(points=1, holds="leave-lists", depends=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
     """mask_invalid leaves the list that it was given as it was."""
@@ -83,7 +83,7 @@ def test_input_untouched(workspace: Workspace) -> None:
     expect(same(list(outcome.arguments[:1]), [readings]), f"The caller's {readings} became {outcome.arguments[0]}.")
 
 
-@check(points=2)
+@check(points=2, holds="mean")
 @hint(RULE_MEAN, "sum(...) / len(...) of the readings that are finite.")
 def test_mean(workspace: Workspace, draw: random.Random) -> None:
     """mean_distance is the mean of the finite readings."""
@@ -96,7 +96,7 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
 
 
-@check(points=1, depends=("mean",))
+@check(points=1, holds="mean", depends=("mean",))
 @hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
 def test_no_mean(workspace: Workspace) -> None:
     """Without a finite reading, mean_distance is None."""
@@ -106,7 +106,7 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
-@check(points=2, depends=("keeps_places", "mean"), doc=DEQUE)
+@check(points=2, holds=("history", "process"), depends=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
@@ -119,7 +119,7 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     )
 
 
-@check(points=1, depends=("bounded_history", "no_mean"))
+@check(points=1, holds=("process", "average"), depends=("bounded_history", "no_mean"))
 @hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
 def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
@@ -131,7 +131,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
 
 
-@check(points=1, depends=("masks_phantoms", "mean", "bounded_history"))
+@check(points=1, holds="silent", depends=("masks_phantoms", "mean", "bounded_history"))
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""

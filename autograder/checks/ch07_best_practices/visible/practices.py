@@ -11,7 +11,7 @@ from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, make, same, value
 
 
-@check(points=1, group="utils", doc=contract.REP_117)
+@check(points=1, holds=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
 @hint(contract.RULE_PLACE, contract.RULE_MASK)
 def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
@@ -22,7 +22,7 @@ def test_mask_invalid(workspace: Workspace) -> None:
     expect(same(masked, [1.0, nan, inf, nan, nan, -inf]), f"{shown} returned {masked}.")
 
 
-@check(points=1, group="utils")
+@check(points=1, holds="mean", group="utils")
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
     """mean_distance takes the mean of the finite readings, and says None when there is none."""
@@ -35,7 +35,9 @@ def test_mean_distance(workspace: Workspace) -> None:
     expect(nothing is None, f"mean_distance([nan]) returned {nothing} instead of None.")
 
 
-@check(points=1, group="utils", depends=("mask_invalid", "mean_distance"), doc=contract.DEQUE)
+@check(
+    points=1, holds=("history", "average"), group="utils", depends=("mask_invalid", "mean_distance"), doc=contract.DEQUE
+)
 @hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the means remembered.")
 def test_data_processor(workspace: Workspace) -> None:
     """DataProcessor remembers the means of the newest scans, and no more than it was told to."""
@@ -45,7 +47,7 @@ def test_data_processor(workspace: Workspace) -> None:
     expect(same(average, 2.5), f"After scans of 1, 2 and 3 m, DataProcessor(2).average() is {average} instead of 2.5.")
 
 
-@check(points=1, group="processor", depends=("data_processor",), doc=contract.QOS)
+@check(points=1, holds="scan-filtered", group="processor", depends=("data_processor",), doc=contract.QOS)
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
 def test_filters_scans(processor: Processor) -> None:
@@ -57,7 +59,7 @@ def test_filters_scans(processor: Processor) -> None:
     expect(right, f"[1.0, 0.0, 2.0] went in, {ranges} came out: [1.0, nan, 2.0] was expected.")
 
 
-@check(points=1, group="robust", doc=contract.ERRORS)
+@check(points=1, holds=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
 @hint(contract.RULE_STATUS, "One call of read_sensor(self.generator, self.failure_probability) a period.")
 def test_counts_failures(workspace: Workspace) -> None:
     """robust_node says each second how its reading went, and counts failures in a row."""

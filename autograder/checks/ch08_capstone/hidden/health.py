@@ -16,7 +16,7 @@ check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 
 
-@check(points=3, depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@check(points=3, holds=("monitor", "level"), depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
 @hint("A topic that was never heard is silent, too: start with None for each.")
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 def test_health_levels(system: System) -> None:
@@ -32,7 +32,7 @@ def test_health_levels(system: System) -> None:
     _expect_report(blind.reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
 
 
-@check(points=3, depends=("health_levels",))
+@check(points=3, holds=("silent", "silent-field"), depends=("health_levels",))
 @hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
 @hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")
 def test_dead_sensor(system: System) -> None:

@@ -57,7 +57,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         yield Launched(harness, values)
 
 
-@check(points=1, depends=SHARED)
+@check(points=1, holds="launch-arguments", depends=SHARED)
 @hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch_arguments(workspace: Workspace) -> None:
@@ -77,7 +77,7 @@ def test_launch_arguments(workspace: Workspace) -> None:
     expect(bool(found.description), "The argument params_file has no description.", fraction=0.5)
 
 
-@check(points=2, depends=STARTS)
+@check(points=2, holds="launches", depends=STARTS)
 @hint(*HINTS)
 def test_launch_starts(launched: Launched) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
@@ -88,7 +88,7 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, depends=("launch_starts",))
+@check(points=2, holds="launch-arguments", depends=("launch_starts",))
 @hint(*HINTS)
 def test_launch_configures(launched: Launched) -> None:
     """What params_file and use_sim_time say reaches all three nodes."""
@@ -100,7 +100,7 @@ def test_launch_configures(launched: Launched) -> None:
         launch_probe.expect_parameters(launched.harness, name_of(node), known)
 
 
-@check(points=2, depends=("launch_starts",))
+@check(points=2, holds="launch-ctrl-c", depends=("launch_starts",))
 @hint("Each program's main goes through run(...), which ends without a traceback.")
 @hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
 def test_launch_stops(launched: Launched) -> None:

@@ -37,28 +37,28 @@ ENDS = (
 )
 
 
-@check(points=1, depends=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="processor-name", depends=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness.node, PROCESSOR)
 
 
-@check(points=1, depends=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="controller-name", depends=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness.node, CONTROLLER)
 
 
-@check(points=1, depends=(*BUILT, "health_message"), doc=contract.NODES_DOC)
+@check(points=1, holds="monitor-name", depends=(*BUILT, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
 
 
-@check(points=2, depends=("processor", "monitor"), doc=contract.QOS_DOC)
+@check(points=2, holds=("processor", "late-joiner"), depends=("processor", "monitor"), doc=contract.QOS_DOC)
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
 def test_qos(shared_system: SharedSystem) -> None:
@@ -72,7 +72,12 @@ def test_qos(shared_system: SharedSystem) -> None:
         expect(durable, f"{peer.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)
 
 
-@check(points=3, depends=("processor",), doc=contract.SCAN_DOC)
+@check(
+    points=3,
+    holds=("sector", "processor", "clearance-header", "front", "left", "right"),
+    depends=("processor",),
+    doc=contract.SCAN_DOC,
+)
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 @hint("The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.")
 def test_sectors(seeing: System, draw: random.Random) -> None:
@@ -107,7 +112,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
 
 
-@check(points=3, depends=("sectors",), doc=contract.REP_117)
+@check(points=3, holds=("readings", "no-reading", "valid-field"), depends=("sectors",), doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")
 @hint("min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.")
 def test_readings(seeing: System, draw: random.Random) -> None:
@@ -137,7 +142,7 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 
-@check(points=2, depends=("sectors", "controller"), doc=contract.NODES_DOC)
+@check(points=2, holds=("drive", "ten-hertz", "stand-or-go"), depends=("sectors", "controller"), doc=contract.NODES_DOC)
 @hint("The way is clear: linear.x is forward_speed.")
 @hint("The timer calls control ten times a second, and control publishes once each time, whatever happens.")
 def test_drives(driving: System, draw: random.Random) -> None:
@@ -150,7 +155,7 @@ def test_drives(driving: System, draw: random.Random) -> None:
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
 
 
-@check(points=3, depends=("drives",))
+@check(points=3, holds=("turn", "more-room", "starts-turn", "ends-turn"), depends=("drives",))
 @hint("Compare left with right when the turn begins, and remember the choice.")
 @hint("The remembered turn ends when the way is clear again, not when the sides look different.")
 def test_turns(driving: System, draw: random.Random) -> None:
@@ -167,7 +172,7 @@ def test_turns(driving: System, draw: random.Random) -> None:
         expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
 
 
-@check(points=3, depends=("drives",))
+@check(points=3, holds=("untrusted", "newest"), depends=("drives",))
 @hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
 @hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
 def test_stops(driving: System) -> None:
@@ -187,7 +192,7 @@ def test_stops(driving: System) -> None:
     expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
 
 
-@check(points=2, depends=("drives",), doc=contract.SERVICE_DOC)
+@check(points=2, holds=("enable", "disabled"), depends=("drives",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
 def test_enable(driving: System, shared_system: SharedSystem) -> None:

@@ -18,7 +18,7 @@ FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
 
-@check(points=2)
+@check(points=2, holds="manifest")
 @hint("The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.")
 @hint("<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.")
 def test_manifests(workspace: Workspace) -> None:
@@ -38,7 +38,7 @@ def test_manifests(workspace: Workspace) -> None:
         )
 
 
-@check(points=2, depends=("manifests",))
+@check(points=2, holds=("imports", "depend", "exec-depend", "test-depend"), depends=("manifests",))
 @hint(
     "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
     "machine."
@@ -56,7 +56,7 @@ def test_dependencies(workspace: Workspace) -> None:
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
 
 
-@check(points=1)
+@check(points=1, holds="installs")
 @hint("Run colcon build --packages-up-to robot_navigation_tutorial in a terminal: its last lines name file and line.")
 @hint("setup.py needs the name, packages=find_packages(exclude=['test']), data_files with files that are there.")
 def test_build(builds: Mapping[str, Diagnosis]) -> None:
@@ -64,7 +64,7 @@ def test_build(builds: Mapping[str, Diagnosis]) -> None:
     require_built(builds, PACKAGE)
 
 
-@check(points=1, depends=("build",))
+@check(points=1, holds=("processor-executable", "controller-executable", "monitor-executable"), depends=("build",))
 @hint("entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}")
 @hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
@@ -80,7 +80,7 @@ def test_executables(workspace: Workspace) -> None:
     )
 
 
-@check(points=1, depends=("build",))
+@check(points=1, holds="installs", depends=("build",))
 @hint("data_files holds pairs: a folder below share/, and the files that go there.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
@@ -91,7 +91,7 @@ def test_shares(workspace: Workspace) -> None:
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
-@check(points=1, depends=("manifests", "build"))
+@check(points=1, holds="agree", depends=("manifests", "build"))
 @hint("Copy the four from one file to the other, to the letter.")
 def test_agreement(workspace: Workspace) -> None:
     """package.xml and setup.py agree on version, licence and maintainer."""

@@ -23,7 +23,7 @@ BACK_WITHIN = 2.0  # s
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
-@check(points=3, depends=DRIVES)
+@check(points=3, holds=("turn", "starts-turn"), depends=DRIVES)
 @hint(*PICTURE)
 def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
@@ -40,7 +40,7 @@ def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
 
 
-@check(points=2, depends=("drives", "turns"))
+@check(points=2, holds=("more-room", "ends-turn"), depends=("drives", "turns"))
 @hint("A turn that has begun keeps its direction until the way is clear.")
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
@@ -55,7 +55,7 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
             _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds, rules)
 
 
-@check(points=3, depends=DRIVES)
+@check(points=3, holds=("drive", "more-room"), depends=DRIVES)
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, gallery: Gallery) -> None:
@@ -68,7 +68,7 @@ def test_gets_on(drives: Drives, gallery: Gallery) -> None:
     _keep(gallery, driven, caption)
 
 
-@check(points=3, depends=("stops",))
+@check(points=3, holds="untrusted", depends=("stops",))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
@@ -91,7 +91,7 @@ def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
     _keep(gallery, driven, caption, rules)
 
 
-@check(points=2, depends=("stops_in_time",))
+@check(points=2, holds="drive", depends=("stops_in_time",))
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, gallery: Gallery) -> None:
     """Within 2 s of its lidar's return it drives again."""

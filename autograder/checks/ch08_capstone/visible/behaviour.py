@@ -23,7 +23,13 @@ from autograder.probes.parameters import differences, missing_sentence
 OPEN = scan(fill=3.0)
 
 
-@check(points=1, group="step_2", depends=("package", "definitions", "interfaces_build"), doc=contract.NODES_DOC)
+@check(
+    points=1,
+    holds=("processor-name", "controller-name", "monitor-name"),
+    group="step_2",
+    depends=("package", "definitions", "interfaces_build"),
+    doc=contract.NODES_DOC,
+)
 @hint("The sentence above names the error, the lines below it say where.")
 def test_starts(system: System) -> None:
     """Step 2: the three nodes start under their names."""
@@ -32,7 +38,7 @@ def test_starts(system: System) -> None:
     expect(not absent, f"No node is called {' or '.join(absent)}; there is: {', '.join(nodes) or 'none'}.")
 
 
-@check(points=1, group="step_2", depends=("starts",), doc=contract.SCAN_DOC)
+@check(points=1, holds=("processor", "sector"), group="step_2", depends=("starts",), doc=contract.SCAN_DOC)
 @hint("scan comes best-effort: qos_profile_sensor_data.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 def test_sees(system: System) -> None:
@@ -51,7 +57,7 @@ def test_sees(system: System) -> None:
     expect(bool(blind) and not blind[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
 
 
-@check(points=1, group="step_2", depends=("sees",), doc=contract.NODES_DOC)
+@check(points=1, holds=("drive", "turn", "untrusted"), group="step_2", depends=("sees",), doc=contract.NODES_DOC)
 @hint("No clearance, one that is not valid, one whose stamp is old: publish Twist() as it is.")
 @hint("Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.")
 def test_moves(system: System) -> None:
@@ -66,7 +72,7 @@ def test_moves(system: System) -> None:
     expect_still(system.messages(began + 1.0).commands, "A second after the last scan")
 
 
-@check(points=1, group="step_2", depends=("sees",), doc=contract.NODES_DOC)
+@check(points=1, holds="level", group="step_2", depends=("sees",), doc=contract.NODES_DOC)
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 @hint("Remember when each topic was last heard; only a timer can hear the silence.")
 def test_watches(system: System) -> None:
@@ -82,7 +88,13 @@ def test_watches(system: System) -> None:
         expect(level == wanted, f"{what}, health was {said} instead of {LEVELS[wanted]}.")
 
 
-@check(points=1, group="step_5", depends=("starts",), doc=contract.PARAMETERS_DOC)
+@check(
+    points=1,
+    holds=("half_angle", "forward_speed", "turn_speed", "safety_distance", "data_timeout", "silence_timeout"),
+    group="step_5",
+    depends=("starts",),
+    doc=contract.PARAMETERS_DOC,
+)
 @hint("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...') in __init__, and so on.")
 def test_parameters(system: System) -> None:
     """Step 5: each node declares its parameters with their defaults and ranges."""

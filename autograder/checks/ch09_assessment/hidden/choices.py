@@ -25,6 +25,7 @@ CHOICES = [
         hints=asked.hints,
         doc=asked.doc,
         question=asked,
+        holds="choices",
     )
     for name, asked in QUESTIONS.items()
 ]

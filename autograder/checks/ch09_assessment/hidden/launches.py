@@ -38,7 +38,7 @@ def hot(seed: int) -> int:
     return Random(f"{seed}:hot").randint(52, 58)
 
 
-@check(points=3, depends=("installs",))
+@check(points=3, holds=("launch", "thermometer-topics", "smoother-topics", "guard-topics"), depends=("installs",))
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
 @hint("ros2 topic echo /decision shows whether the three talk to each other.")
 def test_launches(launched: LaunchHarness) -> None:
@@ -48,7 +48,7 @@ def test_launches(launched: LaunchHarness) -> None:
     expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(points=2, depends=("launches",))
+@check(points=2, holds="hot-argument", depends=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0', description='...')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> None:
@@ -57,7 +57,7 @@ def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> No
     launch_probe.expect_argument(launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE), "hot", "60.0")
 
 
-@check(points=1, depends=("launches",))
+@check(points=1, holds="ctrl-c", depends=("launches",))
 @hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
 @hint("A node that never ends by itself has to be killed: look at loops of your own.")
 def test_stops(launched: LaunchHarness) -> None:

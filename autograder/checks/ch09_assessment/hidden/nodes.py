@@ -27,7 +27,12 @@ BETWEEN = (COOL + 1.0, HOT - 1.0)
 FRESH = 0.1  # s that a reading may take to come
 
 
-@check(points=2, depends=BUILT, doc=contract.NODES_DOC)
+@check(
+    points=2,
+    holds=("reading", "formula", "period", "mean-swing", "thermometer-topics"),
+    depends=BUILT,
+    doc=contract.NODES_DOC,
+)
 @hint("create_timer(period, self.timer_callback), and a count in self.", "math.sin takes radians.")
 def test_readings(start: Start) -> None:
     """Thermometer publishes two readings a second, which swing around the mean as the contract says."""
@@ -36,7 +41,7 @@ def test_readings(start: Start) -> None:
         harness.expect_readings(30)
 
 
-@check(points=2, depends=("readings",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("period", "mean-swing"), depends=("readings",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
     """Thermometer measures by its parameters period, mean and swing."""
@@ -46,7 +51,7 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
         harness.expect_readings(12, period, mean, swing)
 
 
-@check(points=1, depends=("readings",), doc=contract.NODES_DOC)
+@check(points=1, holds="reading", depends=("readings",), doc=contract.NODES_DOC)
 @hint("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time.")
 def test_stamps(start: Start) -> None:
     """Each reading is stamped with the node's clock at the time when it was measured."""
@@ -60,7 +65,7 @@ def test_stamps(start: Start) -> None:
     expect(right, f"By their stamps, its readings were {ages} s old when they came: a reading is sent as it is made.")
 
 
-@check(points=3, depends=BUILT, doc=contract.NODES_DOC)
+@check(points=3, holds=("smoother", "window", "smoother-topics"), depends=BUILT, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
 def test_average(start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
@@ -74,7 +79,7 @@ def test_average(start: Start, draw: Random) -> None:
     expect(right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
 
 
-@check(points=2, depends=("average",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds="window", depends=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """The parameter window says how many readings count; 0 and 101 are refused at the start."""
@@ -86,7 +91,7 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
         expect(refused, f"smoother started with window {impossible}.", fraction=0.5)
 
 
-@check(points=2, depends=("average",))
+@check(points=2, holds="not-finite", depends=("average",))
 @hint("math.isfinite(reading.celsius)", "A reading that does not count gets no average either.")
 def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
@@ -101,7 +106,7 @@ def test_no_number(start: Start, draw: Random) -> None:
     expect(len(seen) == 2, f"{shown}: there are averages for what is no number.", fraction=0.5)
 
 
-@check(points=4, depends=BUILT, doc=contract.NODES_DOC)
+@check(points=4, holds=("hysteresis", "guard-topics"), depends=BUILT, doc=contract.NODES_DOC)
 @hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
@@ -116,7 +121,7 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         _expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
 
 
-@check(points=2, depends=("hysteresis",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds="hot-cool", depends=("hysteresis",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """Guard decides by its parameters hot and cool; it ends with an error at the start unless cool is less than hot."""
@@ -130,7 +135,7 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         expect(refused, f"guard started with hot {hot} and cool {impossible}.", fraction=0.5)
 
 
-@check(points=1, depends=("hysteresis",))
+@check(points=1, holds="unknown", depends=("hysteresis",))
 @hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first.")
 def test_unknown(start: Start) -> None:
     """When the temperature is no finite number, it is not known, and the fan runs."""
@@ -139,7 +144,7 @@ def test_unknown(start: Start) -> None:
             _expect_decisions(harness, [20.0, unknown, 55.0], "")
 
 
-@check(points=1, depends=("hysteresis",))
+@check(points=1, holds="guard", depends=("hysteresis",))
 @hint("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was.")
 def test_passes_on(start: Start, draw: Random) -> None:
     """A decision carries the stamp and the temperature that it was made of."""

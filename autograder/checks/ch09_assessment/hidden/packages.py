@@ -17,14 +17,14 @@ from autograder.probes.installed import look
 check = group("packages")
 
 
-@check(points=2, doc=contract.INTERFACES_DOC)
+@check(points=2, holds=("temperature", "decision"), doc=contract.INTERFACES_DOC)
 @hint("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too.")
 def test_definitions(workspace: Workspace) -> None:
     """Both messages have the fields of the contract."""
     expect_definitions(workspace)
 
 
-@check(points=2, depends=("definitions",), doc=contract.INTERFACES_DOC)
+@check(points=2, holds="packages", depends=("definitions",), doc=contract.INTERFACES_DOC)
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Decision.msg" "msg/Temperature.msg" DEPENDENCIES ...)')
 @hint("find_package for what you use; in package.xml a buildtool_depend on the generators, and member_of_group.")
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -35,7 +35,7 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
 
-@check(points=1, doc=contract.INTERFACES_DOC)
+@check(points=1, holds="packages", doc=contract.INTERFACES_DOC)
 @hint("Which tool installs what the generated code needs when it runs?", "Two tags, besides the generators'.")
 def test_interface_manifest(workspace: Workspace) -> None:
     """package.xml of motor_guard_interfaces says that it holds messages, and what these need when they run."""
@@ -46,7 +46,7 @@ def test_interface_manifest(workspace: Workspace) -> None:
     expect(not lacks, "package.xml has no exec_depend on rosidl_default_runtime.", fraction=0.5)
 
 
-@check(points=2, depends=("messages_are_generated",), doc=contract.PACKAGES_DOC)
+@check(points=2, holds="packages", depends=("messages_are_generated",), doc=contract.PACKAGES_DOC)
 @hint("entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}")
 @hint("install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.")
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -56,7 +56,7 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
     expect_executables(found.executables, found.misplaced, PROGRAMS)
 
 
-@check(points=1, depends=("installs",), doc=contract.PACKAGES_DOC)
+@check(points=1, holds="dependencies", depends=("installs",), doc=contract.PACKAGES_DOC)
 @hint("rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.")
 @hint("depend for what the nodes import, exec_depend for what the launch file imports.")
 def test_dependencies(workspace: Workspace) -> None:

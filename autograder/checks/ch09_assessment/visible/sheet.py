@@ -8,7 +8,7 @@ from autograder.checks.ch09_assessment.support.sheet import answers, expect_lett
 from autograder.harness import Workspace
 
 
-@check(points=1, group="choices")
+@check(points=1, holds="sheet", group="choices")
 @hint("A line is `q1: a`: the question, a colon, a space, one letter.", "A guess costs nothing; a gap earns nothing.")
 def test_answered(workspace: Workspace) -> None:
     """Question 1: each question has an answer, one of four letters; whether it is right is not looked at."""

@@ -1,0 +1,39 @@
+"""Starts a program in a namespace, and finds the names that it does not take with it: those that begin with a slash."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from autograder.harness import AutoHarness, Workspace
+
+SPACE = "/robot7"
+SEEN_SECONDS = 5.0  # of real time until a name is seen in the graph; only a wrong program takes so long
+
+
+def left_behind(workspace: Workspace, package: str, executable: str, names: Iterable[str]) -> str:
+    """Return which topics and services a program does not have in the namespace in which it is started, in a sentence.
+
+    Args:
+        workspace: the student's, built.
+        package: the program's package.
+        executable: the program.
+        names: its topics and services, relative.
+
+    Returns:
+        An empty string if it has all of them there.
+    """
+    wanted = [f"{SPACE}/{name}" for name in names]
+    with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={SPACE}")) as harness:
+
+        def missing() -> list[str]:
+            graph = harness.node
+            there = {name for name, _ in graph.get_topic_names_and_types() + graph.get_service_names_and_types()}
+            return [name for name in wanted if name not in there]
+
+        harness.wait_for(lambda: not missing(), SEEN_SECONDS)
+        left = missing()
+    if not left:
+        return ""
+    return (
+        f"Started in the namespace {SPACE}, {executable} has no {' and no '.join(left)}: a relative name has no slash."
+    )

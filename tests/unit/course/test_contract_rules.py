@@ -1,0 +1,112 @@
+"""Each sentence of the contract is where it is said to be, and has a check; each check has a sentence."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from nbformat import NotebookNode
+
+from autograder.checks import Check, Visibility, suites
+from autograder.checks.contract import contract, sentences
+from autograder.course import chapters
+from autograder.course.contract_rules import broken_contract
+
+from .notebooks import code, notebook, prose, solution
+
+TABLE = """The node is called `guard`.
+
+| what it knows | speed | turn |
+|---|---|---|
+| no scan yet | 0 | 0 |
+
+- It ends with
+  exit status 0."""
+ROW, ENDS = "| no scan yet | 0 | 0 |", "- It ends with exit status 0."
+FUNCTION = '%%writefile ws/a.py\ndef main():\n    """Run."""\n'
+MAX_UNCHECKED = 12  # in the whole course
+
+
+def made(**course: Any) -> NotebookNode:
+    return notebook(prose(TABLE, "table", course={"contract": {"waits": ROW, "ends": ENDS}, **course}))
+
+
+def check(id: str, *holds: str) -> Check:
+    return Check(id, f"{id}.", 1.0, "graph", Visibility.HIDDEN, (), None, (), holds)
+
+
+def messages(book: NotebookNode, *checks: Check) -> list[str]:
+    return [finding.message for finding in broken_contract("small.ipynb", book, checks)]
+
+
+def test_a_row_is_quoted_with_the_head_of_its_table_and_a_bullet_without_its_dash() -> None:
+    found = sentences(made().cells)
+    assert found["waits"].text == "no scan yet: speed 0, turn 0"
+    assert found["ends"].text == "It ends with exit status 0."
+
+
+def test_a_whole_contract_has_no_findings() -> None:
+    assert messages(made(), check("stops", "waits", "ends")) == []
+
+
+def test_a_sentence_without_a_check_is_found() -> None:
+    assert messages(made(), check("stops", "waits")) == ["no check holds the sentence 'ends' of the contract"]
+
+
+def test_a_check_without_a_sentence_is_found() -> None:
+    found = messages(made(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
+    assert found == [
+        "the hidden check 'bare' holds no sentence of the contract",
+        "the hidden check 'other' holds 'flies', which no cell names",
+    ]
+
+
+def test_a_sentence_that_changed_in_its_cell_is_found() -> None:
+    book = made(contract={"waits": ROW.replace("0", "1"), "ends": ENDS})
+    found = messages(book, check("stops", "waits", "ends"))
+    assert "'waits': its released text does not hold the sentence '| no scan yet | 1 | 1 |'" in found
+
+
+def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> None:
+    without = {"contract": {"waits": ROW}}
+    wanted = f"neither its contract nor `explains` names a sentence of {ENDS!r}"
+    assert messages(made(**without), check("stops", "waits")) == [wanted]
+    assert messages(made(**without, explains=["exit status 0."]), check("stops", "waits")) == []
+
+
+def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
+    source = f"{FUNCTION}    # BEGIN SOLUTION\n    end()  # It ends.\n    # END SOLUTION"
+    course = {"hide": ["main"], "contract": {"runs": "Run.", "ends": "It ends."}}
+    book = notebook(code(source, "main", course=course, nbgrader=solution("main")))
+    found = messages(book, check("stops", "runs", "ends"))
+    assert found == ["'ends': its released text does not hold the sentence 'It ends.'"]
+
+
+def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None:
+    source = f"{FUNCTION}    # BEGIN SOLUTION\n    pass\n    # END SOLUTION"
+    book = notebook(code(source, "main", course={"hide": ["main"]}, nbgrader=solution("main")))
+    assert messages(book) == ["neither its contract nor `explains` names a sentence of 'Run.'"]
+
+
+def test_an_unchecked_sentence_has_no_check() -> None:
+    book = made(unchecked={"ends": "nobody sees it"})
+    assert messages(book, check("stops", "waits")) == []
+    found = messages(book, check("stops", "waits", "ends"))
+    assert found == ["the sentence 'ends' is said to be unchecked, and a check holds it"]
+    assert "'flies' is said to be unchecked, and the cell's contract does not have it" in messages(
+        made(unchecked={"flies": "so"}), check("stops", "waits", "ends")
+    )
+
+
+@pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
+def test_the_contract_of_each_chapter_has_no_hole(chapter: Any) -> None:
+    name = chapter.assignment
+    hidden = suites.hidden(name).checks if name in suites.graded() else ()
+    assert [
+        str(f) for f in broken_contract(chapter.path.name, chapter.read(), (*suites.visible(name).checks, *hidden))
+    ] == []
+
+
+def test_few_sentences_of_the_course_are_unchecked() -> None:
+    found = [s.id for name in suites.checked() for s in contract(name).values() if s.unchecked]
+    assert len(found) <= MAX_UNCHECKED, found
