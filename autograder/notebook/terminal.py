@@ -6,6 +6,7 @@ A cell must end, and so does what it starts: `running` presses Ctrl-C when its b
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -15,18 +16,23 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from autograder.diagnosis import OK
 from autograder.exceptions import UsageError
 from autograder.ros.discovery import announcing_often
+from autograder.unwritten import explain
 from sim.grading import grading
 
 GRADED = "Commands are not run while the notebook is graded."
 STOP_SECONDS = 30.0  # real time for what Ctrl-C ends; `ros2 launch` itself gives its nodes 10
 _STEP = 0.05
+_BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 
 
 def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws") -> None:
     """Run a command to its end and print its output.
+
+    A build of packages whose files are still to be written is not run: their names are printed instead.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
@@ -38,6 +44,9 @@ def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws")
     """
     if grading():
         print(GRADED)
+        return
+    if unwritten := _unwritten(command, Path(workspace)):
+        print(unwritten)
         return
     with _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: False, seconds)
@@ -72,6 +81,16 @@ def running(
         terminal.end()
 
 
+def _unwritten(command: str, workspace: Path) -> str:
+    """Return what is to be said instead of a colcon build that must fail, because a file holds an exercise's stub."""
+    if not (build := _BUILD.search(command)):
+        return ""
+    source = workspace / "src"
+    chosen = (build["packages"] or "").split()
+    reason = explain(OK, source, *(chosen or sorted(path.name for path in source.glob("*"))))
+    return "" if reason is OK else reason.sentence
+
+
 class _Terminal:
     """A command in a session of its own, which writes to a file: a full pipe could hold it up."""
 
@@ -80,13 +99,15 @@ class _Terminal:
             raise UsageError(f"there is no folder {workspace}: run this from the assignment's folder")
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
         self._shown = 0
+        # With this variable, a build prints warnings about byte code that look like errors of the package.
+        inherited = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         self._process = subprocess.Popen(
             ["bash", "-c", _SOURCED, str(workspace.resolve() / "install" / "local_setup.bash"), command],
             stdin=subprocess.DEVNULL,
             stdout=self._file,
             stderr=subprocess.STDOUT,
-            env={**os.environ, "PATH": path, "PYTHONUNBUFFERED": "1"},
+            env={**inherited, "PATH": path, "PYTHONUNBUFFERED": "1"},
             start_new_session=True,
         )
 

@@ -10,6 +10,7 @@ import pytest
 from autograder.exceptions import UsageError
 from autograder.notebook import terminal
 from autograder.notebook.terminal import running, shell
+from autograder.unwritten import STILL_TO_BE_WRITTEN
 from sim.grading import GRADING_VARIABLE
 
 STUBBORN = f"""{sys.executable} -c "
@@ -52,6 +53,27 @@ def test_a_built_workspace_is_sourced(ws: Path, capsys: pytest.CaptureFixture[st
     (ws / "install" / "local_setup.bash").write_text("export WORD=sourced\n")
     shell("echo $WORD", workspace=ws)
     assert capsys.readouterr().out == "sourced\n"
+
+
+def test_a_build_of_files_that_are_still_to_be_written_is_not_run(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("mine", "given"):
+        (ws / "src" / name).mkdir(parents=True)
+    (ws / "src" / "mine" / "setup.py").write_text(f"raise NotImplementedError('{STILL_TO_BE_WRITTEN}')\n")
+    for command in ("colcon build", "X=1 colcon --log-level error build --packages-select given mine | tail -n 1"):
+        shell(f"true && {command}", workspace=ws)
+        said = capsys.readouterr().out
+        assert said == "src/mine/setup.py is still to be written: put your lines in place of the raise.\n"
+    for command in ("echo colcon build --packages-select given", "echo colcon test"):
+        shell(command, workspace=ws)
+        assert capsys.readouterr().out == command.removeprefix("echo ") + "\n"
+
+
+def test_a_build_writes_byte_code_and_so_warns_of_nothing(
+    ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    shell('echo "[$PYTHONDONTWRITEBYTECODE]"', workspace=ws)
+    assert capsys.readouterr().out == "[]\n"
 
 
 def test_the_courses_own_commands_are_found(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:

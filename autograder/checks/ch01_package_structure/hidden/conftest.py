@@ -6,11 +6,14 @@ import random
 
 import pytest
 
-from autograder.checks.ch01_package_structure.hidden.growth import Grown, grow
+from autograder.checks.ch01_package_structure.support.growth import Grown, grow
 from autograder.harness import Workspace
+
+WORDS = ("waltz", "polka", "samba", "rumba", "tango", "foxtrot")
 
 
 @pytest.fixture(scope="session")
 def grown(workspace: Workspace, seed: int) -> Grown:
     """The student's package with a launch file, a configuration and a subpackage more, built again."""
-    return grow(workspace, random.Random(f"{seed}:grown"))
+    draw = random.Random(f"{seed}:grown")
+    return grow(workspace, f"{draw.choice(WORDS)}_{draw.randrange(100, 1000)}")

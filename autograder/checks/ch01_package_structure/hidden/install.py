@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch01_package_structure.hidden.growth import Grown
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -18,6 +17,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_shared,
     source_of,
 )
+from autograder.checks.ch01_package_structure.support.growth import Grown
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import INDEX, Installed

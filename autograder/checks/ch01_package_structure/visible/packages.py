@@ -1,10 +1,10 @@
-"""What colcon, rosdep and ros2 run would find of the two packages, at once."""
+"""What colcon, rosdep and ros2 run would find of the two packages."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import group, hint
+from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -13,9 +13,13 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_licence,
     expect_manifest,
     expect_modules,
+    expect_pytest,
+    expect_same_facts,
     expect_shared,
+    licence,
     source_of,
 )
+from autograder.checks.ch01_package_structure.support.growth import grow
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
@@ -76,6 +80,26 @@ def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
+@check(points=1, holds=("same-facts", "pytest"), depends=("builds", "manifest"), doc=contract.DEVELOP)
+@hint("Compare version, license and maintainer_email in setup.py with package.xml, letter by letter.")
+@hint("extras_require={'test': ['pytest']} tells colcon that pytest runs the tests.")
+def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
+    """setup.py of square_dance says version, licence and e-mail as package.xml does, and names pytest."""
+    expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
+    expect_pytest(workspace, installed_dance)
+
+
+@check(points=1, holds=("modules", "files"), depends=("dancer", "shared"), doc=contract.SUBPACKAGES)
+@hint("A list of names that you wrote does not hold a file that is added later.")
+@hint("find_packages(exclude=['test']), glob('launch/*.launch.py') and glob('config/*.yaml').")
+def test_grows(workspace: Workspace) -> None:
+    """Somebody adds a launch file, a configuration and the subpackage minuet to square_dance: they are installed."""
+    grown = grow(workspace, "minuet")
+    left = [name for name in (grown.launch, grown.config) if grown.installed.read(name) is None]
+    left += [] if grown.module in grown.installed.modules else [grown.module]
+    expect(not left, f"The new {', '.join(left)} stayed behind.")
+
+
 @check(points=1, holds="alarm-builds", doc=contract.COLCON)
 @hint("Run colcon build --paths src/wall_alarm in ws and read the first line that says error.")
 @hint("The marker is an empty file: resource/wall_alarm.")
@@ -85,7 +109,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
 
 
 @check(points=1, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
-@hint("Mend it rung by rung: what does ros2 run wall_alarm alarm say now?")
+@hint("Mend one error, then build again: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
 def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
     """`ros2 run wall_alarm alarm` would find the program, and its alarm goes off."""
@@ -103,3 +127,20 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml of wall_alarm declares whatever its files import."""
     manifest = expect_manifest(workspace, contract.WALL_ALARM)
     expect_declared(imports.imported(source_of(workspace, contract.WALL_ALARM)), manifest.needs())
+
+
+@check(
+    points=1,
+    holds=("alarm-licence", "alarm-config", "alarm-pytest"),
+    depends=("alarm_builds", "alarm_dependencies"),
+    doc=contract.DEVELOP,
+)
+@hint("<license> in package.xml and license= in setup.py both say Apache-2.0.")
+@hint("data_files sends config/*.yaml to share/wall_alarm/config; extras_require names pytest.")
+def test_alarm_facts(workspace: Workspace, installed_alarm: Installed) -> None:
+    """wall_alarm has the licence Apache-2.0 in both files, installs its configuration, and names pytest."""
+    expect_licence(workspace, contract.WALL_ALARM)
+    said = licence(installed_alarm)
+    expect(said == contract.LICENCE, f"The licence is {said or 'missing'} in setup.py.")
+    expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
+    expect_pytest(workspace, installed_alarm)

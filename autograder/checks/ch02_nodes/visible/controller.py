@@ -1,13 +1,16 @@
-"""What the student's robot controller does with a few scans, at once."""
+"""What the student's robot controller does with a few scans, and how it ends."""
 
 from __future__ import annotations
 
 import math
+import signal
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
+from autograder.checks.ch02_nodes.support.ending import HINTS, expect_clean_end
 from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn, qos_mismatch
 from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.harness import Workspace
 
 check = group("controller")
 
@@ -104,3 +107,22 @@ def test_rate(robot: Robot) -> None:
     robot.see(scan(), 2.0)
     rate = robot.rate("/cmd_vel", since=began)
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second.")
+
+
+@check(points=1, holds="warns", depends=("turns",))
+@hint("warning(text, throttle_duration_sec=1.0)", "It warns while it is blocked, and says nothing while it drives.")
+def test_warns(robot: Robot) -> None:
+    """In front of a wall for 6 s it warns, at most once a second."""
+    robot.see(scan(fill=2.0))
+    before = robot.output.count("[WARN]")
+    robot.see(scan(Part(-15.0, 15.0, 0.7)), 6.0)
+    warnings = robot.output.count("[WARN]") - before
+    expect(1 <= warnings <= 8, f"In front of a wall for 6 s it warned {warnings} times.")
+
+
+@check(points=1, holds="ends", depends=("topics",))
+@hint(*HINTS)
+def test_ends(workspace: Workspace) -> None:
+    """Ctrl-C and SIGTERM end it with exit status 0."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        expect_clean_end(workspace, number)

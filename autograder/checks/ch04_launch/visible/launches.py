@@ -1,4 +1,4 @@
-"""What the three launch files start, at once."""
+"""What the three launch files start."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         yield Launches(
             robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
             quiet=start(ROBOT, {"report": "false"}),
-            fleet=start(FLEET, {}, {SHARED: String}),
+            fleet=start(FLEET, {"speed": "0.31"}, {SHARED: String}),
             full=start(SAFE, {"battery": "90"}),
             empty=start(SAFE, {"battery": "5"}),
         )
@@ -83,11 +83,14 @@ def test_quiet(launches: Launches) -> None:
 
 @check(points=1, holds=("included", "fleet-status"), group="fleet", doc=contract.LARGE)
 @hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
-@hint("SetRemap must stand before the include: it holds for what follows it in its group.")
+@hint("SetRemap stands before the include; launch_arguments={'robot_name': name, 'speed': speed}.items() in it.")
 def test_two_robots(launches: Launches) -> None:
-    """two_robots.launch.py starts two robots, and both report on /fleet/status."""
+    """two_robots.launch.py starts two robots with the given speed; both report on /fleet/status under their names."""
     harness = launches.fleet
     launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, contract.SECOND))
+    for space in (contract.FIRST, contract.SECOND):
+        launch_probe.expect_parameters(harness, f"/{space}{DRIVER}", {"speed": 0.31})
+        launch_probe.expect_parameters(harness, f"/{space}{REPORTER}", {"robot_name": space})
     harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
     expect(
         len(reporting_robots(harness)) == 2,

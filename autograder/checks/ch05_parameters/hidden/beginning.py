@@ -10,9 +10,7 @@ import pytest
 
 from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
-from autograder.diagnosis import Kind
-from autograder.exceptions import StudentError
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, refusal
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
 from autograder.probes.parameters import Value, as_declared, differences
@@ -22,7 +20,6 @@ check = group("start")
 RADIUS = 0.18  # m
 SECONDS = 20.0
 NEAR = 0.02  # m between where it stands and where it should
-REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
 @dataclass(frozen=True)
@@ -133,25 +130,10 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
     distance = draw.randrange(40, 90) / 100
     for safety, slow in ((round(distance + 0.4, 2), distance), (distance, distance)):
         values: dict[str, Value] = {"safety_distance": safety, "slow_distance": slow}
-        words = _last_words(workspace, values)
+        words = refusal(workspace, values)
         told = f"safety_distance {safety} and slow_distance {slow}"
         expect(words is not None, f"Started with {told}, the node runs.")
         expect(all(name in (words or "") for name in values), f"It ends, but does not name {told}.", fraction=0.5)
-
-
-def _last_words(workspace: Workspace, values: dict[str, Value]) -> str | None:
-    """Return what a program said when it refused to start, None if it did not refuse.
-
-    Raises:
-        StudentError: something else is wrong with it.
-    """
-    try:
-        with Robot(workspace, values):
-            return None
-    except StudentError as error:
-        if error.diagnosis.kind not in REFUSED:
-            raise
-        return f"{error.diagnosis.sentence}\n{error.diagnosis.detail}"
 
 
 def _towards_a_wall(draw: random.Random) -> Simulation:

@@ -11,6 +11,8 @@ from sensor_msgs.msg import BatteryState, LaserScan
 
 from autograder.checks import expect
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.harness.drive import LISTENS, OFFERS
 from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences
@@ -20,6 +22,7 @@ SCAN_SECONDS = 0.1
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
 TOLERANCE = 0.01  # m/s
 TICK_NS = 10_000_000
+REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
 class Robot(AutoHarness):
@@ -99,6 +102,21 @@ def restore(robot: Robot) -> bool:
     wanted = as_declared({name: CHANGEABLE[name] for name in CHANGEABLE if name in robot.initial}, robot.initial)
     found = robot.parameters.values(*wanted)
     return not differences(found, wanted) or robot.parameters.change(wanted).accepted
+
+
+def refusal(workspace: Workspace, values: Mapping[str, Value]) -> str | None:
+    """Return what a program said when it refused to start with these values, None if it did not refuse.
+
+    Raises:
+        StudentError: something else is wrong with it.
+    """
+    try:
+        with Robot(workspace, values):
+            return None
+    except StudentError as error:
+        if error.diagnosis.kind not in REFUSED:
+            raise
+        return f"{error.diagnosis.sentence}\n{error.diagnosis.detail}"
 
 
 def fleet_path(workspace: Workspace) -> Path:

@@ -1,4 +1,4 @@
-"""What becomes of a change while the node runs, at once."""
+"""What becomes of a change while the node runs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,13 @@ PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 @hint("proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.")
 @hint("proposed.get('slow_distance', self.value('slow_distance')) is what it will be.")
 def test_contradiction(robot: Robot) -> None:
-    """It refuses a safety distance above the slow distance, and its reason names both."""
+    """It refuses a safety distance above the slow distance or equal to it; its reason names both, with values."""
     answer = robot.change({"safety_distance": 1.5})
     expect(not answer.accepted, "With a slow_distance of 1.0 m, it took 1.5 m for safety_distance.")
-    named = all(name in answer.reason for name in PAIR)
+    named = all(part in answer.reason for part in (*PAIR, "1.5"))
     expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
+    answer = robot.change({"safety_distance": 0.7, "slow_distance": 0.7})
+    expect(not answer.accepted, "It took 0.7 m for both distances in one request.")
 
 
 @check(points=1, holds=("keep-value", "at-once"), depends=("contradiction",))
@@ -41,3 +43,20 @@ def test_rate(robot: Robot) -> None:
     answer = robot.change({"control_frequency": 20.0})
     expect(answer.accepted, f"It refused 20 Hz: “{answer.reason}”.")
     expect_rate(robot.command_rate(1.0), 20.0, "After control_frequency was set to 20.0")
+
+
+@check(points=1, holds="no-effect", depends=("contradiction", "rate"))
+@hint("validate only returns an answer. Whatever has to be done stands in apply.")
+def test_refused_whole(robot: Robot) -> None:
+    """A request that it refuses, for 30 Hz and a safety distance of 2.5 m, leaves the rate as it was."""
+    answer = robot.change({"control_frequency": 30.0, "safety_distance": 2.5})
+    expect(not answer.accepted, "With a slow_distance of 1.0 m, it took 2.5 m for safety_distance.")
+    expect_rate(robot.command_rate(1.0), 10.0, "After a refused request for 30 Hz")
+
+
+@check(points=1, holds="lets-pass", depends=("contradiction",))
+@hint("Look for the two distances in the request, and for nothing else: other names are not yours to refuse.")
+def test_lets_pass(robot: Robot) -> None:
+    """It takes a request for battery_threshold and use_sim_time, which name no distance."""
+    answer = robot.change({"battery_threshold": 45, **robot.parameters.values("use_sim_time")})
+    expect(answer.accepted, f"It refused a request for battery_threshold and use_sim_time: “{answer.reason}”.")

@@ -1,11 +1,12 @@
-"""What the node declares, at once."""
+"""What the node declares, and with which values it starts."""
 
 from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
-from autograder.checks.ch05_parameters.support.robot import Robot
+from autograder.checks.ch05_parameters.support.robot import Robot, refusal
+from autograder.harness import Workspace
 from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, said
 
 check = group("declaration")
@@ -62,9 +63,36 @@ def test_table(robot: Robot) -> None:
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
-    """It refuses -1 m/s, 101 percent and another name, each with a reason."""
-    requests: dict[str, Value] = {"max_linear_velocity": -1.0, "battery_threshold": 101, "robot_name": "R2"}
-    for name, value in requests.items():
+    """It refuses -1 m/s, 0.5 Hz, 51 Hz, 5 m, 101 percent and another name, each with a reason."""
+    requests: list[tuple[str, Value]] = [
+        ("max_linear_velocity", -1.0),
+        ("control_frequency", 0.5),
+        ("control_frequency", 51.0),
+        ("safety_distance", 5.0),
+        ("slow_distance", 5.0),
+        ("battery_threshold", 101),
+        ("robot_name", "R2"),
+    ]
+    for name, value in requests:
         answer = robot.parameters.change({name: value})
         expect(not answer.accepted, f"It took {said(value)} for {name}.")
         expect(bool(answer.reason), f"It refused {said(value)} for {name}, but gave no reason.")
+
+
+@check(points=1, holds="described", depends=("table",))
+@hint("ParameterDescriptor(description='...', ...): one sentence for each name, with the unit in it.")
+def test_described(robot: Robot) -> None:
+    """Each parameter has a description; that of max_linear_velocity names m/s, that of control_frequency Hz."""
+    described = {name: found.description for name, found in robot.parameters.descriptors(*WANTED).items()}
+    empty = [name for name, words in described.items() if not words.strip()]
+    expect(not empty, f"There is no description of {', '.join(empty)}.")
+    for name, unit in (("max_linear_velocity", "m/s"), ("control_frequency", "Hz")):
+        expect(unit.lower() in described[name].lower(), f"The description of {name} does not name {unit}.")
+
+
+@check(points=1, holds="contradictory-start", depends=("table",))
+@hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
+def test_start_refused(workspace: Workspace) -> None:
+    """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""
+    words = refusal(workspace, {"safety_distance": 2.2, "slow_distance": 2.0})
+    expect(words is not None, "Started with 2.2 m and 2.0 m, the node runs.")

@@ -1,10 +1,10 @@
-"""The fleet's file, read by ROS for one robot, at once."""
+"""The fleet's file, read by ROS for each robot."""
 
 from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.contract import fleet_values
+from autograder.checks.ch05_parameters.support.contract import OWN, fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 from autograder.harness import Workspace
 from autograder.probes.parameters import differences, read_file
@@ -36,9 +36,19 @@ def test_file(workspace: Workspace) -> None:
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
-def test_scout(workspace: Workspace) -> None:
-    """The robot scout gets its own values, and over the rest what every robot has."""
-    with Robot.of_fleet(workspace, "scout") as robot:
-        wanted = fleet_values("scout")
-        wrong = differences(robot.parameters.values(*wanted), wanted)
-    expect(not wrong, f"{'; '.join(wrong)}.")
+def test_robots(workspace: Workspace) -> None:
+    """The robots scout and porter get their own values, and for the rest what every robot has."""
+    for name in OWN:
+        wanted = fleet_values(name)
+        with Robot.of_fleet(workspace, name) as robot:
+            wrong = differences(robot.parameters.values(*wanted), wanted)
+        expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
+
+
+@check(points=1, holds="once", depends=("robots",))
+@hint("Under scout and porter stands only what the table gives to them alone.")
+def test_once(workspace: Workspace) -> None:
+    """What every robot has stands once: no entry of one robot sets slow_distance again."""
+    file = read_file(fleet_path(workspace))
+    again = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
+    expect(not again, f"Under {', '.join(again)}, slow_distance stands again.")

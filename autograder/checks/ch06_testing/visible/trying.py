@@ -1,4 +1,4 @@
-"""The student's tests on the package as it is, and on mutants that anybody would think of."""
+"""The student's tests on the package as it is, and on mutants of the course's own."""
 
 from __future__ import annotations
 
@@ -9,14 +9,42 @@ from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep, expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
 from autograder.harness import Workspace
+from autograder.probes import linters
 from autograder.probes.test_reports import Report, Source, TestRun
 from autograder.probes.test_runs import run, take
 from autograder.probes.versions import Version
 
 Reports = dict[tuple[str, str], Report]
+GUARD_FILE = "speed_guard/guard.py"
 
-# Two mutants that anybody would think of. The hidden ones are less obvious.
+# Mutants that differ much from what is right. The hidden ones differ by a line.
 LETS_ALL_PASS = {"speed_guard/limits.py": "def safe_speed(wanted, *distances, **more_distances):\n    return wanted\n"}
+GOES_BLIND = {
+    "speed_guard/limits.py": """import math
+
+
+def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
+    if not 0.0 <= stop_distance < slow_distance:
+        raise ValueError('these distances make no sense')
+    if wanted <= 0.0 or distance is None or math.isnan(distance):
+        return wanted
+    share = (distance - stop_distance) / (slow_distance - stop_distance)
+    return wanted * min(1.0, max(0.0, share))
+"""
+}
+# Is added to the end of guard.py.
+TURNS_THE_OTHER_WAY = """
+
+_answer = SpeedGuard.on_command
+
+
+def _turned(self, msg):
+    msg.angular.z *= -1.0
+    _answer(self, msg)
+
+
+SpeedGuard.on_command = _turned
+"""
 WITHOUT_CONFIGURATION = {
     "launch/guard.launch.py": """from launch import LaunchDescription
 from launch_ros.actions import Node
@@ -26,8 +54,7 @@ def generate_launch_description():
     return LaunchDescription([Node(package='speed_guard', executable='speed_guard', name='speed_guard')])
 """
 }
-MUTANTS = {LIMITS: LETS_ALL_PASS, GUARD: LETS_ALL_PASS, LAUNCH: WITHOUT_CONFIGURATION}
-RIGHT, MUTANT = "right", "mutant"
+RIGHT, ALL_PASS, BLIND, TURNED, UNCONFIGURED = "right", "all pass", "blind", "turned", "unconfigured"
 
 
 @pytest.fixture(scope="module")
@@ -38,15 +65,19 @@ def source(workspace: Workspace) -> Source:
 
 @pytest.fixture(scope="module")
 def reports(workspace: Workspace, source: Source) -> Reports:
-    """What the tests of each file say of the package as it is, and of a mutant."""
+    """What the tests of each file say of the package as it is, and of its mutants."""
     files = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
-    version = Version(files, SCRIPTS)
-    wanted: dict[tuple[str, str], TestRun] = {}
-    for name in LEAST:
-        if name in source.tests:
-            wanted[name, RIGHT] = TestRun((name,), version)
-            mutant = Version({**version.files, **MUTANTS[name]}, SCRIPTS)
-            wanted[name, MUTANT] = TestRun((name,), mutant, first_failure=True)
+    mutants: dict[tuple[str, str], dict[str, str]] = {
+        (LAUNCH, UNCONFIGURED): WITHOUT_CONFIGURATION,
+        (GUARD, ALL_PASS): LETS_ALL_PASS,
+        (GUARD, TURNED): {GUARD_FILE: files.get(GUARD_FILE, "") + TURNS_THE_OTHER_WAY},
+        (LIMITS, ALL_PASS): LETS_ALL_PASS,
+        (LIMITS, BLIND): GOES_BLIND,
+    }
+    wanted = {(name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD) for name in LEAST}
+    for (name, what), changed in mutants.items():
+        wanted[name, what] = TestRun((name,), Version({**files, **changed}, SCRIPTS), first_failure=True)
+    wanted = {key: one for key, one in wanted.items() if key[0] in source.tests}
     return dict(zip(wanted, run(workspace, source, list(wanted.values())), strict=True))
 
 
@@ -61,7 +92,14 @@ def test_limits_pass(reports: Reports) -> None:
 @hint("Which line of the contract says that it stops?", contract.MUTATE)
 def test_limits_notice(reports: Reports) -> None:
     """One of them fails when safe_speed returns what was wanted, whatever is ahead."""
-    _expect_objection(reports, LIMITS)
+    _expect_objection(reports, LIMITS, ALL_PASS)
+
+
+@check(points=1, holds="unknown", group="function", depends=("limits_pass",), doc=contract.PYTEST)
+@hint("A distance is unknown in two ways: None and math.nan.", contract.MUTATE)
+def test_limits_unknown(reports: Reports) -> None:
+    """One of them fails when safe_speed takes an unknown distance for a clear way."""
+    _expect_objection(reports, LIMITS, BLIND)
 
 
 @check(points=1, holds="guard-pass", group="node", doc=contract.PYTEST)
@@ -75,7 +113,21 @@ def test_guard_pass(reports: Reports) -> None:
 @hint("robot.see(0.2), and then?", contract.MUTATE)
 def test_guard_notice(reports: Reports) -> None:
     """One of them fails when the guard lets every command pass."""
-    _expect_objection(reports, GUARD)
+    _expect_objection(reports, GUARD, ALL_PASS)
+
+
+@check(points=1, holds="turn", group="node", depends=("guard_pass",), doc=contract.PYTEST)
+@hint("robot.ask(0.5, 0.7) returns the whole answer: look at angular.z, too.", contract.MUTATE)
+def test_guard_turn(reports: Reports) -> None:
+    """One of them fails when the guard turns to the other side."""
+    _expect_objection(reports, GUARD, TURNED)
+
+
+@check(points=1, holds="own-domain", group="node", depends=("guard_pass",), doc=contract.DOMAIN)
+@hint("rclpy.init(context=context, domain_id=domain) in the fixture, and context=context for each node.")
+def test_alone(reports: Reports) -> None:
+    """While test_guard.py runs, none of its nodes is in the default domain."""
+    expect(not reports[GUARD, RIGHT].joined_domain, "One of them was: any other robot would hear it.")
 
 
 @check(points=1, holds="no-sleep", group="node", depends=("guard_pass",), doc=contract.PYTEST)
@@ -97,9 +149,17 @@ def test_launch_pass(reports: Reports) -> None:
 @hint("At 0.4 m: the defaults say stop, the configuration does not.")
 def test_launch_notice(reports: Reports) -> None:
     """It fails when the launch file forgets config/guard.yaml."""
-    _expect_objection(reports, LAUNCH)
+    _expect_objection(reports, LAUNCH, UNCONFIGURED)
 
 
-def _expect_objection(reports: Reports, name: str) -> None:
-    objects = reports[name, MUTANT].objects(reports[name, RIGHT])
+@check(points=1, holds="linters", group="craft", doc=contract.CLI)
+@hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they name file and line.")
+def test_linters(workspace: Workspace, source: Source) -> None:
+    """The linters flake8 and pep257 find nothing in the package and in your tests."""
+    found = linters.objections(workspace, source)
+    expect(not found, "; ".join(f"{name}: {finding}" for name, finding in found.items()))
+
+
+def _expect_objection(reports: Reports, name: str, what: str) -> None:
+    objects = reports[name, what].objects(reports[name, RIGHT])
     expect(objects, f"All tests in {name} pass on that mutant, too.")

@@ -1,25 +1,30 @@
-"""What the student's utilities and nodes do with a few readings, at once."""
+"""What the student's utilities and nodes do with a few readings."""
 
 from __future__ import annotations
 
 from math import inf, isnan, nan
 
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
 from autograder.checks import check, expect, hint
 from autograder.checks.ch07_best_practices.support import contract
-from autograder.checks.ch07_best_practices.support.robot import Processor, Robust, expected, scan
+from autograder.checks.ch07_best_practices.support.robot import WORDS, Processor, Robust, expected, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, make, same, value
+from autograder.probes.calls import call, calls, made, make, same, value
+from autograder.probes.parameters import NodeParameters
 
 
 @check(points=1, holds=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
 @hint(contract.RULE_PLACE, contract.RULE_MASK)
 def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
-    readings = [1.0, 0.0, inf, nan, 9.0, -inf]
+    readings = [1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5]
     (outcome,) = calls(workspace, contract.UTILS, call("mask_invalid", readings, 0.12, 3.5))
-    shown = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf], 0.12, 3.5)"
+    shown = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
     masked = value(outcome, shown)
-    expect(same(masked, [1.0, nan, inf, nan, nan, -inf]), f"{shown} returned {masked}.")
+    expect(same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{shown} returned {masked}.")
+    expect(same(list(outcome.arguments[:1]), [readings]), f"{shown} changed the list that it was given.")
+    expect(not outcome.printed, f"{shown} printed {outcome.printed[:80]!r}.")
 
 
 @check(points=1, holds="mean", group="utils")
@@ -40,23 +45,55 @@ def test_mean_distance(workspace: Workspace) -> None:
 )
 @hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the means remembered.")
 def test_data_processor(workspace: Workspace) -> None:
-    """DataProcessor remembers the means of the newest scans, and no more than it was told to."""
-    steps = [make("DataProcessor", 2), *(call("process", [metres], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0))]
+    """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
+    steps = [make("DataProcessor", 2), *(call("process", [metres], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan))]
     *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
     average = value(outcome, "average()")
-    expect(same(average, 2.5), f"After scans of 1, 2 and 3 m, DataProcessor(2).average() is {average} instead of 2.5.")
+    shown = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
+    expect(same(average, 2.5), f"{shown} is {average} instead of 2.5.")
 
 
 @check(points=1, holds="scan-filtered", group="processor", depends=("data_processor",), doc=contract.QOS)
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
 def test_filters_scans(processor: Processor) -> None:
-    """sensor_processor publishes a scan again, masked."""
-    filtered, _ = processor.show(scan([1.0, 0.0, 2.0]))
+    """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
+    sent = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
+    sent.intensities = [4.0, 0.0, 2.0]
+    filtered, _ = processor.show(sent)
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out on scan_filtered.")
     ranges = list(filtered[0].ranges)
-    right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [1.0, 2.0]
-    expect(right, f"[1.0, 0.0, 2.0] went in, {ranges} came out: [1.0, nan, 2.0] was expected.")
+    right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
+    expect(right, f"[8.0, 0.0, 2.0] with limits 0.5 and 8.0 went in, {ranges} came out: [8.0, nan, 2.0] was expected.")
+    intensities = list(filtered[0].intensities)
+    expect(intensities == [4.0, 0.0, 2.0], f"intensities went in as [4.0, 0.0, 2.0] and came out as {intensities}.")
+
+
+@check(points=1, holds=("scan", "scan-filtered"), group="processor", depends=("filters_scans",), doc=contract.QOS)
+@hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
+def test_sensor_profile(processor: Processor) -> None:
+    """It takes scan and offers scan_filtered best effort, as a lidar does."""
+    ends = [
+        *processor.node.get_subscriptions_info_by_topic("/scan"),
+        *processor.node.get_publishers_info_by_topic("/scan_filtered"),
+    ]
+    reliable = [end.topic_type for end in ends if end.qos_profile.reliability == ReliabilityPolicy.RELIABLE]
+    expect(not reliable, "One of them is reliable.")
+
+
+@check(points=1, holds=("mean-of-ten", "blind", "warns"), group="processor", depends=("filters_scans",))
+@hint("One DataProcessor(HISTORY), made in __init__; after each scan publish its average().")
+@hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
+def test_means(fresh_processor: Processor) -> None:
+    """mean_distance is the average over the newest ten scans; scans without a distance bring a warning and no mean."""
+    _, means = fresh_processor.show(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
+    expect(len(means) == 11, f"11 scans went in, {len(means)} means came out.")
+    newest = [round(means[place], 3) for place in (0, 1, -1)]
+    expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
+    _, means = fresh_processor.show(*(scan([nan]) for _ in range(40)))
+    expect(not means, f"Scans without a distance brought {len(means)} means.")
+    warnings = fresh_processor.output.count("[WARN]")
+    expect(0 < warnings <= 6, f"Scans without a distance for 4 s brought {warnings} warnings instead of one a second.")
 
 
 @check(points=1, holds=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
@@ -67,3 +104,70 @@ def test_counts_failures(workspace: Workspace) -> None:
         said = harness.hear(8)
     wanted = expected(7, 0.5, 8)
     expect(said == wanted, f"With seed 7 it said {said}, and should have said {wanted}.")
+
+
+@check(
+    points=1,
+    holds=("failure-probability", "seed", "max-errors"),
+    group="robust",
+    depends=("counts_failures",),
+    doc=contract.QOS,
+)
+@hint("create_publisher(String, 'status', STATUS_QOS), not 10.")
+@hint("floating_point_range=[limits] in the descriptor; _declare_integer for the two whole numbers.")
+def test_declares(workspace: Workspace) -> None:
+    """robust_node offers status transient local, and its three parameters have ranges."""
+    with Robust(workspace) as harness:
+        offered = harness.node.get_publishers_info_by_topic(WORDS)
+        described = NodeParameters(harness, "/robust_node").descriptors("failure_probability", "seed", "max_errors")
+    durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
+    expect(bool(durable) and all(durable), "status is not transient local: a node that joins late would hear nothing.")
+    bare = [name for name, found in described.items() if not [*found.floating_point_range, *found.integer_range]]
+    expect(not bare, f"There is no range for {', '.join(bare)}.")
+
+
+@check(
+    points=1,
+    holds=("unstable", "fatal-log", "error-log"),
+    group="robust",
+    depends=("counts_failures",),
+    doc=contract.LOGGING,
+)
+@hint("unstable begins when the count is above max_errors; fatal is logged when it is max_errors + 1.")
+@hint("error(..., throttle_duration_sec=5.0)")
+def test_dead_sensor(workspace: Workspace) -> None:
+    """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
+    with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
+        said = harness.hear(12)
+        fatal, errors = harness.output.count("[FATAL]"), harness.output.count("[ERROR]")
+    wanted = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
+    expect(said == wanted, f"It said {said}.")
+    expect(fatal == 1, f"It logged {fatal} fatal messages instead of one.")
+    expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
+
+
+@check(points=1, holds="recovery-log", group="robust", depends=("counts_failures",), doc=contract.LOGGING)
+@hint("Log 'Recovered after N errors' before you set the count back to 0.")
+def test_recovers(workspace: Workspace) -> None:
+    """It logs each recovery, with the number of failures before it."""
+    with Robust(workspace, seed=7, failure_probability=0.5) as harness:
+        harness.hear(5)
+        lines = [line for line in harness.output.splitlines() if "Recovered after " in line]
+    expect(len(lines) == 2, f"With seed 7 it recovers twice in 5 s, and it logged {len(lines)} recoveries.")
+    expect(lines[0].endswith("Recovered after 2 errors"), f"The first recovery comes after 2 failures: {lines[0]}")
+
+
+@check(points=1, holds=("catch", "generator"), group="robust", depends=("counts_failures",), doc=contract.ERRORS)
+@hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
+def test_shows_bugs(workspace: Workspace) -> None:
+    """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
+    *_, called = calls(
+        workspace,
+        contract.ROBUST,
+        call("init", module="rclpy"),
+        make("range", 3, module="builtins"),
+        make("RobustNode", generator=made(1)),
+        call("timer_callback", on=2),
+        network=True,
+    )
+    expect(called.raised == "AttributeError", f"It raised {called.raised or 'nothing'}.")

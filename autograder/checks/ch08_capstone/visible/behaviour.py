@@ -1,13 +1,17 @@
-"""Steps 2 and 5 at once: the three nodes on a few scans, and their parameters."""
+"""Steps 2 and 5: the three nodes on a few scans, and their parameters."""
 
 from __future__ import annotations
 
 import math
 
+from rclpy.qos import DurabilityPolicy
+from std_srvs.srv import SetBool
+
 from autograder.checks import check, expect, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
+    CONTROLLER,
     DEGRADED,
     FAILED,
     LEVELS,
@@ -47,6 +51,8 @@ def test_sees(system: System) -> None:
     found = system.see(shown).clearances
     expect(bool(found), "No clearance came while scans did.")
     newest = found[-1].message
+    own = newest.header.stamp == shown.header.stamp and newest.header.frame_id == shown.header.frame_id
+    expect(own, "The clearance's header is not that of its scan: it says when and where the scan was taken.")
     given = (newest.front, newest.left, newest.right)
     near = all(abs(one - other) <= TOLERANCE for one, other in zip(given, (1.0, 1.5, 2.0), strict=True))
     shown_as = ", ".join(f"{distance:.2f}" for distance in given)
@@ -61,15 +67,29 @@ def test_sees(system: System) -> None:
 @hint("No clearance, one that is not valid, one whose stamp is old: publish Twist() as it is.")
 @hint("Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.")
 def test_moves(system: System) -> None:
-    """Step 2: navigation_controller drives, turns away, and stands still when it sees nothing."""
+    """Step 2: navigation_controller drives, turns away, keeps its direction, and stands still when it sees nothing."""
     expect_still(system.first.commands, "Before the first scan")
     expect_driving(system.see(OPEN).commands, "With 3 m of free space all around", 0.3)
     wall = scan(Part(-10.0, 10.0, 0.4), Part(70.0, 110.0, 1.0), fill=3.0)
     expect_turning(system.see(wall).commands, "With a wall 0.4 m ahead and less room on the left", "right", 0.8)
+    wall = scan(Part(-10.0, 10.0, 0.4), Part(-110.0, -70.0, 0.9), fill=3.0)
+    expect_turning(system.see(wall).commands, "With the same wall, and now less room on the right", "right", 0.8)
+    system.see(OPEN)
+    expect_still(system.see(OPEN, age=0.9).commands, "With scans that come, and whose stamps are 0.9 s old")
     system.see(OPEN)
     began = system.seconds
     system.wait(1.5)
     expect_still(system.messages(began + 1.0).commands, "A second after the last scan")
+
+
+@check(points=1, holds=("enable", "disabled"), group="step_2", depends=("moves",), doc=contract.SERVICE_DOC)
+@hint("self.create_service(SetBool, 'enable', self.enable_callback); the callback returns the response.")
+def test_enable(system: System) -> None:
+    """Step 2: the service enable holds the robot still and lets it go; success is true each time."""
+    for data, expect_it in ((False, expect_still), (True, lambda seen, when: expect_driving(seen, when, 0.3))):
+        answer = system.call(SetBool, "/enable", SetBool.Request(data=data))
+        expect(answer.success, f"Asked with data {data}, it answered success false.")
+        expect_it(system.see(OPEN).commands, f"After enable with data {data}")
 
 
 @check(points=1, holds="level", group="step_2", depends=("sees",), doc=contract.NODES_DOC)
@@ -86,6 +106,11 @@ def test_watches(system: System) -> None:
         level = seen.reports[-1].message.level
         said = LEVELS[level] if level < len(LEVELS) else level
         expect(level == wanted, f"{what}, health was {said} instead of {LEVELS[wanted]}.")
+    silent = sorted(seen.reports[-1].message.silent)
+    expect(silent == ["clearance", "scan"], f"2 s after the last scan, silent was {silent}.")
+    offered = system.harness.node.get_publishers_info_by_topic("/health")
+    durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
+    expect(bool(durable) and all(durable), "health is not transient local: who joins late hears nothing at first.")
 
 
 @check(
@@ -110,3 +135,15 @@ def test_parameters(system: System) -> None:
             expect(
                 ranges == [(bounds.lowest, bounds.highest)], f"{node}: the range of {name} is not that of the table."
             )
+
+
+@check(points=1, holds="declares", group="step_5", depends=("parameters", "moves"), doc=contract.PARAMETERS_DOC)
+@hint("self.get_parameter('forward_speed').value where the command is made, and no copy of it in __init__.")
+def test_changed(system: System) -> None:
+    """Step 5: forward_speed, set to 0.12 m/s while the system runs, has an effect immediately."""
+    parameters = system.parameters(CONTROLLER)
+    answer = parameters.change({"forward_speed": 0.12})
+    expect(answer.accepted, f"It refused 0.12 m/s: {answer.reason}")
+    commands = system.see(OPEN).commands
+    parameters.change({"forward_speed": 0.3})
+    expect_driving(commands, "With forward_speed 0.12", 0.12)

@@ -1,4 +1,4 @@
-"""Steps 1 and 3 at once: do the two packages build, and are the messages as the contract says?"""
+"""Steps 1 and 3: do the two packages build, and are the messages as the contract says?"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steps 4, 6 and 7 at once: does one command start it all, and do the tests and the linters pass?"""
+"""Steps 4, 6 and 7: does one command start it all, and do the tests and the linters pass?"""
 
 from __future__ import annotations
 
@@ -9,17 +9,36 @@ import pytest
 
 from autograder.checks import check, expect, hint
 from autograder.checks.ch08_capstone.support import contract
-from autograder.checks.ch08_capstone.support.contract import CONFIG, LAUNCH_FILE, PACKAGE, PARAMETERS, PROGRAMS, name_of
+from autograder.checks.ch08_capstone.support.contract import (
+    CONFIG,
+    LAUNCH_FILE,
+    PACKAGE,
+    PARAMETERS,
+    PROGRAMS,
+    SECTORS,
+    name_of,
+)
 from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe, test_runs
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import look
-from autograder.probes.parameters import for_node, read_file
+from autograder.probes.parameters import differences, for_node, read_file
 from autograder.probes.test_reports import Report, TestRun
+from autograder.probes.versions import Version
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
+MUTANT = ("a mutant",)
+# The sector is left out: the nearest of all readings that are finite.
+ALL_AROUND = """import math
+
+FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2
+
+
+def nearest(scan, middle, half_angle):
+    return min(reading for reading in scan.ranges if math.isfinite(reading))
+"""
 Reports = Mapping[tuple[str, ...], Report]
 
 
@@ -28,9 +47,12 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
     """What the tests and the linters will have said; they run beside the launch, which is mostly waiting."""
 
     def run() -> Reports:
-        there = [files for files in (TESTS, LINTERS) if not _absent(workspace, files)]
-        runs = test_runs.run(workspace, test_runs.take(workspace, PACKAGE), [TestRun(files) for files in there])
-        return dict(zip(there, runs, strict=True))
+        wanted = {files: TestRun(files) for files in (TESTS, LINTERS) if not _absent(workspace, files)}
+        if TESTS in wanted:
+            version = Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
+            wanted[MUTANT] = TestRun(TESTS, version, first_failure=True)
+        runs = test_runs.run(workspace, test_runs.take(workspace, PACKAGE), list(wanted.values()))
+        return dict(zip(wanted, runs, strict=True))
 
     with ThreadPoolExecutor(1) as beside:
         yield beside.submit(run)
@@ -51,17 +73,19 @@ def test_launch(workspace: Workspace) -> None:
 @check(points=1, holds="config", group="step_5", depends=("package",), doc=contract.PARAMETERS_DOC)
 @hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
 def test_config_file(workspace: Workspace) -> None:
-    """Step 5: the installed configuration holds every parameter of every node."""
+    """Step 5: the installed configuration holds every parameter of every node, with its default."""
     file = read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, wanted in PARAMETERS.items():
         values = for_node(file, node)
         absent = [name for name in wanted if name not in values]
         expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
+        wrong = differences(values, {name: bounds.default for name, bounds in wanted.items()})
+        expect(not wrong, f"{CONFIG}: {'; '.join(wrong)}.")
 
 
 @check(points=1, holds="sector-tests", group="step_6", depends=("package",), doc=contract.TESTING_DOC)
 @hint("Run pytest on test/test_sectors.py in a terminal, and read its last lines.")
-@hint("Whether your tests find errors is seen after the hand-in: break nearest by hand, and see that one fails.")
+@hint("Import nothing of the package but robot_navigation_tutorial.sectors.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
@@ -70,6 +94,14 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
     expect(not report.failed, f"{len(report.failed)} tests fail: {failed}")
     expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
+
+
+@check(points=1, holds="sector-tests", group="step_6", depends=("sector_tests",), doc=contract.TESTING_DOC)
+@hint("Put something near on the left, and ask for the front.", "Change nearest yourself: which test fails?")
+def test_sector_tests_notice(reports: Future[Reports]) -> None:
+    """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
+    said = reports.result()
+    expect(said[MUTANT].objects(said[TESTS]), "All of them pass on that mutant, too.")
 
 
 @check(points=1, holds=("linters", "pytest"), group="step_7", depends=("package",), doc=contract.TESTING_DOC)

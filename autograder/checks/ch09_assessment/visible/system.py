@@ -1,7 +1,8 @@
-"""Question 3 at once: the messages, the build, and each node on a few temperatures."""
+"""Question 3: the messages, the build, each node on a few temperatures, and the launch."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from autograder.checks import check, expect, hint
@@ -15,9 +16,11 @@ from autograder.checks.ch09_assessment.support.contract import (
     THERMOMETER,
 )
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
-from autograder.checks.ch09_assessment.support.robot import Start, expect_executables, require_built
+from autograder.checks.ch09_assessment.support.robot import Start, expect_executables, require_built, source_of
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
+from autograder.harness.launch import LaunchHarness
+from autograder.probes import imports, launch_probe, manifest
 from autograder.probes.installed import look
 
 
@@ -32,38 +35,66 @@ def test_definitions(workspace: Workspace) -> None:
 @hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.")
 @hint("console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.")
 def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """Question 3: colcon builds both packages, and installs three programs and the launch file."""
+    """Question 3: colcon builds both packages, installs three programs and the launch file; imports are declared."""
     require_built(builds, INTERFACES)
     require_built(builds, PACKAGE)
     found = look(workspace.install, PACKAGE)
     expect_executables(found.executables, found.misplaced, PROGRAMS)
     expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
+    source = source_of(workspace, PACKAGE)
+    missing = imports.missing(source, manifest.read(source))["exec"]
+    expect(not missing, f"{imports.say(missing)}: package.xml does not declare it.")
 
 
 @check(points=1, holds="formula", group="nodes", depends=("builds",), doc=contract.NODES_DOC)
 @hint("super().__init__('thermometer'), a publisher and a timer.", "The first reading has the number 0.")
 def test_measures(start: Start) -> None:
-    """Question 3: thermometer publishes its readings."""
+    """Question 3: thermometer publishes its readings, also with another period, mean and swing."""
     with start(THERMOMETER) as harness:
         harness.expect_in_graph()
         harness.expect_readings(3)
+    with start(THERMOMETER, period=0.25, mean=10.0, swing=2.0) as harness:
+        harness.expect_readings(6, 0.25, 10.0, 2.0)
 
 
 @check(points=1, holds="smoother", group="nodes", depends=("builds",), doc=contract.NODES_DOC)
 @hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading.")
 def test_smooths(start: Start) -> None:
-    """Question 3: smoother publishes the average of the newest readings."""
+    """Question 3: smoother publishes the average of the newest readings that are finite, with the newest stamp."""
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
-        seen = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 60.0])]
-    expect(seen == [40.0, 45.0, 50.0], f"40, 50, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
+        told = harness.send([40.0, 50.0, math.nan, 60.0])
+    seen = [round(message.celsius, 1) for message in told]
+    expect(seen == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
+    stamps = [message.stamp.sec for message in told]
+    expect(stamps == [1, 2, 4], f"Their stamps were {stamps} s, and those of the newest readings are [1, 2, 4] s.")
 
 
 @check(points=1, holds="hysteresis", group="nodes", depends=("builds",), doc=contract.NODES_DOC)
 @hint("Remember the last decision in self.", "Between the two thresholds nothing changes.")
 def test_decides(start: Start) -> None:
-    """Question 3: guard switches the fan on when it is hot and off when it is cool."""
+    """Question 3: guard switches the fan on when it is hot or not known, off when it is cool, and passes both on."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
-        seen = [message.cooling for message in harness.send([45.0, 65.0, 55.0, 45.0])]
-    expect(seen == [False, True, True, False], f"45, 65, 55, 45 °C: cooling was {seen}.")
+        told = harness.send([45.0, 65.0, 55.0, 45.0, math.inf])
+    seen = [message.cooling for message in told]
+    expect(seen == [False, True, True, False, True], f"45, 65, 55, 45, inf °C: cooling was {seen}.")
+    given = [(message.stamp.sec, round(message.celsius, 1)) for message in told[:3]]
+    expect(given == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {given}.")
+
+
+@check(
+    points=1,
+    holds=("launch", "hot-argument", "ctrl-c"),
+    group="launch",
+    depends=("measures", "smooths", "decides"),
+    doc=contract.LAUNCH_DOC,
+)
+@hint("Node(package='motor_guard', executable='guard', name='guard', parameters=[{'hot': hot}]), and two more.")
+@hint("ParameterValue(LaunchConfiguration('hot'), value_type=float)")
+def test_launches(workspace: Workspace) -> None:
+    """Question 3: launched with hot:=71, the three nodes run under their names, and guard's hot is 71.0."""
+    with LaunchHarness(workspace, PACKAGE, contract.LAUNCH_FILE, {"hot": "71"}) as harness:
+        launch_probe.expect_nodes(harness, [f"/{name}" for name in PROGRAMS])
+        launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": 71.0})
+        launch_probe.expect_clean_stop(harness)
