@@ -46,7 +46,7 @@ if 'install' in sys.argv:
     print('a word to stderr', file=sys.stderr)
 """
 AT_INSTALL = "if 'install' in sys.argv:"
-FROM_RUN_TO_RUN = re.compile(r"\[[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
+FROM_RUN_TO_RUN = re.compile(r"\[-?[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
 
 
 def bring(workspace: Workspace, package: str, *lines: str) -> None:
@@ -91,10 +91,12 @@ def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
 def told(output: str) -> set[str]:
     """What a build says of packages and errors; colcon mixes its children's streams in any order.
 
-    Its own threads share stderr, too: what one logs may come before another's end of line.
+    Its own threads share stderr, too: what one logs may come before another's end of line. From Python 3.13 on, a
+    traceback shows the source of `python -c`, if the program was started.
     """
-    text = FROM_RUN_TO_RUN.sub("", output).replace(" ERROR:", "\nERROR:")
-    return {line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line)}
+    text = re.sub(r" (ERROR|WARNING):", r"\n\1:", FROM_RUN_TO_RUN.sub("", output))
+    lines = (line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line))
+    return {line for line in lines if not line.startswith("import sys;")}
 
 
 def files(folder: Path) -> dict[str, list[Any]]:
