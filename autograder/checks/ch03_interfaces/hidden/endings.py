@@ -20,7 +20,7 @@ check = group("action", doc=contract.ACTION)
 @hint("Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().")
 @hint("cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.")
 def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
-    """A cancel stops the robot at once: the goal ends CANCELED, and the result says how far it came and why."""
+    """A cancel stops the robot immediately: the goal ends CANCELED, and the result says how far it came and why."""
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(4.5, 0.5)
     placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.9)

@@ -39,7 +39,7 @@ def test_order(launches: Launches, inputs: Inputs) -> None:
 @hint("The reporter waits for nobody: it stands in the LaunchDescription itself.")
 @hint("What stands in the list is started at once, one thing after the other, without waiting.")
 def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
-    """The reporter starts at once, while the self-test still runs."""
+    """The reporter starts immediately, while the self-test still runs."""
     harness = launches.safe(battery=inputs.enough)
     expect(REPORTER in harness.nodes(), "The reporter does not run.")
     before = harness.output.partition("process has finished cleanly")[0]

@@ -1,4 +1,4 @@
-"""Changes while the node runs: judged together, without side effects, and carried out at once."""
+"""Changes while the node runs: judged together, without side effects, and carried out immediately."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
 @hint("A value that was copied to an attribute in __init__ stays what it was.")
 @hint("speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.")
 def test_speed_change(robot: Robot, draw: random.Random) -> None:
-    """A new max_linear_velocity is driven at once."""
+    """A new max_linear_velocity is driven immediately."""
     expect_speed(robot.speed_at(2.5), SPEED, "With its defaults and 2.5 m of free way")
     speed = draw.randrange(45, 90) / 100
     _change(robot, {"max_linear_velocity": speed})
@@ -95,7 +95,7 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
 @check(points=2, holds="at-once", depends=("together",))
 @hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
-    """New distances decide at once where it slows down and where it stops."""
+    """New distances decide immediately where it slows down and where it stops."""
     safety = draw.randrange(110, 150) / 100
     slow = safety + 0.6
     _change(robot, {"safety_distance": safety, "slow_distance": round(slow, 2)})
@@ -107,7 +107,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
 @check(points=1, holds="at-once", depends=("names",))
 @hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
-    """A new battery_threshold decides at once whether it stands still."""
+    """A new battery_threshold decides immediately whether it stands still."""
     robot.charge(50.0)
     expect_speed(robot.speed_at(2.5), SPEED, "With a threshold of 20 percent and a charge of 50")
     _change(robot, {"battery_threshold": 60})

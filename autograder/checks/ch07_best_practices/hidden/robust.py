@@ -36,7 +36,7 @@ def test_once_a_second(workspace: Workspace) -> None:
 @check(points=2, holds="once-a-second", depends=("once_a_second",), doc=QOS)
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.", "STATUS_QOS, not 10.")
 def test_late_joiners(workspace: Workspace) -> None:
-    """Who joins late can have the last status at once: it is offered transient local."""
+    """A node that joins late can have the last status immediately: it is offered transient local."""
     with Robust(workspace) as harness:
         offered = harness.node.get_publishers_info_by_topic(WORDS)
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]

@@ -86,7 +86,7 @@ def test_ranges(system: System) -> None:
 @hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
 @hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
 def test_used(system: System) -> None:
-    """A parameter that is changed while the system runs has an effect at once."""
+    """A parameter that is changed while the system runs has an effect immediately."""
     wrong = [said for said in (_effect(system, *case) for case in _CASES) if said]
     if wrong:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / len(_CASES), 2))
