@@ -11,6 +11,7 @@ from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
+EDGE = 1.5  # degrees from the edge of the forward sector, a twentieth of its half; the edge itself is left open
 
 
 @check(points=2, holds=("clear", "in-range"), depends=TALKS)
@@ -48,9 +49,12 @@ def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
     near = draw.uniform(0.3, 0.7)
     for name, first, last in (("behind", 150.0, 180.0), ("to the left", 45.0, 110.0), ("to the right", -110.0, -45.0)):
         expect_forward(robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead")
-    for bearing in (-contract.HALF_SECTOR + 4.0, contract.HALF_SECTOR - 4.0):
-        edge = scan(Part(bearing - 2.0, bearing + 2.0, near))
-        expect_turn(robot.see(edge), f"With something {near:.2f} m away at {bearing:.0f}°, inside the forward sector")
+    for side in (-1.0, 1.0):
+        inside, outside = (side * (contract.HALF_SECTOR + off) for off in (-EDGE, EDGE))
+        edge = scan(Part(inside - 0.6, inside + 0.6, near))
+        expect_turn(robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, inside the forward sector")
+        edge = scan(Part(outside - 0.6, outside + 0.6, near))
+        expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
 
 
 @check(points=2, holds="bearings", depends=("forward_when_clear", "turns_when_blocked"), doc=contract.LASER_SCAN)

@@ -33,11 +33,11 @@ class Robot(AutoHarness):
             self.show(scan)
         return self.messages("/cmd_vel", since=began + SETTLED)
 
-    def show(self, scan: LaserScan) -> None:
-        """Show one scan, taken now, and let 0.1 s pass."""
+    def show(self, scan: LaserScan, seconds: float = SCAN_SECONDS) -> None:
+        """Show one scan, taken now, and let this time pass."""
         scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(self.next_ns, 10**9)
         self.publish("/scan", scan)
-        self.run(SCAN_SECONDS)
+        self.run(seconds)
 
     def left_alone(self, seconds: float) -> list[Stamped]:
         """Show nothing for a while; return the commands of that time."""
