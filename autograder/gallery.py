@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from autograder.checks.temporal import Verdict
 from autograder.result import Artifact
 from sim import Recording
+
+if TYPE_CHECKING:
+    from autograder.checks.temporal import Verdict  # at run time, rtamt is slow to import
 
 DPI = 96
 
@@ -21,12 +24,14 @@ class Gallery:
         folder: folder that gets the pictures.
         check: id of the check, the first part of the file names.
         closed: whether nothing is saved.
+        recordings: whether whole recordings are saved, too.
         artifacts: records of the pictures that were saved. The galleries of all checks share this list.
     """
 
     folder: Path
     check: str = ""
     closed: bool = False
+    recordings: bool = False
     artifacts: list[Artifact] = field(default_factory=list)
 
     def of(self, check: str) -> Gallery:
@@ -66,6 +71,8 @@ class Gallery:
             sim.view.Margin(rule, verdict.times, verdict.values, verdict.violated_at)
             for rule, verdict in (rules or {}).items()
         ]
+        if self.recordings:
+            recording.save(self.folder / f"{stem}.npz")
         run = f"{stem}.run.json"
         (self.folder / run).write_text(sim.view.encode(recording, caption, margins), encoding="utf-8")
         self.artifacts.append(Artifact(f"{stem}.png", "track", recording.sha256(), self.check, caption, run))

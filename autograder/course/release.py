@@ -33,7 +33,7 @@ STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefi
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # Parts for instructors only, as paths in the bundle.
 _PACKAGES = ("proof", "course", "nbgrader", "export", "feedback")
-_VERBS = ("course", "demo", "export", "grade", "notebooks", "release", "verify")
+_VERBS = ("course", "demo", "export", "grade", "notebooks", "release", "replay", "verify")
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
 
 

@@ -13,17 +13,19 @@ MEMORY = "memory"  # the folder of a lane's scratch that outlives its jobs
 
 @dataclass(frozen=True)
 class Scope:
-    """How much of a suite is run. Anything but all of it is for the proof, where nobody gets marks.
+    """How much of a suite is run. Anything but all of it is for the proof and for a replay, where nobody gets marks.
 
     Attributes:
         only: the checks to run; all of them when empty.
         first_loss: whether to stop at the first check that does not pass.
         pictures: whether checks leave pictures.
+        recordings: whether they leave whole recordings, too.
     """
 
     only: tuple[str, ...] = ()
     first_loss: bool = False
     pictures: bool = True
+    recordings: bool = False
 
 
 ALL = Scope()

@@ -3,7 +3,8 @@
 `ros()` switches ROS 2 on for the kernel. `drive(...)` lets a program of the workspace steer the simulated robot,
 faster than real time; `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` stands in
 the locked cells. `source(...)` does for the kernel what `source install/setup.bash`
-does in a terminal; `simulator(...)` runs the simulator beside it for a while.
+does in a terminal; `simulator(...)` runs the simulator beside it for a while. `graph()` draws the nodes that run and
+their topics.
 
 Students' programs run in processes of their own, never in the kernel.
 """
@@ -18,6 +19,7 @@ from autograder.notebook import writefile
 from autograder.notebook.checking import CheckReport, check
 from autograder.notebook.comparing import side_by_side
 from autograder.notebook.driving import DriveReport, drive
+from autograder.notebook.graph import Graph, graph
 from autograder.notebook.notices import NotGraded, Notice
 from autograder.notebook.simulator_session import SimulatorSession, simulator
 from autograder.notebook.sourcing import source
@@ -29,11 +31,13 @@ from sim.grading import grading
 __all__ = [
     "CheckReport",
     "DriveReport",
+    "Graph",
     "Notice",
     "SimulatorSession",
     "check",
     "drive",
     "grade",
+    "graph",
     "ros",
     "side_by_side",
     "simulator",

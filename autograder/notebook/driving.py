@@ -30,7 +30,7 @@ from sim.codec import to_json
 from sim.grading import grading
 
 if TYPE_CHECKING:
-    from sim.view import Picture
+    from sim.view import Picture, Player
 
 FAULTS = {
     "nan": Faults(sectors=(DeadSector(-0.05, 0.05),)),
@@ -44,7 +44,7 @@ Parameters = Mapping[str, object] | str | Path
 
 @dataclass(frozen=True, eq=False)
 class DriveReport:
-    """A drive; shown as the picture of the robot's track.
+    """A drive; shown by the player, and as the picture of the robot's track where nothing can play.
 
     Attributes:
         recording: the run: times, poses, scans, collisions.
@@ -75,11 +75,20 @@ class DriveReport:
         note = "" if self.collided_at is None else "collision"
         return plot(self.recording, mark=self.collided_at, note=note)
 
+    @property
+    def player(self) -> Player:
+        """The run, to be played, with the gap to the nearest thing in time."""
+        from sim.view import Margin, Player
+
+        gaps = self.recording.clearances.min(axis=1).tolist()
+        margin = Margin("the gap to the nearest thing, in m", self.recording.times.tolist(), gaps, self.collided_at)
+        return Player(self.recording, margins=[margin], still=self.picture)
+
     def __repr__(self) -> str:
         return self.picture.alt
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> object:
-        return self.picture._repr_mimebundle_(include, exclude)
+        return self.player._repr_mimebundle_(include, exclude)
 
 
 def drive(

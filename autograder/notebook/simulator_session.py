@@ -18,7 +18,7 @@ from sim.grading import grading
 
 if TYPE_CHECKING:
     from sim import Recording
-    from sim.view import Picture
+    from sim.view import Player
 
 
 class SimulatorSession:
@@ -28,13 +28,13 @@ class SimulatorSession:
         self.recording: Recording | None = None
 
     @property
-    def track(self) -> Picture | Notice:
-        """The robots' tracks as a picture."""
+    def track(self) -> Player | Notice:
+        """The robots' tracks: the player, and a picture where nothing can play."""
         if self.recording is None:
             return Notice("The robot has not been simulated yet.")
-        from sim.view import plot
+        from sim.view import Player
 
-        return plot(self.recording)
+        return Player(self.recording)
 
 
 @contextmanager

@@ -12,15 +12,17 @@ from typing import Any
 
 import nbformat
 import pytest
+from click.testing import CliRunner
 from nbformat.v4 import new_code_cell, new_notebook
 
+from autograder import cli
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
 from autograder.exceptions import IsolationError, UsageError
 from autograder.grading import grade_submission, pipeline
 from autograder.grading.batch import Entry, grade_all
 from autograder.proof.mutants import write_reference
-from autograder.result import Result, Status
+from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier, tiers
 
 ASSIGNMENT = "02_nodes"
@@ -103,6 +105,20 @@ def test_one_at_a_time_gives_the_same_result_as_two_at_once(
     tracks = [artifact.sha256 for artifact in alone.artifacts]
     assert tracks == [artifact.sha256 for artifact in together["notebook"].artifacts]
     assert len(set(tracks)) == 3
+
+
+def test_a_check_is_replayed_with_the_seed_of_its_result(
+    together: dict[str, Result], reference: Path, tmp_path: Path
+) -> None:
+    write_json(tmp_path / "result.json", together["tree"].to_json())
+    arguments = ["replay", str(tmp_path), "--check", "room", "--submission", str(reference), "--mcap", "--no-open"]
+    said = CliRunner().invoke(cli.group, arguments)
+    assert said.exit_code == 0, said.output
+    assert "is not what was graded then" not in said.output
+    folder = tmp_path / "replay" / "room"
+    assert (folder / "room-track" / "room-track.mcap").is_file()
+    picture = next(artifact for artifact in together["tree"].artifacts if artifact.check == "room")
+    assert picture.caption in (folder / "feedback.html").read_text(encoding="utf-8")  # the metres are the same
 
 
 # What is wrong is named.

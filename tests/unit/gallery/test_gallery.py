@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from autograder.gallery import Gallery
@@ -16,6 +17,9 @@ def test_a_picture_is_saved_under_the_check_with_the_fingerprint_of_the_run(tmp_
     (artifact,) = gallery.artifacts
     assert (artifact.check, artifact.sha256) == ("touches_nothing", RECORDING.sha256())
     assert (tmp_path / "out" / artifact.name).read_bytes().startswith(b"\x89PNG")
+    run = json.loads((tmp_path / "out" / artifact.run).read_text(encoding="utf-8"))
+    assert run["alt"] == artifact.caption
+    assert len(list((tmp_path / "out").iterdir())) == 2
 
 
 def test_a_closed_gallery_leaves_nothing(tmp_path: Path) -> None:

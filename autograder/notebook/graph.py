@@ -1,0 +1,149 @@
+"""`graph`: the running system as a picture: its nodes and the topics between them, by ROS's own graph."""
+
+from __future__ import annotations
+
+import html
+import time
+from dataclasses import dataclass
+from typing import Any
+
+from autograder.notebook.notices import Notice
+from sim.grading import grading
+
+QUIET = ("/rosout", "/parameter_events", "/clock")
+"""Topics that nearly every node has, which would hide the others."""
+
+SETTLED = 1.0  # s without a change: discovery is over
+ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: the height of a row, the widths of boxes, the way between columns
+
+STYLE = """
+.ros-graph { font: 13px system-ui, sans-serif; max-width: 100%; }
+.ros-graph rect { fill: #0072b222; stroke: #0072b2; } .ros-graph rect.topic { fill: #8886; stroke: none; }
+.ros-graph text { fill: currentColor; text-anchor: middle; } .ros-graph text.kind { font-size: 10px; opacity: .75; }
+.ros-graph path { fill: none; stroke: currentColor; stroke-opacity: .7; }
+.ros-graph .head { fill: currentColor; stroke: none; }
+"""
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Who publishes and who subscribes.
+
+    Attributes:
+        nodes: full names, in order.
+        topics: the type of each topic, by its name.
+        published: pairs of a node and a topic.
+        subscribed: pairs of a topic and a node.
+    """
+
+    nodes: tuple[str, ...]
+    topics: dict[str, str]
+    published: frozenset[tuple[str, str]]
+    subscribed: frozenset[tuple[str, str]]
+
+    def __repr__(self) -> str:
+        arrows = [f"{node} -> {topic}" for node, topic in sorted(self.published)]
+        arrows += [f"{topic} -> {node}" for topic, node in sorted(self.subscribed)]
+        return "\n".join([f"{len(self.nodes)} nodes: {', '.join(self.nodes)}", *arrows])
+
+    def _repr_html_(self) -> str:
+        """Return a drawing: publishers, topics, subscribers, from left to right. A node may be at both ends."""
+        left = sorted({node for node, _ in self.published} | (set(self.nodes) - {node for _, node in self.subscribed}))
+        right = sorted({node for _, node in self.subscribed})
+        topics = sorted(self.topics)
+        height = ROW * max(len(left), len(right), len(topics), 1)
+        where = {
+            (column, name): (x, (number + 0.5) * height / len(names))
+            for column, (x, names) in enumerate(((0, left), (NODE + GAP, topics), (NODE + TOPIC + 2 * GAP, right)))
+            for number, name in enumerate(names)
+        }
+        boxes = "".join(
+            _box(x, y, name, self.topics[name] if column == 1 else None) for (column, name), (x, y) in where.items()
+        )
+        arrows = "".join(_arrow(where[0, node], NODE, where[1, topic]) for node, topic in sorted(self.published))
+        arrows += "".join(_arrow(where[1, topic], TOPIC, where[2, node]) for topic, node in sorted(self.subscribed))
+        width = 2 * NODE + TOPIC + 2 * GAP
+        return (
+            f'<svg class="ros-graph" xmlns="http://www.w3.org/2000/svg" width="{width}"'
+            f' viewBox="-2 0 {width + 4} {height}" role="img" aria-label="{html.escape(repr(self), quote=True)}">'
+            f"<style>{STYLE}</style>{arrows}{boxes}</svg>"
+        )
+
+
+def graph(seconds: float = 10.0, hidden: tuple[str, ...] = QUIET) -> Graph | Notice:
+    """Draw the nodes that run now, and the topics between them.
+
+    Args:
+        seconds: how long to look at most. The picture is drawn as soon as there is a node and the graph has
+            not changed for a second.
+        hidden: topics that are left out.
+
+    Raises:
+        ModuleNotFoundError: ROS is not on; call `ros()` first.
+    """
+    if grading():
+        return Notice("The graph is not drawn while the notebook is graded.")
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.node import Node
+
+    context = Context()
+    rclpy.init(context=context)
+    try:
+        looker = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
+        return _settled(looker, seconds, hidden)
+    finally:
+        rclpy.try_shutdown(context=context)
+
+
+def _settled(looker: Any, seconds: float, hidden: tuple[str, ...]) -> Graph:
+    """Look until the graph has stayed the same for a while, or the time is over."""
+    end = time.monotonic() + seconds
+    seen, since = _look(looker, hidden), time.monotonic()
+    while time.monotonic() < min(end, since + SETTLED):
+        time.sleep(0.05)
+        now = _look(looker, hidden)
+        if now != seen or not now.nodes:
+            seen, since = now, time.monotonic()
+    return seen
+
+
+def _look(looker: Any, hidden: tuple[str, ...]) -> Graph:
+    """Return the graph as it is now, without hidden nodes, whose names begin with an underscore."""
+    topics = {name: kinds[0] for name, kinds in looker.get_topic_names_and_types() if name not in hidden}
+    published = {(_name(end), topic) for topic in topics for end in looker.get_publishers_info_by_topic(topic)}
+    subscribed = {(topic, _name(end)) for topic in topics for end in looker.get_subscriptions_info_by_topic(topic)}
+    nodes = {f"{space.rstrip('/')}/{name}" for name, space in looker.get_node_names_and_namespaces()}
+    shown = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
+    return Graph(
+        shown,
+        topics,
+        frozenset(pair for pair in published if pair[0] in shown),
+        frozenset(pair for pair in subscribed if pair[1] in shown),
+    )
+
+
+def _name(end: Any) -> str:
+    return f"{end.node_namespace.rstrip('/')}/{end.node_name}"
+
+
+def _box(x: float, y: float, name: str, kind: str | None) -> str:
+    name = html.escape(name)
+    if kind is None:
+        return (
+            f'<rect x="{x}" y="{y - 15}" width="{NODE}" height="30" rx="15"/>'
+            f'<text x="{x + NODE / 2}" y="{y + 4}">{name}</text>'
+        )
+    return (
+        f'<rect class="topic" x="{x}" y="{y - 18}" width="{TOPIC}" height="36" rx="3"/>'
+        f'<text x="{x + TOPIC / 2}" y="{y - 2}">{name}</text>'
+        f'<text class="kind" x="{x + TOPIC / 2}" y="{y + 12}">{html.escape(kind)}</text>'
+    )
+
+
+def _arrow(start: tuple[float, float], width: float, end: tuple[float, float]) -> str:
+    x1, y1, x2, y2 = start[0] + width, start[1], end[0] - 8, end[1]
+    middle = (x1 + x2) / 2
+    return (
+        f'<path d="M{x1} {y1}C{middle} {y1} {middle} {y2} {x2} {y2}"/><path class="head" d="M{x2 + 7} {y2}l-8 -4v8z"/>'
+    )

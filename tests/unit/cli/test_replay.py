@@ -1,0 +1,61 @@
+"""`autograder replay`: one check of a stored result and its run, on a page of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from autograder import cli
+from autograder.exceptions import UsageError
+from autograder.gallery import Gallery
+from autograder.result import Result, write_json
+from sim import Command, Simulation, World, box, run
+
+RECORDING = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)
+
+
+@pytest.fixture
+def stored(make_result: Callable[..., Result], tmp_path: Path) -> Path:
+    """The folder of a result with runs of two checks."""
+    gallery = Gallery(tmp_path)
+    for check in ("starts", "turns"):
+        gallery.of(check).track("track", RECORDING, f"The run of {check}.")
+    write_json(tmp_path / "result.json", make_result(artifacts=tuple(gallery.artifacts)).to_json())
+    return tmp_path
+
+
+def test_the_kept_run_of_one_check_is_shown_alone(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(variable, raising=False)
+    for path in (stored, stored / "result.json"):  # the page of the first time is no second result
+        said = CliRunner().invoke(cli.group, ["replay", str(path), "--check", "turns"])
+        assert said.exit_code == 0, said.output
+        page = stored / "replay" / "turns" / "feedback.html"
+        assert said.output == f"The run of 'turns': {page}\n"
+    text = page.read_text(encoding="utf-8")
+    assert 'id="run-turns-track"' in text
+    assert 'id="run-starts-track"' not in text
+
+
+def test_a_browser_opens_when_it_is_asked_for(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    for option in ("--open", "--no-open"):
+        assert CliRunner().invoke(cli.group, ["replay", str(stored), "--check", "turns", option]).exit_code == 0
+    assert opened == [(stored / "replay" / "turns" / "feedback.html").as_uri()]
+
+
+def test_a_wrong_call_says_what_would_be_right(stored: Path) -> None:
+    for options, sentence in (
+        (["--check", "flies"], "the result has no check 'flies'; it has: starts, listens, turns"),
+        (["--check", "turns", "--mcap"], "--mcap needs --submission PATH"),
+    ):
+        error = CliRunner().invoke(cli.group, ["replay", str(stored), *options]).exception
+        assert isinstance(error, UsageError)
+        assert sentence in str(error)
+    write_json(stored / "more" / "result.json", {})
+    error = CliRunner().invoke(cli.group, ["replay", str(stored), "--check", "turns"]).exception
+    assert isinstance(error, UsageError)
