@@ -1,39 +1,56 @@
 """Running a piece of test code where the grader's worker runs: in a cell, with ROS switched on.
 
-The piece is a function of a test module. It is started by name in a new process and answers in JSON:
+The piece is a function of a test module. It is run by name in a process of its own and answers in JSON:
 
     answer = in_cell(probe, "argument")     # runs probe(scratch, "argument") in a cell, returns what it returned
+
+Its process is forked from one that has imported ROS and the harness, as those of the proof are. All pieces of a pytest
+process use that one's cell, one after another, and each has a scratch folder of its own.
 """
 
 from __future__ import annotations
 
+import atexit
+import gc
 import importlib
 import json
+import os
+import socket
+import subprocess
 import sys
+import traceback
 from collections.abc import Callable
+from contextlib import ExitStack
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
-from autograder.sandbox import Process, Tier
-from autograder.sandbox.cell import run_in_cell
+from autograder.sandbox import Process, Tier, cell
+from autograder.sandbox.limits import PROOF_CELL
 
 ROOT = Path(__file__).resolve().parents[2]
 _MARK = "answer: "
 
 
-def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUBBLEWRAP) -> Any:
-    """Run `function(scratch, *arguments)` in a cell; return its answer, which crosses as JSON."""
-    name = f"{Path(function.__code__.co_filename).relative_to(ROOT).with_suffix('').as_posix().replace('/', '.')}"
-    report = run_in_cell(
-        lambda scratch: [
-            *(sys.executable, "-m", "tests.e2e.cell_support"),
-            *(name, function.__name__, str(scratch), json.dumps(arguments)),
-        ],
-        tier,
-    )
-    answers = [line for line in report.output.splitlines() if line.startswith(_MARK)]
-    assert report.returncode == 0, report.output
-    assert answers, report.output
+def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUBBLEWRAP, own_cell: bool = False) -> Any:
+    """Run `function(scratch, *arguments)` in a cell; return its answer, which crosses as JSON.
+
+    Args:
+        function: a function of a test module.
+        arguments: what JSON can hold.
+        tier: of the cell; any but bubblewrap gets a cell of its own.
+        own_cell: whether it gets a cell that ends with it.
+    """
+    module = Path(function.__code__.co_filename).relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
+    piece = json.dumps([module, function.__name__, arguments])
+    if own_cell or tier is not Tier.BUBBLEWRAP:
+        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, str(scratch), piece], tier)
+        status, said = report.returncode, report.output
+    else:
+        status, said = _shared_cell().run(piece)
+    answers = [line for line in said.splitlines() if line.startswith(_MARK)]
+    assert status == 0, said
+    assert answers, said
     return json.loads(answers[-1].removeprefix(_MARK))
 
 
@@ -47,14 +64,91 @@ def is_forked(process: Process) -> bool:
     return b"autograder.prefork" in words
 
 
+_PROGRAM = (sys.executable, "-m", "tests.e2e.cell_support")
+
+
+class _SharedCell:
+    """A cell with a process that forks for each piece."""
+
+    def __init__(self) -> None:
+        stack = ExitStack()
+        atexit.register(stack.close)
+        ours, theirs = socket.socketpair()
+        with theirs:
+            fd = theirs.fileno()
+            command = [*_PROGRAM, "serve", str(fd)]
+            made = cell.in_cell(lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, PROOF_CELL, pass_fds=(fd,))
+            self._process, _ = stack.enter_context(made)
+        self._requests, self._replies = ours.makefile("w"), ours.makefile("r")
+        self._variables = dict(os.environ)
+
+    def run(self, piece: str) -> tuple[int, str]:
+        """Run one piece, with the variables that a test has set; return its exit status and what it wrote."""
+        own = {name: value for name, value in os.environ.items() if self._variables.get(name) != value}
+        print(json.dumps([own, piece]), file=self._requests, flush=True)
+        reply = self._replies.readline()
+        assert reply, self._process.output
+        status, said = json.loads(reply)
+        return status, said
+
+
+_shared_cell = lru_cache(maxsize=1)(_SharedCell)
+
+
+def _serve(scratch: Path, requests: TextIO, replies: TextIO) -> None:
+    """Run pieces, each in a child of its own, until there are no more."""
+    from autograder.prefork.profiles import PROFILES
+    from autograder.sandbox.launcher import warm_up
+
+    importlib.import_module("autograder.harness")
+    for profile in PROFILES:  # a server that a child warmed up would end with it
+        warm_up(profile)
+    gc.collect()
+    gc.freeze()  # what the children share is not theirs to look through
+    for number, (variables, piece) in enumerate(map(json.loads, requests)):
+        place, said = scratch / f"{number}", scratch / f"{number}.log"
+        place.mkdir()
+        child = os.fork()
+        if child == 0:
+            os.environ.update(variables)
+            _be_child(place, piece, said)
+        _, status = os.waitpid(child, 0)
+        print(json.dumps([os.waitstatus_to_exitcode(status), said.read_text()]), file=replies, flush=True)
+        subprocess.run(["rm", "-rf", "--", place, said], check=True)
+
+
+def _be_child(place: Path, piece: str, said: Path) -> None:
+    status = 1
+    try:
+        with said.open("w") as log:
+            os.dup2(log.fileno(), 1)
+            os.dup2(log.fileno(), 2)
+        _run(place, piece)
+        status = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def _run(scratch: Path, piece: str) -> None:
+    module, function, arguments = json.loads(piece)
+    answer = getattr(importlib.import_module(module), function)(scratch, *arguments)
+    print(_MARK + json.dumps(answer), flush=True)
+
+
 def main() -> None:
-    """Run the function that the command line names."""
+    """Run the piece that the command line holds, or serve on the descriptor that it names."""
     from autograder.ros import activate
 
     activate()
-    module, function, scratch, arguments = sys.argv[1:]
-    answer = getattr(importlib.import_module(module), function)(Path(scratch), *json.loads(arguments))
-    print(_MARK + json.dumps(answer), flush=True)
+    if sys.argv[1] == "serve":
+        with socket.socket(fileno=int(sys.argv[2])) as link:
+            _serve(Path(sys.argv[3]), link.makefile("r"), link.makefile("w"))
+    else:
+        _run(Path(sys.argv[1]), sys.argv[2])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -161,9 +162,15 @@ def turns(scratch: Path, program: str) -> dict[str, Any]:
     return found
 
 
+@lru_cache
+def both_ways(name: str) -> Any:
+    """Return what `turns` finds out about a program."""
+    return in_cell(turns, {**PROGRAMS, **MORE}[name])
+
+
 @pytest.mark.parametrize("name", [*MORE, "two nodes in one executor", "many threads", "two nodes by turns"])
 def test_leaving_out_what_is_idle_changes_nothing(name: str) -> None:
-    found = in_cell(turns, {**PROGRAMS, **MORE}[name])
+    found = both_ways(name)
     (said, notes, turned), (said_idly, notes_idly, turned_idly) = found["all"], found["needed"]
     assert len(said) >= STEPS // EVERY
     assert (said_idly, notes_idly) == (said, notes)
@@ -172,6 +179,6 @@ def test_leaving_out_what_is_idle_changes_nothing(name: str) -> None:
 
 @pytest.mark.parametrize(("name", "most"), [("a slow timer", 30), ("nothing but a subscription", 20)])
 def test_a_program_lives_through_few_instants_when_it_has_little_to_do(name: str, most: int) -> None:
-    found = in_cell(turns, MORE[name])
+    found = both_ways(name)
     assert found["all"][2] >= STEPS
     assert found["needed"][2] <= most

@@ -322,7 +322,7 @@ def _bombs(code: str) -> set[int]:
 
 def test_when_a_worker_is_killed_its_sandboxes_die_with_it() -> None:
     with pytest.raises(AssertionError, match="answer: ") as caught:
-        in_cell(killed)
+        in_cell(killed, own_cell=True)
     pids = str(caught.value).partition("answer: ")[2].split()[:2]
     for pid in pids:
         _until(lambda pid=pid: not Path(f"/proc/{pid}").exists())  # type: ignore[misc]
