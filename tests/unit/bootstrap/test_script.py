@@ -56,6 +56,7 @@ def test_the_script_says_in_a_sentence_why_it_cannot(script_clone: Path) -> None
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_the_script_passes_on_pips_own_words_and_leaves_no_stamp(script_clone: Path) -> None:
     done = script(script_clone)
     assert done.returncode == 1

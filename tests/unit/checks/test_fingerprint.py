@@ -84,6 +84,7 @@ def test_a_suites_version_is_the_digest_of_all_that_it_reads() -> None:
     assert len(suite.version) == 12
 
 
+@pytest.mark.slow
 def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     code = (
         "import json, sys\n"

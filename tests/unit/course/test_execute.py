@@ -42,6 +42,7 @@ def test_making_a_form_leaves_the_source_alone() -> None:
     assert source.cells[0].source == SOLVED
 
 
+@pytest.mark.slow
 def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
     made = chapter(
         tmp_path,
@@ -60,6 +61,7 @@ def test_a_notebook_runs_beside_a_copy_of_its_files(tmp_path: Path) -> None:
     assert "hello" in (tmp_path / "out/report.ipynb").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("source", "message"),
     [
@@ -76,6 +78,7 @@ def test_an_error_and_a_warning_both_fail_and_name_their_cell(tmp_path: Path, so
     assert message in result.failure
 
 
+@pytest.mark.slow
 def test_several_notebooks_run_at_once_each_in_a_domain_of_its_own(tmp_path: Path) -> None:
     # Each waits until the other one has come: one after the other, both would fail.
     meet = """import os, time

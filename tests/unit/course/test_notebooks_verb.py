@@ -12,6 +12,8 @@ from autograder import cli, layout
 
 from .notebooks import chapter, code, notebook, solution
 
+pytestmark = pytest.mark.slow  # kernels are started
+
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

@@ -66,6 +66,7 @@ def test_no_bytes_get_through_but_events(noise: bytes) -> None:
     assert isinstance(event["event"], str)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.dictionaries(FIELDS, JSON))
 def test_forged_fields_of_any_type_become_records_of_the_right_one(forged: dict[str, Any]) -> None:

@@ -17,7 +17,10 @@ from autograder.grading import DEFAULT_SEED, Graded
 from autograder.result import Artifact, CheckResult, Status
 
 # nbgrader's own use of SQLAlchemy.
-pytestmark = pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
+]
 
 BOOKED = {"grade-graph": (3.0, 3.0, False), "grade-reaction": (1.0, 4.0, False)}
 

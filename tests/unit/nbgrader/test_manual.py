@@ -18,7 +18,10 @@ from autograder.grading import Graded
 from .conftest import ASSIGNMENT, ROOT, course_in, marked, source_notebook
 
 # nbgrader's own use of SQLAlchemy.
-pytestmark = pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
+]
 
 QUESTION = "## Explain\n\nWhy?\n\n### BEGIN MARK SCHEME\nOne point for BECAUSE.\n### END MARK SCHEME"
 ANSWER = "# BEGIN SOLUTION\nFor a SECRET reason.\n# END SOLUTION"

@@ -41,6 +41,7 @@ OUTPUT = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.lists(OUTPUT, max_size=4))
 def test_whatever_a_kernel_sent_becomes_valid_harmless_outputs(outputs: list[dict[str, Any]]) -> None:

@@ -51,6 +51,7 @@ def test_nothing_is_sourced_while_the_notebook_is_graded(monkeypatch: pytest.Mon
     assert isinstance(source("/no/where"), Notice)
 
 
+@pytest.mark.slow
 def test_interfaces_built_beside_a_kernel_are_imported_and_sent_and_old_ones_are_noticed(tmp_path: Path) -> None:
     prefix = tmp_path / "install" / "course_words"
     prefix.parent.mkdir()

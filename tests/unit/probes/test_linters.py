@@ -12,6 +12,8 @@ from autograder.probes.linters import expect_tidy, objections
 from autograder.probes.test_runs import take
 from autograder.ros import environment
 
+pytestmark = pytest.mark.slow  # each run is a pytest of its own
+
 TIDY = '"""Halves."""\n\n\ndef half(x):\n    """Return a half of x."""\n    return x / 2\n'
 SILENT = "def test_flake8():\n    pass\n\n\ndef test_pep257():\n    pass\n"
 EMPTIES = (

@@ -22,6 +22,8 @@ from autograder.ros import environment
 from autograder.sandbox import Ending
 from autograder.sandbox.limits import TEST_RUN
 
+pytestmark = pytest.mark.slow  # each run is a pytest of its own
+
 RIGHT = Version({"package.xml": "<package/>", "half/__init__.py": "def half(x):\n    return x / 2\n"}, {})
 WRONG = Version({**RIGHT.files, "half/__init__.py": "def half(x):\n    return x // 2\n"}, {})
 GOOD = """from half import half
@@ -145,7 +147,7 @@ def folder(request):
 def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     limits = replace(TEST_RUN, wall_seconds=4.0)
     monkeypatch.setattr(test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
-    write(workspace, GOOD + "\n\ndef test_for_ever():\n    while True:\n        pass\n")
+    write(workspace, GOOD + "\n\ndef test_for_ever():\n    import signal\n    while True:\n        signal.pause()\n")
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     assert report.ending is Ending.WALL_TIME
     assert not report.passed

@@ -177,6 +177,7 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
     assert clearance(unnamed, start(unnamed)).what == "wall 2"
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 10**6))
 def test_the_gap_of_a_polygon_is_the_distance_between_the_shapes(seed: int) -> None:

@@ -69,6 +69,7 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
                 assert abs(Fraction(measured) - exact) <= TOLERANCE
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=150)
 @given(points, angles, walls)
 @example((0.0, 0.0), 0.0, [(1.0, 0.0, 3.0, 0.0)])  # along a wall
@@ -100,6 +101,7 @@ def test_walls_that_graze_a_beam_or_lie_along_it_are_decided_exactly(
     check(origin, yaw, [(*beside(near, left), *beside(far, right))])
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=100)
 @given(st.lists(points, min_size=3, max_size=7, unique=True), points)
 def test_no_beam_slips_through_a_closed_outline_at_its_corners(

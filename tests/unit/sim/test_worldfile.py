@@ -210,6 +210,7 @@ def test_any_bytes_are_a_world_or_a_clear_error(tmp_path: Path, data: bytes) -> 
     assert outcome(write(tmp_path, data)).startswith(str(tmp_path))
 
 
+@pytest.mark.slow
 @fuzz
 @given(st.integers(0, len(GOOD) - 1), st.integers(0, 20), st.text(max_size=6))
 def test_a_good_file_with_a_slip_is_a_world_or_a_clear_error(tmp_path: Path, at: int, cut: int, put: str) -> None:
@@ -230,6 +231,7 @@ values = st.recursive(
 sections = ["name", "units", "walls", "boxes", "polygons", "circles", "starts", "goals", "movers"]
 
 
+@pytest.mark.slow
 @fuzz
 @given(st.dictionaries(st.sampled_from(sections), values, min_size=1))
 def test_any_yaml_under_the_right_headings_is_a_world_or_a_clear_error(tmp_path: Path, data: dict[str, object]) -> None:

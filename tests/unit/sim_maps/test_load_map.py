@@ -273,6 +273,7 @@ def complaint(path: Path) -> str | None:
 _shared = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=150)
 
 
+@pytest.mark.slow
 @_shared
 @given(content=st.binary(max_size=300) | st.text(max_size=300).map(str.encode))
 def test_any_bytes_as_a_picture_are_a_map_or_a_world_error(tmp_path: Path, content: bytes) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from sim import Pose, RobotSpec, Simulation, World, clearance, start
+from sim import Pose, RobotSpec, Simulation, World
+from sim.engine import arrays
+from sim.engine.index import layout
 from sim.maps import load
 from sim.view.artists import movers_at
 
@@ -19,25 +22,19 @@ CELL = 0.1
 ROOM_TO_SPARE = 0.05  # metres between the robot and the walls on its way
 
 
-def distance(world: World, x: float, y: float) -> float:
-    """How far the robot's body is from everything that stands still, were it at that place."""
-    still = World(
-        segments=world.segments,
-        circles=world.circles,
-        segment_names=world.segment_names,
-        circle_names=world.circle_names,
-    )
-    simulation = Simulation(still, robots=(RobotSpec(start=Pose(x, y)),))
-    return clearance(simulation, start(simulation)).distance
+def distance_in(world: World) -> Callable[[float, float], float]:
+    """Return how far the robot's body is from everything that stands still, were it at a place."""
+    walls, body = layout(world.segments), RobotSpec().radius
+    return lambda x, y: float(arrays.nearest(walls, world.circles, x, y)) - body
 
 
 def reachable(world: World, here: Pose) -> set[tuple[int, int]]:
     """The cells, `CELL` wide and counted from the start pose, that a robot gets to."""
-    seen, waiting = {(0, 0)}, deque([(0, 0)])
+    distance, seen, waiting = distance_in(world), {(0, 0)}, deque([(0, 0)])
     while waiting:
         i, j = waiting.popleft()
         for cell in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-            if cell not in seen and distance(world, here.x + cell[0] * CELL, here.y + cell[1] * CELL) > ROOM_TO_SPARE:
+            if cell not in seen and distance(here.x + cell[0] * CELL, here.y + cell[1] * CELL) > ROOM_TO_SPARE:
                 seen.add(cell)
                 waiting.append(cell)
     return seen
@@ -46,8 +43,9 @@ def reachable(world: World, here: Pose) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_robot_fits_on_every_start_and_goal(name: str) -> None:
     world = load(WORLDS / f"{name}.yaml")
+    distance = distance_in(world)
     for place in (*world.starts, *world.goals):
-        assert distance(world, place.x, place.y) > 0.25
+        assert distance(place.x, place.y) > 0.25
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in TRACED])
@@ -63,11 +61,11 @@ def test_every_goal_can_be_reached_from_the_first_start(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_moving_obstacles_walk_through_no_wall(name: str) -> None:
     world = load(WORLDS / f"{name}.yaml")
-    body = RobotSpec().radius
+    distance, body = distance_in(world), RobotSpec().radius
     for second in np.arange(0.0, 60.0, 0.25):
         places = movers_at(Simulation(world), int(second * 1e9))
         for mover, (x, y) in zip(world.movers, places, strict=True):
-            assert distance(world, x, y) + body - mover.radius > 0.02
+            assert distance(x, y) + body - mover.radius > 0.02
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in TRACED])

@@ -189,6 +189,7 @@ def test_text_has_the_contrast_that_wcag_asks_for(theme: object) -> None:
             assert (values[1] + 0.05) / (values[0] + 0.05) >= 4.5, (foreground, background)
 
 
+@pytest.mark.slow
 def test_nothing_imports_pyplot_or_is_imported_by_the_core() -> None:
     code = """
 import sys, sim
