@@ -1,9 +1,10 @@
-"""Draws the cases of a long test that run for this commit, so that the runs of a few commits take them all."""
+"""Draws the cases of a long test that run for this commit, so that the runs of several commits take them all."""
 
 from __future__ import annotations
 
 import hashlib
 import subprocess
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 
@@ -19,8 +20,16 @@ def commit() -> str:
     return found.stdout.strip()
 
 
-def marks(name: str, one_in: int, draw: str | None = None) -> list[pytest.MarkDecorator]:
-    """Return the marks of a case: of a draw, by default the commit, one in so many runs, the others at night."""
-    text = f"{commit() if draw is None else draw} {name}"
-    chosen = int(hashlib.sha256(text.encode()).hexdigest(), 16) % one_in == 0
+def drawn(names: Iterable[str], one_in: int, draw: str | None = None) -> set[str]:
+    """Return one in so many names, at least one, as a draw chooses them; the commit is the draw by default.
+
+    Every draw chooses the same number, so that all runs take equally long.
+    """
+    text = commit() if draw is None else draw
+    ranked = sorted(names, key=lambda name: hashlib.sha256(f"{text} {name}".encode()).digest())
+    return set(ranked[: -(-len(ranked) // one_in)])
+
+
+def unless(chosen: bool) -> list[pytest.MarkDecorator]:
+    """Return the marks of a case: one that is not chosen runs at night."""
     return [] if chosen else [pytest.mark.nightly]

@@ -1,7 +1,7 @@
-"""The proof's part for each change: the references, releases and right variants, and a fifth of the mutants.
+"""The proof's part for each change: the references and releases of all chapters, some variants and some mutants.
 
-The commit draws which mutants: one in five of those of `make verify --quick`, which has one for each check. So the
-runs of a few commits take them all, and `make nightly` takes them all at once.
+The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in fifteen
+of a chapter's, and one variant in three. The runs of several commits take them all, and so does `make nightly`.
 """
 
 from __future__ import annotations
@@ -10,32 +10,36 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from _pytest.mark import ParameterSet
 
 from autograder.checks import suites
 from autograder.proof import Case, CaseKind, cases, prove
 from autograder.proof.lanes import Lanes
 from autograder.sandbox import Tier
-from tests.drawn import marks
+from tests.drawn import drawn, unless
 
-SHARE = 5
-PROOF = [case for name in suites.graded() for case in cases(name, quick=True)]
-
-
-def parameters(cases: list[Case], draw: str | None = None) -> list[ParameterSet]:
-    """Return the cases as parameters; mutants that the draw does not choose are for the night."""
-    found = []
-    for case in cases:
-        id = f"{case.assignment}-{case.kind.value}-{case.name}"
-        found.append(pytest.param(case, id=id, marks=marks(id, SHARE if case.kind is CaseKind.MUTANT else 1, draw)))
-    return found
+PROOF = {
+    f"{case.assignment}-{case.kind.value}-{case.name}": case
+    for name in suites.graded()
+    for case in cases(name, quick=True)
+}
 
 
-def test_the_commits_draw_all_mutants_in_turn() -> None:
-    drawn = [{p.id for p in parameters(PROOF, str(n)) if not p.marks} for n in range(40)]
-    assert set.union(*drawn) == {p.id for p in parameters(PROOF, "")}
-    always = sum(case.kind is not CaseKind.MUTANT for case in PROOF)
-    assert all((len(PROOF) - always) / 10 < len(some) - always < (len(PROOF) - always) / 3 for some in drawn)
+def of(kind: CaseKind, assignment: str = "") -> list[str]:
+    """Return the ids of the cases of a kind, of one assignment or of all."""
+    return [id for id, case in PROOF.items() if case.kind is kind and assignment in ("", case.assignment)]
+
+
+def chosen(draw: str | None = None) -> set[str]:
+    """Return the ids of the cases that run for each change."""
+    mutants = (drawn(of(CaseKind.MUTANT, name), 15, draw) for name in suites.graded())
+    return set().union(of(CaseKind.REFERENCE), of(CaseKind.RELEASE), drawn(of(CaseKind.VARIANT), 3, draw), *mutants)
+
+
+def test_the_commits_draw_all_cases_in_turn() -> None:
+    draws = [chosen(str(number)) for number in range(200)]
+    assert set.union(*draws) == set(PROOF)
+    assert len({len(draw) for draw in draws}) == 1
+    assert len(draws[0]) < len(PROOF) / 4
 
 
 @pytest.fixture(scope="session")
@@ -45,7 +49,9 @@ def lanes() -> Iterator[Lanes]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", parameters(PROOF))
+@pytest.mark.parametrize(
+    "case", [pytest.param(PROOF[id], id=id, marks=unless(id in now)) for now in [chosen()] for id in PROOF]
+)
 def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes, tmp_path: Path) -> None:
     (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
     log = tmp_path / case.assignment / case.name / "grader.log"
