@@ -58,14 +58,20 @@ class Attack:
     diagnosis: frozenset[Kind] = frozenset()
     exactly: bool = False
 
-    def verify(self, result: Result) -> str:
-        """Return what the attack gained or disturbed, and an empty string if nothing."""
+    def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
+        """Return what the attack gained or disturbed, and an empty string if nothing.
+
+        Args:
+            result: result of the attack.
+            only: ids of the checks that were run; every check if there are none.
+        """
         if result.status is not Status.GRADED:
             return result.diagnosis.sentence
-        missing = lost_checks(result)
-        wrong = [f"gains {', '.join(sorted(self.loses - missing))}"] if self.loses - missing else []
-        if self.exactly and missing != self.loses:
-            wrong.append(f"disturbs {', '.join(sorted(missing - self.loses))}")
+        run = only or all_checks()
+        missing, loses = lost_checks(result) & run, self.loses & run
+        wrong = [f"gains {', '.join(sorted(loses - missing))}"] if loses - missing else []
+        if self.exactly and missing != loses:
+            wrong.append(f"disturbs {', '.join(sorted(missing - loses))}")
         if result.max_score != suites.hidden(ASSIGNMENT).max_score:
             wrong.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:

@@ -1,4 +1,8 @@
-"""No attack gains a point, sees a hidden check, or stops the grader."""
+"""No attack gains a point, sees a hidden check, or stops the grader.
+
+The checks that drive through a world take most of a grading. They are run for the attacks that must lose one of them,
+and for all attacks by `make verify`.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +14,14 @@ import pytest
 from autograder import feedback, layout
 from autograder.checks import suites
 from autograder.grading import Graded, grade_submission
+from autograder.grading.job import Scope
 from autograder.grading.submitted_notebook import grade_id
 from autograder.proof.attack_payloads import CANARY
-from autograder.proof.attacks import ASSIGNMENT, Attack, attacks
+from autograder.proof.attacks import ASSIGNMENT, Attack, all_checks, attacks
 from autograder.sandbox import cgroup
 
 ATTACKS = attacks(ASSIGNMENT)
+DRIVES = frozenset({"room", "pillars", "corridor"})
 
 
 def _hidden_text() -> set[str]:
@@ -37,11 +43,12 @@ def _everything_written(out: Path) -> str:
     return "\n".join(texts)
 
 
-def _grade(attack: Attack, folder: Path) -> Graded:
+def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Graded:
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
-    return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=folder / "out")
+    scope, out = Scope(only=tuple(sorted(checks))), folder / "out"
+    return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=out, scope=scope)
 
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.id)
@@ -51,9 +58,10 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     if attack.id == "fork bomb" and not cgroup.bounded():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
-    graded = _grade(attack, tmp_path)
+    checks = all_checks() - (DRIVES - attack.loses)
+    graded = _grade(attack, checks, tmp_path)
     result = graded.result
-    assert not attack.verify(result), (tmp_path / "out" / "grader.log").read_text()
+    assert attack.verify(result, checks) == ""
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")
