@@ -135,14 +135,19 @@ def test_a_setup_py_sees_the_same() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "import no_such_module",
         "this is no Python",
         f"{AT_INSTALL} raise RuntimeError('no such thing')",
-        f"{AT_INSTALL} sys.exit(3)",
-        f"{AT_INSTALL} exit('so it ends')",
         f"{AT_INSTALL} os._exit(7)",
-        f"{AT_INSTALL} os.kill(os.getpid(), 9)",
-        f"{AT_INSTALL} print(colcon_core)",
+        *(
+            pytest.param(line, marks=pytest.mark.nightly)
+            for line in (
+                "import no_such_module",
+                f"{AT_INSTALL} sys.exit(3)",
+                f"{AT_INSTALL} exit('so it ends')",
+                f"{AT_INSTALL} os.kill(os.getpid(), 9)",
+                f"{AT_INSTALL} print(colcon_core)",
+            )
+        ),
     ],
 )
 def test_a_setup_py_that_fails_is_told_alike(line: str) -> None:

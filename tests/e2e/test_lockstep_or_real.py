@@ -42,7 +42,9 @@ def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["reference", pytest.param("all_beams", marks=pytest.mark.nightly), "five_hertz"])
+@pytest.mark.parametrize(
+    "name", ["five_hertz", *(pytest.param(name, marks=pytest.mark.nightly) for name in ("reference", "all_beams"))]
+)
 def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -93,10 +95,11 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
             ("once_a_second", "late_joiners", "unstable", "declared"),
             marks=pytest.mark.nightly,
         ),
-        (
+        pytest.param(
             "09_assessment",
             "motor_guard/motor_guard/running.py",
             ("definitions", "messages_are_generated", "installs", "readings", "stamps", "average", "hysteresis"),
+            marks=pytest.mark.nightly,
         ),
     ],
 )

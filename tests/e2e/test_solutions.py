@@ -151,7 +151,7 @@ def ended(process: subprocess.Popen[str], how: signal.Signals) -> str:
 
 
 @pytest.mark.parametrize("name", FIRST_WORDS)
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("how", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
 def test_each_installed_executable_starts_and_ends_cleanly(terminal: Terminal, name: str, how: signal.Signals) -> None:
     with node(terminal, name) as (process, first):
         assert FIRST_WORDS[name] in first

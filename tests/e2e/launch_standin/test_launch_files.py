@@ -189,7 +189,10 @@ def test_a_second_ctrl_c_is_ignored(start: Start) -> None:
     assert "user interrupted with ctrl-c (SIGINT) again, ignoring..." in launch.text
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGTERM, *(pytest.param(one, marks=pytest.mark.nightly) for one in (signal.SIGHUP, signal.SIGQUIT))],
+)
 def test_other_signals_end_everything_in_order_too(start: Start, number: signal.Signals) -> None:
     launch = start("opaque")
     launch.wait_for(r"\[light-1\] light:")
