@@ -29,7 +29,7 @@ def build(
 ) -> Path:
     """Return a prefix with the package built from its definitions, from the cache if it was built before.
 
-    The prefix is not evicted from the cache while this process lives.
+    The prefix stays in the cache for an hour at least.
 
     Args:
         package: its name.
@@ -51,13 +51,7 @@ def build(
     def make(prefix: Path) -> None:
         _make(package, definitions, own, ros, prefix)
 
-    return (cache or default_cache()).get(_key(package, definitions, own, ros), make)
-
-
-@lru_cache(maxsize=1)
-def default_cache() -> Cache:
-    """Return the one cache of this process, so that an entry in use is held once."""
-    return Cache.default("interfaces")
+    return (cache or Cache.default("interfaces")).get(_key(package, definitions, own, ros), make)
 
 
 def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:

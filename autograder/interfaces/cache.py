@@ -1,8 +1,8 @@
-"""A content-addressed cache of built trees: built once, put in place whole, held while in use, bounded in size.
+"""A content-addressed cache of built trees: built once, put in place whole, bounded in size.
 
-Each entry is a folder named by its key, beside a lock file. Whoever uses an entry holds the lock shared until its
-process ends; whoever builds or evicts one holds it alone. The kernel lets go of locks when a process dies, so that
-nothing is left locked, and a half-built folder is never under an entry's name.
+Each entry is a folder named by its key, beside a lock file. Whoever looks for an entry holds its lock; whoever builds
+or evicts one does, too. The kernel lets go of locks when a process dies, so that nothing is left locked, and a
+half-built folder is never under an entry's name. An entry that was asked for within `IN_USE` is not evicted.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 from autograder.sandbox.limits import MIB
 
 LIMIT = 512 * MIB
-STALE = 3600.0  # s; a temporary folder of this age was left by a killed build
+IN_USE = 3600.0  # s; no grading lasts so long, so a temporary folder of this age was left by a killed build
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
@@ -34,7 +34,6 @@ class Cache:
 
     def __init__(self, root: Path, limit: int = LIMIT) -> None:
         self.root, self._limit = root, limit
-        self._held: dict[str, int] = {}
 
     @classmethod
     def default(cls, name: str) -> Cache:
@@ -48,7 +47,7 @@ class Cache:
         return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
 
     def get(self, key: str, make: Callable[[Path], None]) -> Path:
-        """Return the folder of an entry, made first if it is not there, and hold it until this process ends.
+        """Return the folder of an entry, made first if it is not there; it stays for `IN_USE`.
 
         Args:
             key: 16 to 64 hexadecimal digits.
@@ -57,35 +56,21 @@ class Cache:
         if not _KEY.fullmatch(key):
             raise ValueError(f"a key is 16 to 64 hexadecimal digits, not {key!r}")
         self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
-        entry, made = self.root / key, False
-        if key not in self._held:
-            lock = self._open(key)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_SH)
-                while not entry.is_dir():
-                    fcntl.flock(lock, fcntl.LOCK_EX)  # whoever else wants it waits here, and then finds it made
-                    if not entry.is_dir():
-                        self._make(entry, make)
-                        made = True
-                    # Turning an exclusive lock into a shared one is not atomic: an eviction may come between.
-                    fcntl.flock(lock, fcntl.LOCK_SH)
-            except BaseException:
-                os.close(lock)
-                raise
-            self._held[key] = lock
-        with contextlib.suppress(OSError):
+        entry = self.root / key
+        with self._alone(key):  # whoever else wants it waits here, and then finds it made
+            made = not entry.is_dir()
+            if made:
+                self._make(entry, make)
             os.utime(entry)
         if made:
             self._evict()
         return entry
 
-    def release(self) -> None:
-        """Let go of every entry; none of them may be used any more."""
-        while self._held:
-            os.close(self._held.popitem()[1])
-
-    def _open(self, key: str) -> int:
-        return os.open(self.root / f"{key}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    @contextlib.contextmanager
+    def _alone(self, key: str) -> Iterator[None]:
+        with (self.root / f"{key}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
 
     def _make(self, entry: Path, make: Callable[[Path], None]) -> None:
         fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name[:16]}-", dir=self.root))
@@ -100,38 +85,25 @@ class Cache:
         entries: list[tuple[float, int, Path]] = []
         for folder in self.root.iterdir():
             with contextlib.suppress(FileNotFoundError):
-                used = folder.stat().st_mtime
-                if folder.name.startswith("."):
-                    if time.time() - used > STALE:
-                        shutil.rmtree(folder, ignore_errors=True)
+                if folder.name.startswith(".") and not _in_use(folder):
+                    shutil.rmtree(folder, ignore_errors=True)
                 elif _KEY.fullmatch(folder.name):
-                    entries.append((used, _size(folder), folder))
+                    entries.append((folder.stat().st_mtime, _size(folder), folder))
         total = sum(size for _, size, _ in entries)
         for _, size, folder in sorted(entries):
             if total <= self._limit:
                 return
-            with self._alone(folder.name) as alone:
-                if alone:
+            with self._alone(folder.name), contextlib.suppress(FileNotFoundError):
+                if not _in_use(folder):
                     # Renamed first: a removal that is cut short leaves no half an entry.
                     doomed = folder.with_name(f".{folder.name[:16]}-{os.getpid()}-{time.monotonic_ns()}")
-                    with contextlib.suppress(FileNotFoundError):
-                        folder.rename(doomed)
-                        shutil.rmtree(doomed, ignore_errors=True)
-                        total -= size
+                    folder.rename(doomed)
+                    shutil.rmtree(doomed, ignore_errors=True)
+                    total -= size
 
-    @contextlib.contextmanager
-    def _alone(self, key: str) -> Iterator[bool]:
-        """Hold an entry alone; False if somebody uses it."""
-        lock = self._open(key)
-        try:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                yield False
-            else:
-                yield True
-        finally:
-            os.close(lock)
+
+def _in_use(folder: Path) -> bool:
+    return time.time() - folder.stat().st_mtime < IN_USE
 
 
 def _xdg() -> Path:

@@ -35,7 +35,6 @@ def figures() -> dict[str, float]:
             for costs in (cold, cached):
                 cache = Cache(folder / "cache" / str(run))
                 costs.append(_cost(lambda cache=cache: build(PACKAGE, texts, cache=cache)))  # type: ignore[misc]
-                cache.release()
         colcon = _cost(lambda: _colcon(folder))
     return {
         "interface.cold_s": round(statistics.median(seconds for seconds, _ in cold), 3),

@@ -1,4 +1,4 @@
-"""The cache of built trees: whole entries only, built once, held while in use, bounded."""
+"""The cache of built trees: whole entries only, built once, kept while in use, bounded."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from autograder.interfaces.cache import STALE, Cache
+from autograder.interfaces.cache import IN_USE, Cache
 
 A, B, C = "a" * 40, "b" * 40, "c" * 40
 
@@ -86,7 +87,7 @@ def test_a_killed_build_leaves_no_entry_and_the_next_one_makes_it(tmp_path: Path
 def test_what_a_killed_build_left_is_removed_later(tmp_path: Path) -> None:
     left = tmp_path / ".aaaa-left"
     left.mkdir()
-    os.utime(left, (0, STALE))
+    os.utime(left, (0, 0))
     Cache(tmp_path).get(A, lambda folder: None)
     assert not left.exists()
 
@@ -105,19 +106,18 @@ def test_the_entry_unused_for_longest_goes_first(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     for used, key in ((2, A), (1, B)):
         os.utime(cache.get(key, fill), (used, used))
-    cache.release()
     Cache(tmp_path, limit=2500).get(C, fill)
     assert [(tmp_path / key).is_dir() for key in (A, B, C)] == [True, False, True]
 
 
-def test_an_entry_in_use_is_never_evicted(tmp_path: Path) -> None:
-    with start(tmp_path, tmp_path / "log") as user:
-        assert [hear(user), hear(user)] == ["making", "got"]
-        os.utime(tmp_path / A, (1, 1))
-        Cache(tmp_path, limit=1).get(B, fill)
-        assert (tmp_path / A / "whole").is_file()
-        say(user)
-    Cache(tmp_path, limit=1).get(C, fill)
+def test_an_entry_that_was_asked_for_lately_is_not_evicted(tmp_path: Path) -> None:
+    cache = Cache(tmp_path, limit=1)
+    os.utime(cache.get(A, fill), (1, 1))
+    cache.get(A, fill)  # asked for again
+    cache.get(B, fill)
+    assert (tmp_path / A / "file").is_file()
+    os.utime(tmp_path / A, (1, time.time() - IN_USE - 1))
+    cache.get(C, fill)
     assert not (tmp_path / A).exists()
 
 
