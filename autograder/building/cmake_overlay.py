@@ -4,17 +4,13 @@ It stands before ROS in CMAKE_PREFIX_PATH and holds a Config file for each of ro
 one. What it changes is how the build goes about it, and not what it says or installs for Python nodes:
 
 - the C++ generators, which no Python node needs, are left out of `rosidl_generate_interfaces`;
-- the others are run by `generator_host`, which parses nothing twice;
-- what they generate is compiled a library at a time: nearly all the time goes into headers that the files share.
+- what the others generate is compiled a library at a time: nearly all the time goes into headers that the files share.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from autograder.building import generator_host
-
-HOST = Path(generator_host.__file__)
 LEFT_OUT = (
     "rosidl_generator_cpp",
     "rosidl_typesupport_cpp",
@@ -28,10 +24,8 @@ COMPILED = (
     "rosidl_typesupport_fastrtps_c",
     "rosidl_typesupport_introspection_c",
 )
-HOSTED = ("rosidl_generator_type_description", *COMPILED)
 _CONFIG = 'set({name}_DIR "{real}")\ninclude("{real}/{name}Config.cmake")\n'
 _LEAVE_OUT = 'list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "^{name}:")\n'
-_TAKE = 'set({name}_BIN "{program}")\n'
 _EXTEND = """set({name}_together_DIR "{folder}")
 ament_register_extension("rosidl_generate_idl_interfaces" "{name}_together" "together.cmake")
 """
@@ -46,19 +40,11 @@ if(TARGET ${{_library}})
   set_target_properties(${{_library}} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
 endif()
 """
-_PROGRAM = """from pathlib import Path
-from runpy import run_path
-
-run_path("{host}")["run"](Path("{generator}"), Path("{parsed}"))
-"""
 
 
 def write_overlay(prefixes: tuple[Path, ...], overlay: Path) -> Path:
-    """Write the overlay for the ROS in `prefixes` to the folder `overlay`; return it.
-
-    The folder is the build's own: what the generators remember goes there, too.
-    """
-    for name in (*LEFT_OUT, *HOSTED):
+    """Write the overlay for the ROS in `prefixes` to the folder `overlay`; return it."""
+    for name in (*LEFT_OUT, *COMPILED):
         real = next((folder for p in prefixes if (folder := p / "share" / name / "cmake").is_dir()), None)
         if real is None:
             continue
@@ -67,12 +53,7 @@ def write_overlay(prefixes: tuple[Path, ...], overlay: Path) -> Path:
         config = _CONFIG.format(name=name, real=real)
         if name in LEFT_OUT:
             config += _LEAVE_OUT.format(name=name)
-        elif (generator := real.parents[2] / "lib" / name / name).is_file():
-            program = overlay / "lib" / name
-            program.parent.mkdir(exist_ok=True)
-            program.write_text(_PROGRAM.format(host=HOST, generator=generator, parsed=overlay / "parsed"))
-            config += _TAKE.format(name=name, program=program)
-        if name in COMPILED:
+        else:
             (folder / "together.cmake").write_text(_TOGETHER.format(name=name))
             config += _EXTEND.format(name=name, folder=folder)
         (folder / f"{name}Config.cmake").write_text(config)
