@@ -54,7 +54,7 @@ nightly:        ## the tests that take hours: each chapter's class and tour, lau
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
 
 # The reference packages and the notebooks keep to ament's style; tests hold them to it.
-LINTED := autograder sim tests assets nbgrader_config.py
+LINTED := autograder sim tests assets docs nbgrader_config.py
 STANDINS := launch launch_xml launch_yaml launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice standin_submodules
 lint:           ## style, types and imports, all at once
 	@$(SIDE_BY_SIDE) $(LINTERS)

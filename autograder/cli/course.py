@@ -9,7 +9,7 @@ import click
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course import judged_later, platform_page
+from autograder.course import judged_later
 from autograder.course.cells import is_graded
 from autograder.course.contract_rules import broken_contract
 from autograder.course.exceptions import CourseError
@@ -100,4 +100,3 @@ def tables() -> None:
         layout.judged_later(assignment).write_text(text, encoding="utf-8")
     PAGE.write_text(page, encoding="utf-8")
     guide.PAGE.write_text(guide.guide(), encoding="utf-8")
-    platform_page.PAGE.write_text(platform_page.current(), encoding="utf-8")

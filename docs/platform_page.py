@@ -1,4 +1,4 @@
-"""Writes the page about the platform: the versions of Ubuntu 24.04, and where the lock installs others."""
+"""Writes platform.md: the versions of Ubuntu 24.04, and where others are installed: `python docs/platform_page.py`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ that platform, so that what a student learns here holds there. `make setup` inst
 `autograder doctor` says where a machine has others. The versions of Ubuntu are those of
 https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own package repository.
 
-`autograder course tables` writes this page from the lock; a test holds it.
+`python docs/platform_page.py` writes this page from the lock; a test holds it.
 """
 JAZZY = "https://docs.ros.org/en/jazzy"
 COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student meets it", "why another version")
@@ -138,3 +138,7 @@ def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tupl
 
 def _span(pythons: list[str]) -> str:
     return pythons[0] if len(pythons) == 1 else f"{pythons[0]} to {pythons[-1]}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(current(), encoding="utf-8")

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import runpy
 import subprocess
 import sys
 
 import pytest
 
-from autograder.course.platform_page import LAUNCH, LOCK, PAGE, PYTHONS, current, locked
+from autograder.layout import ROOT
 from autograder.ros.platform_versions import PACKAGES
 from autograder.ros.ros2.main import STAND_INS
 
+MADE = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
+LOCK, locked = MADE["LOCK"], MADE["locked"]
 LOCKED = """numpy==1.26.4 ; python_full_version < '3.13' \\
     --hash=sha256:00
 numpy==2.1.3 ; python_full_version == '3.13.*' and sys_platform == 'linux' \\
@@ -25,10 +28,11 @@ def test_a_lock_is_read_for_each_python() -> None:
 
 
 def test_the_page_tells_what_the_lock_installs_and_which_tutorials_run() -> None:
-    assert PAGE.read_text(encoding="utf-8") == current(), "it is out of date: run `autograder course tables`"
+    page = MADE["PAGE"].read_text(encoding="utf-8")
+    assert page == MADE["current"](), "it is out of date: run `python docs/platform_page.py`"
 
 
-@pytest.mark.parametrize("python", PYTHONS)
+@pytest.mark.parametrize("python", MADE["PYTHONS"])
 def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not(python: str) -> None:
     versions = locked(LOCK.read_text(encoding="utf-8"), python)
     unexplained = {
@@ -39,7 +43,7 @@ def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not
     assert unexplained == {}
 
 
-@pytest.mark.parametrize("name", LAUNCH)
+@pytest.mark.parametrize("name", MADE["LAUNCH"])
 def test_what_the_page_calls_not_covered_says_so(name: str) -> None:
     module, _, last = name.rpartition(".")
     program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {last}"
