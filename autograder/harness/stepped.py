@@ -32,7 +32,7 @@ class SteppedProgram:
     Attributes:
         description, reads: of its nodes, and the channels that they read, as last asked.
         pending: messages that were sent to it and that it has not been told of, by channel.
-        wake, idle: as in `Reply`.
+        wake: as in `Reply`.
     """
 
     def __init__(self, program: Program, stepper: Stepper) -> None:
@@ -42,7 +42,6 @@ class SteppedProgram:
         self.reads: frozenset[str] = frozenset()
         self.pending: Counter[str] = Counter()
         self.wake: int | None = None
-        self.idle: int | None = None
 
     def describe(self) -> Description:
         """Ask what the program's nodes look like now."""
@@ -118,11 +117,11 @@ class SteppedHarness(Harness):
     def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
         if dt_ns and len(self._stepped) == 1:
-            self._let_run(self._stepped[0], [self._now_ns - 1, self._now_ns])
+            self._step_program(self._stepped[0], [self._now_ns - 1, self._now_ns])
         elif dt_ns:
             self._settle(self._now_ns - 1)
             for stepped in self._stepped:
-                self._let_run(stepped, [self._now_ns])
+                self._step_program(stepped, [self._now_ns])
         self._settle(self._now_ns)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
@@ -156,12 +155,6 @@ class SteppedHarness(Harness):
         )
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
-    def _let_run(self, stepped: SteppedProgram, instants: list[int]) -> None:
-        """Run one program at instants, if it has anything to do then."""
-        self._add_pending(self._grader_node.sent)
-        if stepped.pending or stepped.idle is None or stepped.idle <= instants[-1]:
-            self._step_program(stepped, instants)
-
     def _step_program(self, stepped: SteppedProgram, instants: list[int]) -> None:
         """Run one program at instants, and deliver what it sends."""
         if stepped not in self._stepped:
@@ -173,7 +166,7 @@ class SteppedHarness(Harness):
                 reply = stepped.stepper.step(instants, pending)
         except _OptionalProgramLost:
             return
-        stepped.wake, stepped.idle = reply.wake, reply.idle
+        stepped.wake = reply.wake
         for reason in reply.notes:
             self.notes.setdefault(stepped.program.executable, reason)
         for channel in reply.lost:
@@ -233,7 +226,6 @@ class SteppedHarness(Harness):
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
-            stepped.idle = None  # there may be messages for it
         for reader in self._grader_node.readers:
             if reader.new:
                 reader.new = False

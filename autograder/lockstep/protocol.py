@@ -8,7 +8,7 @@
                       {"event": "description", ...}
                       {"event": "matched"}
                       {"event": "done", "sent": {CHANNEL: NEW MESSAGES}, "lost": [CHANNEL, ...], "changed": BOOL,
-                       "wake": NANOSECONDS, "idle": NANOSECONDS, "notes": [REASON, ...]}
+                       "wake": NANOSECONDS, "notes": [REASON, ...]}
                       {"event": "unsteppable", "reason": ...}
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
@@ -78,7 +78,6 @@ class Reply:
         lost: channels on which messages that were announced did not arrive in time.
         changed: whether there are endpoints or timers that the last description did not name.
         wake: the next instant at which something in the program continues, besides its timers.
-        idle: the instant before which the program does nothing unless a message comes; None if that cannot be told.
         notes: why steps are not all that moves the program; one of `REASONS`.
     """
 
@@ -86,7 +85,6 @@ class Reply:
     lost: tuple[str, ...] = ()
     changed: bool = False
     wake: int | None = None
-    idle: int | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -159,13 +157,12 @@ def description(data: dict[str, Any]) -> Description:
 
 def reply(data: dict[str, Any]) -> Reply:
     """Read a `done` event, dropping what is not of the right type."""
-    wake, idle = data.get("wake"), data.get("idle")
+    wake = data.get("wake")
     return Reply(
         sent=_counts(data.get("sent")),
         lost=tuple(_texts(data.get("lost"))),
         changed=data.get("changed") is True,
         wake=wake if type(wake) is int else None,
-        idle=idle if type(idle) is int else None,
         notes=tuple(reason for reason in _texts(data.get("notes")) if reason in REASONS),
     )
 

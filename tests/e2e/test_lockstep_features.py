@@ -28,8 +28,8 @@ def interfaces() -> Path:
     return build("lockstep_interfaces", INTERFACES)
 
 
-def lay_down(scratch: Path, **texts: str) -> Any:
-    """Lay down programs and the message package as a built workspace."""
+def write_workspace(scratch: Path, **texts: str) -> Any:
+    """Write programs and the message package as a built workspace."""
     from autograder.harness import Workspace
     from autograder.ros import activate
 
@@ -88,7 +88,7 @@ def server(scratch: Path) -> Any:
     from rclpy.parameter import Parameter
     from std_srvs.srv import SetBool, Trigger
 
-    workspace = lay_down(scratch, node=programs.SERVER)
+    workspace = write_workspace(scratch, node=programs.SERVER)
 
     def run() -> Any:
         with open_lab(workspace, "node") as harness:
@@ -120,7 +120,7 @@ def given(scratch: Path) -> Any:
 
     from autograder.harness import RealTimeHarness, SteppedHarness
 
-    workspace = lay_down(scratch, node=programs.SERVER)
+    workspace = write_workspace(scratch, node=programs.SERVER)
     arguments = ("--ros-args", "-r", "__node:=driver", "--params-file", "{files}/speed.yaml")
     files = {"speed.yaml": "driver:\n  ros__parameters:\n    speed: 0.25\n"}
     found = []
@@ -141,7 +141,7 @@ def goals(scratch: Path, program: str) -> Any:
     from autograder.interfaces import load
 
     count = load(interfaces()).action.Count
-    workspace = lay_down(scratch, node=program)
+    workspace = write_workspace(scratch, node=program)
 
     def run() -> Any:
         with open_lab(workspace, "node") as harness:
@@ -180,7 +180,7 @@ def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
 
 
 def clients(scratch: Path) -> Any:
-    workspace = lay_down(scratch)
+    workspace = write_workspace(scratch)
 
     def run(name: str) -> Any:
         with open_lab(workspace, "node", serves=answering()) as harness:
@@ -189,7 +189,7 @@ def clients(scratch: Path) -> Any:
 
     found = {}
     for name, text in programs.CLIENTS.items():
-        lay_down(scratch, node=text)
+        write_workspace(scratch, node=text)
         found[name] = twice(lambda name=name: run(name))
     return found
 
@@ -208,7 +208,7 @@ def test_a_client_gets_its_answers_at_once_however_it_waits_for_them() -> None:
 def late(scratch: Path) -> Any:
     from std_srvs.srv import Trigger
 
-    workspace = lay_down(scratch, node=programs.PATIENT)
+    workspace = write_workspace(scratch, node=programs.PATIENT)
 
     def run() -> Any:
         with open_lab(workspace, "node") as harness:
@@ -230,7 +230,7 @@ def test_a_service_that_comes_later_is_there_from_the_next_step_on() -> None:
 
 
 def unanswered(scratch: Path) -> Any:
-    workspace = lay_down(scratch, node=programs.GIVES_UP)
+    workspace = write_workspace(scratch, node=programs.GIVES_UP)
 
     def run() -> Any:
         with open_lab(workspace, "node", serves=lambda request: None) as harness:
@@ -249,7 +249,7 @@ def test_a_time_out_is_one_of_ros_time_to_the_tick() -> None:
 def alone(scratch: Path, text: str, seconds: float) -> Any:
     from std_msgs.msg import String
 
-    workspace = lay_down(scratch, node=text)
+    workspace = write_workspace(scratch, node=text)
 
     def run() -> Any:
         with open_lab(workspace, "node", listens={"/also": String, "/map": String}) as harness:
@@ -301,7 +301,7 @@ def test_nodes_of_one_program_talk_to_each_other_within_a_step() -> None:
 def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
     from std_msgs.msg import String
 
-    workspace = lay_down(scratch, **texts)
+    workspace = write_workspace(scratch, **texts)
 
     def run() -> Any:
         with open_lab(workspace, *texts, listens={"/map": String, "/ping": String}) as harness:
@@ -344,7 +344,7 @@ def test_messages_of_a_type_that_the_grader_does_not_know_flow_between_programs(
 def served(scratch: Path) -> Any:
     texts = {"server": programs.SERVER, "first": programs.CLIENTS["await"]}
     texts["second"] = programs.CLIENTS["call in many threads"].replace("'asking'", "'second'")
-    workspace = lay_down(scratch, **texts)
+    workspace = write_workspace(scratch, **texts)
     busy = [Process([sys.executable, "-I", "-c", "while True: pass"], Limits(wall_seconds=120)) for _ in range(2)]
 
     def run() -> Any:
@@ -371,7 +371,7 @@ def test_clients_of_two_programs_share_a_service_and_a_busy_machine_changes_noth
 def failing(scratch: Path, texts: dict[str, str], serves: bool) -> list[str]:
     from autograder.exceptions import StudentError
 
-    workspace = lay_down(scratch, **texts)
+    workspace = write_workspace(scratch, **texts)
     try:
         with open_lab(workspace, *texts, serves=answering() if serves else None) as harness:
             harness.run(2.0)
@@ -406,7 +406,7 @@ def sparing(scratch: Path, text: str) -> Any:
 
     from autograder.exceptions import StudentError
 
-    workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
+    workspace = write_workspace(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
 
     def run() -> Any:
         harness = open_lab(workspace, "server", "spared", "map")
@@ -467,7 +467,7 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
 
     from autograder.exceptions import StudentError
 
-    workspace = lay_down(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
+    workspace = write_workspace(scratch, server=programs.SERVER, map=programs.MAP, spared=text)
     harness = open_lab(workspace, "server", "spared", "map", real=True)
     harness.optional = frozenset({"spared"})
     with harness:

@@ -142,7 +142,7 @@ def spin_in_a_thread(path: Path) -> None:
 
 
 def workspace_of(scratch: Path, text: str) -> Any:
-    """Lay down a workspace with one program."""
+    """Write a built workspace with one program."""
     from autograder.harness import Workspace
     from autograder.ros import activate
 

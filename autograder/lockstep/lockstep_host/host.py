@@ -29,7 +29,6 @@ from .clocks import Clocks
 from .description import describe
 from .executors import CallbackThreadsExecutor, spin_until_future_complete
 from .hooks import Hooks
-from .idleness import idle_until
 from .pipes import Pipes
 from .tasks import TaskPositions
 
@@ -71,7 +70,6 @@ class Host:
         self._instants: list[int] = []  # of the present step, still to come
         self._positions = TaskPositions()
         self._worked = self._stale = self._stepping = self._quit = False
-        self._idle: int | None = None  # see `idle_until`; None while a callback waits
         self._lost: list[str] = []
         self._notes: list[str] = []
         self._main = threading.current_thread()
@@ -149,12 +147,10 @@ class Host:
             self.blocking.check(executor, end)
             wake = end if timeout else None
             self.wakes.append(wake)
-            self._idle = None if timeout == 0 else idle_until(executor, self._alive(), self.time, wake)
             try:
                 self.pass_time()
             finally:
                 self.wakes.remove(wake)
-                self._idle = None
             self._stale = False
 
     def is_stepped_thread(self) -> bool:
@@ -242,7 +238,7 @@ class Host:
             self._stepping = False
             wake = min((wake for wake in self.wakes if wake is not None), default=None)
             state = {"lost": self._lost, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
-            self.pipes.send(event="done", sent=self.counts.flush(), idle=None if self._notes else self._idle, **state)
+            self.pipes.send(event="done", sent=self.counts.flush(), **state)
         while True:
             command: dict[str, Any] = {"op": "quit"} if self._quit else self.pipes.receive()
             if command["op"] == "quit":

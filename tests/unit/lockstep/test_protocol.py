@@ -21,7 +21,7 @@ JSON = st.recursive(
 )
 FIELDS = st.sampled_from(
     [
-        *("sent", "late", "changed", "idle", "wake", "nodes", "timers"),
+        *("sent", "late", "changed", "wake", "nodes", "timers"),
         *("writers", "readers", "clients", "servers", "early", "kept"),
         *("prefix", "phase", "type", "message", "traceback"),
     ]
