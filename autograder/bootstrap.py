@@ -18,7 +18,6 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -36,13 +35,13 @@ TOOLS = {
 Run = Callable[..., int]  # run(*command, quiet=False) -> exit status
 
 
+class SetUpError(Exception):
+    """The set-up cannot be done here; the message says why and what to do."""
+
+
 def say(line: str) -> None:
     """Show one line of progress."""
     print(f"set-up: {line}", flush=True)
-
-
-class SetUpError(Exception):
-    """The set-up cannot be done here; the message says why and what to do."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +182,6 @@ class SetUp:
         lacks, have = self.lacks(dev=dev), self.stamp()
         if not lacks:
             return
-        begun = time.monotonic()
         (self.venv / STAMP).unlink(missing_ok=True)
         if "base" in lacks:
             have = {}
@@ -196,25 +194,23 @@ class SetUp:
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
         self._step("the ROS wheels could not be mended", self.python, "-m", "autograder.ros.mend")
         if not self.sourced:  # an installed ROS 2 has them
-            failed = "the tutorials' interfaces could not be built"
-            self._step(failed, self.python, "-m", "autograder.interfaces.tutorials")
+            self._step("the tutorials' interfaces were not built", self.python, "-m", "autograder.interfaces.tutorials")
         fresh = self.venv / f"{STAMP}.fresh"
         fresh.write_text(json.dumps({**have, **self.wanted(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
-        say(f"done in {time.monotonic() - begun:.0f} s")
+        say("done")
 
     def _step(self, failed: str, *command: str) -> None:
-        status = self.run(*command)
-        if status != 0:
+        if status := self.run(*command):
             raise SetUpError(f"{failed} (exit status {status} of `{' '.join(command)}`)")
 
     def _new_environment(self) -> None:
         base = self.interpreter.executable
         shutil.rmtree(self.venv, ignore_errors=True)
-        with_pip = self.run(base, "-c", "import ensurepip; ensurepip.version()", quiet=True) == 0
-        bare = [] if with_pip else ["--without-pip"]
+        without_pip = self.run(base, "-c", "import ensurepip; ensurepip.version()", quiet=True) != 0
+        bare = ["--without-pip"] if without_pip else []
         self._step("the virtual environment could not be made", base, "-m", "venv", *bare, str(self.venv))
-        if not with_pip:
+        if without_pip:
             # Debian ships Python without ensurepip; the system's pip then installs the environment's.
             site = self.venv / "lib" / "python{}.{}".format(*self.interpreter.version) / "site-packages"
             failed = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
@@ -250,8 +246,7 @@ def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> No
     """Install packages with apt, or say the command; `tried` remembers what failed, as each attempt takes seconds."""
     by_hand = f"sudo apt-get install {' '.join(missing)}"
     before = tried.read_text().split() if tried.exists() else []
-    sudo = [] if uid == 0 else ["sudo", "-n"]
-    # `env` turns a missing sudo into an exit status.
+    sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
     possible = shutil.which("apt-get") and run("env", *sudo, "true", quiet=True) == 0
     if not possible or set(missing) <= set(before):
         say(f"{', '.join(missing)} is missing; to install it: {by_hand}")

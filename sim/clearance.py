@@ -40,7 +40,13 @@ class Around:
 
 
 def clearance(simulation: Simulation, state: State, robot: str | None = None) -> Clearance:
-    """Return how near the nearest obstacle is to the footprint of `robot` (the first if None)."""
+    """Return how near the nearest obstacle is to a robot's footprint.
+
+    Args:
+        simulation: the world and its robots.
+        state: the present one.
+        robot: its name; the first robot if None.
+    """
     index = simulation.number_of(robot)
     pose = state.robots[index].pose
     body = simulation.scene.bodies[index]

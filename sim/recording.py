@@ -199,9 +199,13 @@ def run(
     *,
     dt: float = 0.1,
 ) -> Recording:
-    """Drive for `seconds` of simulated time and record it all.
+    """Drive for a while and record it all.
 
-    Every `dt` seconds each lidar is read and `policy(state, scans)` gives the commands for the next `dt`.
+    Args:
+        simulation: the world and its robots.
+        policy: gets the state and each robot's scan, and returns the commands for the next `dt`.
+        seconds: of simulated time.
+        dt: in seconds of simulated time, from one reading of the lidars to the next.
     """
     state = start(simulation)
     recorder = Recorder(simulation, state)

@@ -43,10 +43,15 @@ def state_at(recording: Recording, row: int) -> State:
 
 
 def scan_at(recording: Recording, index: int, number: int) -> Scan:
-    """Return scan `number` of the robot with that index, with all the fields of LaserScan.
+    """Return a scan of a robot, with all the fields of LaserScan.
+
+    Args:
+        recording: the run.
+        index: the robot's, in the order of the simulation's.
+        number: of the scan, from 0.
 
     Raises:
-        ValueError: if the robot has no lidar.
+        ValueError: the robot has no lidar.
     """
     spec, log = recording.simulation.robots[index], recording.scans[index]
     lidar = spec.lidar
@@ -67,7 +72,13 @@ def scan_at(recording: Recording, index: int, number: int) -> Scan:
 
 
 def newest_scan(recording: Recording, index: int, row: int) -> tuple[Scan, Pose] | None:
-    """Return the last scan taken by row `row`, with the pose it was taken from; None before the first."""
+    """Return the last scan that a robot had taken, with the pose it was taken from; None before the first.
+
+    Args:
+        recording: the run.
+        index: the robot's, in the order of the simulation's.
+        row: of the recording, up to which scans count.
+    """
     log = recording.scans[index]
     number = int(np.searchsorted(log.rows, row, side="right")) - 1
     if number < 0 or recording.simulation.robots[index].lidar is None:

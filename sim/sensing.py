@@ -26,10 +26,17 @@ NOTHING = np.empty(0)
 
 
 def observe(simulation: Simulation, state: State, robot: str | None = None) -> Scan | None:
-    """Return what the lidar of `robot` (the first if None) sees now; None when a dead lidar sends nothing.
+    """Return what a robot's lidar sees now; None when a dead lidar sends nothing.
 
     The scan depends on the simulation and the state alone: not on who looked before, nor on the engine.
-    Raises SpecError for a robot that does not exist or has no lidar.
+
+    Args:
+        simulation: the world and its robots.
+        state: the present one.
+        robot: its name; the first robot if None.
+
+    Raises:
+        SpecError: the robot does not exist or has no lidar.
     """
     index = simulation.number_of(robot)
     spec = simulation.robots[index]
@@ -74,7 +81,12 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
 
 
 def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
-    """Return the exact distances (beams,) in metres, float64, that a lidar at `pose` (frame `map`) would measure.
+    """Return the exact distances (beams,) in metres, float64, that a lidar would measure.
+
+    Args:
+        simulation: the world.
+        pose: of the lidar, in the frame `map`.
+        lidar: its beams and its range.
 
     Of the world's walls and circles alone, with movers where they are at time 0; `inf` beyond `range_max`. A beam
     starts at the pose and goes along `directions(pose, lidar)`; a wall is a closed segment and a circle a solid disc.

@@ -50,13 +50,18 @@ def start(simulation: Simulation) -> State:
 
 
 def step(simulation: Simulation, state: State, commands: Commands = None, dt: float | None = None) -> State:
-    """Return the state `dt` seconds later (one physics tick if None), each robot obeying its command.
+    """Return the state `dt` seconds later, each robot obeying its command.
 
-    `commands` maps a robot's name to its command; with one robot the command alone will do. A robot that is not
-    named keeps its last command until its watchdog stops it. `dt` is cut into ticks of the physics period, the last
-    one shorter where it must be: one step of five ticks and five steps of one tick end in the same state.
+    Args:
+        simulation: the world and its robots.
+        state: the present one.
+        commands: a robot's command by its name; with one robot the command alone will do. A robot that is not named
+            keeps its last command until its watchdog stops it.
+        dt: in seconds; one physics tick if None. It is cut into ticks of the physics period, the last one shorter where
+            it must be: one step of five ticks and five steps of one tick end in the same state.
 
-    Raises SpecError for a robot that does not exist, a command that is not finite, or a `dt` that makes no sense.
+    Raises:
+        SpecError: a robot does not exist, a command is not finite, or `dt` makes no sense.
     """
     if dt is None:
         dt_ns = simulation.tick_ns

@@ -117,7 +117,18 @@ class World:
         segment_names: Sequence[str] = (),
         circle_names: Sequence[str] = (),
     ) -> World:
-        """Build a world in code from rows `[x1, y1, x2, y2]` and, if wanted, circles `[x, y, r]`, in metres."""
+        """Build a world in code.
+
+        Args:
+            segments: walls (N, 4), rows `[x1, y1, x2, y2]` in metres.
+            circles: solid circles (M, 3), rows `[x, y, r]` in metres.
+            name: of the world.
+            starts: where robots start, in order.
+            goals: places to reach.
+            movers: moving obstacles.
+            segment_names: of the walls, in order; those without one are numbered.
+            circle_names: of the circles, likewise.
+        """
         return cls(
             name=name,
             segments=np.asarray(segments, dtype=np.float64).reshape(-1, 4),
@@ -131,9 +142,13 @@ class World:
 
 
 def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Floats:
-    """Return the four walls (4, 4) of a room `width` by `height` metres, centred on `(x, y)`.
+    """Return the four walls (4, 4) of a room, in the order south, east, north, west: the names in `BOX_NAMES`.
 
-    They come in the order south, east, north, west: the names in `BOX_NAMES`.
+    Args:
+        width: in metres, along x.
+        height: in metres, along y.
+        x: of the room's centre, in metres.
+        y: of the room's centre, in metres.
     """
     west, east, south, north = x - width / 2, x + width / 2, y - height / 2, y + height / 2
     return np.array(

@@ -29,6 +29,13 @@ def compile_package(
     The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name. It is
     the extension module, too, under a second name.
 
+    Args:
+        package: its name.
+        prefix: where the libraries go.
+        work: the folder with the generated code.
+        prefixes: where other packages are found.
+        dependencies: all interface packages below this one.
+
     Raises:
         RuntimeError: the compiler refused; its words are on stderr.
     """

@@ -69,8 +69,14 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
-def adapt(prefix: Path, work: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
-    """Write the definitions and their .idl into the share folder; return the .idl paths."""
+def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
+    """Write the definitions and their .idl into the share folder; return the .idl paths.
+
+    Args:
+        prefix: of the package.
+        package: its name.
+        texts: the definitions by path, such as `msg/RobotStatus.msg`.
+    """
     from rosidl_adapter.action import convert_action_to_idl
     from rosidl_adapter.msg import convert_msg_to_idl
     from rosidl_adapter.srv import convert_srv_to_idl
@@ -199,7 +205,7 @@ def main() -> None:
     work = prefix / "work"
     work.mkdir()
     prefixes = tuple(Path(path) for path in recipe["prefixes"])
-    files = adapt(prefix, work, recipe["package"], recipe["texts"])
+    files = adapt(prefix, recipe["package"], recipe["texts"])
     job = Job(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
     share_parsing(job)
     generate(job)

@@ -23,6 +23,11 @@ if TYPE_CHECKING:  # the generators' process imports this package, too, and no R
 def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:
     """Build and load an interface package of a workspace, and those of the workspace that it uses.
 
+    Args:
+        workspace: the student's.
+        package: the package's name.
+        cache: where built packages are kept; this user's own cache by default.
+
     Raises:
         StudentError: the package or its definitions are missing, or wrong; the sentence says where.
         AlreadyLoadedError: this process has another version of it.

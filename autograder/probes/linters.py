@@ -23,7 +23,12 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, fraction: float = 0.0) -> None:
-    """Fail the check, with this fraction of its points, if a linter finds what its own test has not reported.
+    """Fail the check if a linter finds what its own test has not reported.
+
+    Args:
+        workspace: the built workspace.
+        source: the package.
+        fraction: of the check's points, from 0 to 1, that remain.
 
     Raises:
         CheckFailed: the message names the linter's test, and the first that it should have found.

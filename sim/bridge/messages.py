@@ -59,10 +59,16 @@ def scan_to_msg(scan: Scan, frame_id: str | None = None) -> Any:
 
 
 def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_frame_id: str = "base_link") -> Any:
-    """Return what the wheels of `robot` say at `time_ns` as nav_msgs/Odometry.
+    """Return what a robot's wheels say as nav_msgs/Odometry.
 
-    The pose is in `frame_id`, the twist in `child_frame_id` (REP 105). The covariance of x, y and yaw is the robot's;
-    the other axes are 0, for a robot on a plane knows that it neither climbs nor tilts.
+    The covariance of x, y and yaw is the robot's. The other axes are 0, for a robot on a plane knows that it neither
+    climbs nor tilts.
+
+    Args:
+        robot: the robot.
+        time_ns: simulated time in ns, for the stamp.
+        frame_id: of the pose (REP 105).
+        child_frame_id: of the twist.
     """
     msg = Odometry()
     msg.header.stamp = time_to_msg(time_ns)

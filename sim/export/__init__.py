@@ -18,10 +18,16 @@ __all__ = ["ExportError", "export", "to_gif", "to_html", "to_mcap"]
 
 
 def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: float = 10.0) -> Path:
-    """Write an animated GIF of the live view's frames, `speed` simulated seconds in a second; return the path.
+    """Write an animated GIF of the live view's frames; return the path.
+
+    Args:
+        recording: the run.
+        path: of the GIF.
+        speed: simulated seconds in a second.
+        fps: frames a second.
 
     Raises:
-        ExportError: for a speed or a frame rate that makes no sense, or more frames than a GIF should have.
+        ExportError: the speed or the frame rate makes no sense, or there are more frames than a GIF should have.
     """
     from sim.export.gif import write_gif
 

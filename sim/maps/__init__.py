@@ -44,11 +44,16 @@ def load_map(
     """Read a map_server YAML file and its picture, and trace the occupied cells into segments, in metres, frame `map`.
 
     A cell is occupied where its shade passes `occupied_thresh` (in the mode `raw`: its value, 0 to 100, reaches 100
-    times that); unknown cells are no walls. Without `starts` the robot starts in the middle of the roomiest place.
-    `tolerance` in metres is how far an outline may be moved to be simpler; 0 keeps it exact.
+    times that); unknown cells are no walls.
+
+    Args:
+        path: of the YAML file.
+        starts: where robots start; by default in the middle of the roomiest place.
+        goals: places to reach.
+        tolerance: in metres, how far an outline may be moved to be simpler; 0 keeps it exact.
 
     Raises:
-        WorldError: naming the file, the line where it is known, what is wrong and what to do.
+        WorldError: names the file, the line where it is known, what is wrong and what to do.
     """
     path = Path(path)
     if not (math.isfinite(tolerance) and tolerance >= 0.0):

@@ -35,7 +35,13 @@ def show(
 ) -> Picture:
     """Draw a world; with a simulation and a state also its robots and what their lidars see.
 
-    `ax` is drawn into where given, else a new figure is made. `names` writes the names of walls and goals.
+    Args:
+        subject: a world, or a simulation with its robots.
+        state: where the robots are; without one, they are not drawn.
+        ax: is drawn into; without one, a new figure is made.
+        theme: "light", "dark", or one of your own.
+        names: whether the names of walls and goals are written.
+        title: of the picture; the world's name by default.
     """
     simulation = subject if isinstance(subject, Simulation) else Simulation(subject)
     world, colours = simulation.world, theme_named(theme)
@@ -67,11 +73,19 @@ def plot(
 ) -> Picture:
     """Draw the tracks of a recording, its collisions and, if wanted, one marked instant.
 
-    `robot` picks one robot (all if None). `colour` says what the colour of a track means. `mark` is a
-    time in seconds: the robot is drawn as it was then, with its scan, a line to the nearest obstacle, and `note`.
+    Args:
+        recording: the run.
+        robot: the name of the one that is drawn; all of them if None.
+        colour: what the colour of a track means.
+        mark: a time in seconds; the robot is drawn as it was then, with its scan and a line to the nearest obstacle.
+        note: what stands beside the mark.
+        ax: is drawn into; without one, a new figure is made.
+        theme: "light", "dark", or one of your own.
+        names: whether the names of walls and goals are written.
+        title: of the picture; the world's name by default.
 
     Raises:
-        ValueError: for a robot that the recording does not have, or a colour or mark that makes no sense.
+        ValueError: the recording does not have the robot, or the colour or the mark makes no sense.
     """
     simulation, world, scheme = recording.simulation, recording.simulation.world, theme_named(theme)
     if colour not in ("time", "clearance"):
