@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from autograder.building.colcon import colcon_build
-from autograder.building.interface_bundle import bring_in, interface_bundle
+from autograder.building.interface_bundle import install_bundle, interface_bundle
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.packages import find_packages
@@ -52,7 +52,7 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     started = time.monotonic()
     found, _ = find_packages(workspace.root / "src")
     bundle = interface_bundle(found, wanted)
-    log = bring_in(bundle, workspace) if bundle else ""
+    log = install_bundle(bundle, workspace) if bundle else ""
     if set(wanted) - set(bundle):
         log = colcon_build(workspace, "--packages-up-to", *wanted, *(["--packages-skip", *bundle] if bundle else []))
     return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)), log)

@@ -38,7 +38,7 @@ def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[st
     return bundle if _closure(found, tuple(bundle)) == set(bundle) else {}
 
 
-def bring_in(bundle: dict[str, Path], workspace: Workspace) -> str:
+def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> str:
     """Put a bundle's built packages into a workspace's install space; return the end of colcon's output.
 
     Raises:

@@ -20,6 +20,7 @@ OFFERS = {"/scan": LaserScan, "/odom": Odometry}
 LISTENS = {"/cmd_vel": Twist}
 PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
 SCAN_NS = 100_000_000
+SCAN_SECONDS = SCAN_NS / 1e9
 
 ScanFilter = Callable[[Scan, float], Scan | None]
 """Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""

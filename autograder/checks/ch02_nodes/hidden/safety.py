@@ -9,13 +9,13 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import (
-    SCAN_SECONDS,
     SETTLED,
     Robot,
     expect_forward,
     expect_stop,
 )
 from autograder.checks.ch02_nodes.support.scans import scan
+from autograder.harness.drive import SCAN_SECONDS
 from autograder.time_record import LOCKSTEP
 
 check = group("safety")

@@ -13,10 +13,10 @@ from std_msgs.msg import String
 from autograder.checks import expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
 from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness.drive import SCAN_SECONDS
 
 OFFERS = {"/scan": LaserScan, "/status": String}
 LISTENS = {"/cmd_vel": Twist}
-SCAN_SECONDS = 0.1
 SETTLED = 0.25  # s: a controller at 10 Hz has answered a scan by then
 
 

@@ -14,14 +14,13 @@ from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECU
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
-from autograder.harness.drive import LISTENS, OFFERS
+from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
+from autograder.harness.steps import FINEST_TICK_NS
 from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences
 
 BEAMS = 360
-SCAN_SECONDS = 0.1
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
 TOLERANCE = 0.01  # m/s
-TICK_NS = 10_000_000
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
@@ -77,8 +76,8 @@ class Robot(AutoHarness):
 
     def live(self, seconds: float) -> None:
         """Let time pass in steps that hit each period that a change may bring; `run` hits those of the start."""
-        for _ in range(round(seconds * 1e9) // TICK_NS):
-            self.step(TICK_NS)
+        for _ in range(round(seconds * 1e9) // FINEST_TICK_NS):
+            self.step(FINEST_TICK_NS)
 
     def speed_at(self, distance: float) -> float:
         """Return the speed in m/s that the node settles on, nan without a command."""

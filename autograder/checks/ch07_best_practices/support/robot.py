@@ -11,9 +11,9 @@ from std_msgs.msg import Float32, String
 
 from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, PACKAGE
 from autograder.harness import AutoHarness, Workspace
+from autograder.harness.drive import SCAN_SECONDS
 from autograder.time_record import LOCKSTEP
 
-SCAN_SECONDS = 0.1
 FILTERED, MEAN, WORDS = "/scan_filtered", "/mean_distance", "/status"
 LATE = 3.0  # s in real time until the first reading, and for what comes late
 

@@ -15,11 +15,11 @@ from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
 from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
+from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.installed import look
 from autograder.probes.parameters import NodeParameters
 from autograder.sandbox import Process
 
-SCAN_SECONDS = 0.1
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
 ANSWER_SECONDS = 5.0  # s of ROS time for a service
 ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
