@@ -18,7 +18,7 @@ from autograder.building.colcon import colcon_build
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import Cache
-from autograder.interfaces.build import identity
+from autograder.interfaces.prefix import identity
 from autograder.packages import MANIFEST, read_texts
 from autograder.workspace import Workspace
 

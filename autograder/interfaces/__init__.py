@@ -5,11 +5,11 @@ importable in this process; `load_from` does both for a package in a student's w
 content-addressed cache.
 """
 
-from autograder.interfaces.build import build
 from autograder.interfaces.cache import Cache
 from autograder.interfaces.exceptions import AlreadyLoadedError, DefinitionError, GenerationError, InterfaceError
 from autograder.interfaces.loading import load
-from autograder.interfaces.workspace import load_from
+from autograder.interfaces.prefix import build
+from autograder.interfaces.workspace_packages import load_from
 
 __all__ = [
     "AlreadyLoadedError",

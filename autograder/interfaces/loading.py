@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-from autograder.interfaces.build import RECIPE
 from autograder.interfaces.compile import site
 from autograder.interfaces.exceptions import AlreadyLoadedError
+from autograder.interfaces.prefix import RECIPE
 
 _loaded: dict[str, Path] = {}
 

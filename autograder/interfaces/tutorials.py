@@ -14,9 +14,9 @@ from pathlib import Path
 
 import yaml
 
-from autograder.interfaces.build import build
 from autograder.interfaces.cache import Cache
 from autograder.interfaces.exceptions import InterfaceError
+from autograder.interfaces.prefix import build
 from autograder.ros import RosError, find
 
 DEFINITIONS = Path(__file__).with_name("tutorials.yaml")

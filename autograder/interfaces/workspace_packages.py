@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces.build import build
 from autograder.interfaces.cache import Cache
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
 from autograder.interfaces.exceptions import DefinitionError, GenerationError
 from autograder.interfaces.loading import load
+from autograder.interfaces.prefix import build
 from autograder.packages import find_packages
 from autograder.unwritten import explain
 
