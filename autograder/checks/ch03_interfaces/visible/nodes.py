@@ -1,4 +1,4 @@
-"""What the two nodes do, at once."""
+"""What the two nodes do."""
 
 from __future__ import annotations
 
@@ -83,3 +83,37 @@ def test_cancel(driver: Driver) -> None:
     commands = driver.finish(goal, 5.0, "After a cancel")
     expect(goal.status == GoalStatus.STATUS_CANCELED, "After a cancel the goal did not end CANCELED.")
     expect(stopped(commands), "After the cancel, the last command was no stop.")
+
+
+@check(points=1, holds=("rejects", "busy"), group="action", depends=("drive",), doc=contract.ACTION)
+@hint("0.0 < goal.distance <= MAX_DISTANCE and 0.0 < goal.speed <= MAX_SPEED, in accept.")
+@hint("Take self.busy last of all: self.busy.acquire(blocking=False) says whether a goal is being driven.")
+def test_reject(driver: Driver) -> None:
+    """It rejects -0.5 m, and 0.6 m/s; while a goal is driven it rejects another one, and drives the first on."""
+    for distance, speed in ((-0.5, 0.3), (0.5, 0.6)):
+        goal = driver.send(distance, speed)
+        accepted = bool(goal.accepted)
+        if accepted:
+            driver.abandon(goal)
+        expect(not accepted, f"A goal of {distance} m at {speed} m/s was accepted.")
+    first = driver.start(3.0, 0.25)
+    driver.roll(first, 0.3)
+    second = driver.send(0.4, 0.25)
+    driver.roll(first, 0.3)
+    goes_on = first.result is None
+    driver.abandon(first)
+    expect(not second.accepted, "While a goal was driven, another one was accepted.")
+    expect(goes_on, "The first goal ended when another one came.")
+
+
+@check(points=1, holds="stuck", group="action", depends=("drive",), doc=contract.ACTION)
+@hint("Remember how far it had come, and when; a centimetre more sets both again.", "After PATIENCE: stop and abort.")
+def test_stuck(driver: Driver) -> None:
+    """Held at 0.45 m/s, the robot is stopped after a second, and the goal ends ABORTED with a reason."""
+    driver.stuck = True
+    goal = driver.start(2.0, 0.45)
+    commands = driver.finish(goal, 6.0, "With a robot that is held")
+    driver.stuck = False
+    expect(goal.status == GoalStatus.STATUS_ABORTED, "The goal of a robot that is held did not end ABORTED.")
+    expect(stopped(commands), "After the goal had been given up, the last command was no stop.")
+    expect(bool(goal.result.reason.strip()), "The result gives no reason.")
