@@ -25,7 +25,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes bench verify real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes bench cluster verify real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -96,6 +96,10 @@ bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-bench.lock
 	@$(BIN)/python -m tests.benchmarks
 
+cluster:        ## set up, with what `autograder grade --scheduler` needs
+	@$(BOOTSTRAP)
+	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-cluster.lock
+
 verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
@@ -133,6 +137,7 @@ lock:           ## pin the dependencies of pyproject.toml again (LOCK_ARGS=--upg
 	$(COMPILE) pyproject.toml -o requirements.lock
 	$(COMPILE) pyproject.toml --all-extras -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) --group bench -c requirements-dev.lock -o requirements-bench.lock
+	$(COMPILE) --group cluster -c requirements-dev.lock -o requirements-cluster.lock
 
 clean:          ## remove what is made, .venv too
 	rm -rf .venv .build .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

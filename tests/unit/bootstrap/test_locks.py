@@ -18,7 +18,7 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).parents[3]
-BASE, DEV, BENCH = "requirements.lock", "requirements-dev.lock", "requirements-bench.lock"
+BASE, DEV, BENCH, CLUSTER = (f"requirements{part}.lock" for part in ("", "-dev", "-bench", "-cluster"))
 ENTRY = r"[a-z0-9-]+==[^\s;]+( ; [^\\]+?)?( +--hash=sha256:[0-9a-f]{64})+"
 
 
@@ -38,14 +38,14 @@ def names(lock: str) -> set[str]:
     return {pin.partition("==")[0] for pin in pins(lock)}
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV, BENCH])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER])
 def test_a_lock_holds_nothing_but_exact_pins_with_hashes(lock: str) -> None:
     odd = [entry for entry in entries(lock) if not re.fullmatch(ENTRY, entry)]
     assert odd == []
-    assert len(entries(lock)) > (10 if lock == BENCH else 100)
+    assert len(entries(lock)) > (10 if lock in (BENCH, CLUSTER) else 100)
 
 
-@pytest.mark.parametrize("lock", [BASE, DEV, BENCH])
+@pytest.mark.parametrize("lock", [BASE, DEV, BENCH, CLUSTER])
 def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
     assert (
         re.findall(r"(?im)^.*(?:://|@ |--index|--extra-index|--find-links|^-[a-z]).*$", (ROOT / lock).read_text()) == []
