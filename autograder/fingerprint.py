@@ -14,7 +14,21 @@ from pathlib import Path
 from autograder import layout
 
 # Parts of the autograder that no grading reads.
-NOT_READ = frozenset({"bootstrap.py", "cli", "course", "doctor", "export", "feedback", "nbgrader", "notebook", "proof"})
+NOT_READ = frozenset(
+    {
+        "bootstrap.py",
+        "cli",
+        "cluster",
+        "course",
+        "doctor",
+        "export",
+        "feedback",
+        "handed_in",
+        "nbgrader",
+        "notebook",
+        "proof",
+    }
+)
 PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants"})  # in a chapter's checks, for the proof only
 CHAPTER = re.compile(r"ch\d\d_")
 CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\d_\w+)")

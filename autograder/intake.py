@@ -106,16 +106,19 @@ def read_submission(path: Path, assignment: str) -> Submission:
         UsageError: `path` does not exist.
         StudentError: the submission is unsafe or unreadable, or has neither the notebook nor a package.
     """
+    return detect_layout(read_files(path, assignment), assignment)
+
+
+def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
+    """Read all files of a submission, with paths below its root. Args and errors are those of `read_submission`."""
     budget = _Budget()
     if path.is_dir():
-        entries = _from_folder(path, budget)
-    elif path.is_file() and path.suffix == ".ipynb":
-        entries = [budget.read(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)]
-    elif path.is_file():
-        entries = _from_zip(path, budget)
-    else:
-        raise UsageError(f"{path}: there is no such file or folder")
-    return detect_layout(entries, assignment)
+        return _from_folder(path, budget)
+    if path.is_file() and path.suffix == ".ipynb":
+        return [budget.read(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)]
+    if path.is_file():
+        return _from_zip(path, budget)
+    raise UsageError(f"{path}: there is no such file or folder")
 
 
 def detect_layout(entries: list[SubmittedFile], assignment: str) -> Submission:

@@ -11,7 +11,20 @@ import click
 from autograder import __version__
 from autograder.exceptions import AutograderError, UsageError
 
-VERBS = ("check", "course", "demo", "doctor", "export", "grade", "notebooks", "release", "replay", "ros", "verify")
+VERBS = (
+    "check",
+    "cluster",
+    "course",
+    "demo",
+    "doctor",
+    "export",
+    "grade",
+    "notebooks",
+    "release",
+    "replay",
+    "ros",
+    "verify",
+)
 
 
 class Verbs(click.Group):

@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import click
 
 from autograder import feedback
 from autograder.checks import suites
-from autograder.cli.options import isolation_option, jobs_option, json_option, marks, reason, seed_option, table
-from autograder.grading.batch import discover, grade_all
+from autograder.cli.options import (
+    certificates_option,
+    isolation_option,
+    jobs_option,
+    json_option,
+    marks,
+    reason,
+    seed_option,
+    table,
+)
+from autograder.exceptions import UsageError
+from autograder.grading.batch import GradeEach, discover, grade_all
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
@@ -36,6 +49,12 @@ INTERRUPTED = 130  # as a shell tells it
     metavar="PERCENT",
     help="The least mark. If one is below it, the exit status is 1.",
 )
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Grade on the workers of this Dask scheduler: tls://HOST:8786, or `local` for -j workers of this machine.",
+)
+@certificates_option
 @jobs_option
 @seed_option
 @isolation_option
@@ -46,6 +65,8 @@ def grade(
     out: Path,
     resume: bool,
     require: float | None,
+    scheduler: str | None,
+    certificates: Path,
     jobs: int,
     seed: int,
     isolation: str,
@@ -62,16 +83,18 @@ def grade(
     entries = discover(paths, assignment)
     with Progress(len(entries)) as progress:
         try:
-            results = grade_all(
-                entries,
-                assignment,
-                seed=seed,
-                out=out,
-                jobs=jobs,
-                isolation=Tier(isolation),
-                resume=resume,
-                on_result=progress.show,
-            )
+            with _graders(scheduler, jobs, certificates) as grade_each:
+                results = grade_all(
+                    entries,
+                    assignment,
+                    seed=seed,
+                    out=out,
+                    jobs=jobs,
+                    isolation=Tier(isolation),
+                    resume=resume,
+                    on_result=progress.show,
+                    grade_each=grade_each,
+                )
         except KeyboardInterrupt:
             said = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
             click.echo(f"\n{said}", err=True)
@@ -85,6 +108,23 @@ def grade(
         write_json(json_file, [result.to_json() for result in results])
     short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
     sys.exit(1 if short else 0)
+
+
+@contextmanager
+def _graders(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeEach | None]:
+    """Give what grades the class on a cluster; None for this machine alone."""
+    if scheduler is None:
+        yield None
+        return
+    try:
+        from autograder.cluster.connection import connected
+        from autograder.cluster.dispatch import grade_on
+    except ModuleNotFoundError as error:
+        if error.name not in ("distributed", "msgpack"):
+            raise
+        raise UsageError("--scheduler needs Dask, which is not installed here: run `make cluster`") from None
+    with connected(scheduler, jobs, certificates) as client:
+        yield partial(grade_on, client, say=partial(click.echo, err=True))
 
 
 class Progress:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder import intake
-from autograder.checks import suites
-from autograder.exceptions import AutograderError, UsageError
+from autograder.exceptions import UsageError
 from autograder.grading.parallel import map_parallel
-from autograder.grading.pipeline import RESULT, grade_submission
-from autograder.result import Result, Status, from_json
+from autograder.grading.request import Request
+from autograder.result import Result
 from autograder.sandbox import Tier
 
 ARCHIVES = (".zip", ".ipynb")
+
+OnResult = Callable[[Result], None]
+GradeEach = Callable[[Sequence[Request], OnResult], tuple[Result, ...]]  # results in the order of the requests
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,8 @@ def grade_all(
     jobs: int,
     isolation: Tier = Tier.BUBBLEWRAP,
     resume: bool = False,
-    on_result: Callable[[Result], None] = lambda result: None,
+    on_result: OnResult = lambda result: None,
+    grade_each: GradeEach | None = None,
 ) -> tuple[Result, ...]:
     """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
 
@@ -73,26 +74,18 @@ def grade_all(
         isolation: the sandbox's tier.
         resume: keep a stored result whose submission, suite, seed and isolation are the same.
         on_result: called for each result as it comes, in any order.
+        grade_each: grades the requests in place of `jobs` workers of this machine.
 
     Returns:
         The results, in the order of `entries`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
     """
-
-    def one(entry: Entry) -> Result:
-        stored = _stored(entry, assignment, seed, isolation, out / entry.student) if resume else None
-        if stored is not None:
-            return stored
-        graded = grade_submission(
-            entry.path,
-            assignment,
-            student=entry.student,
-            seed=seed,
-            out=out / entry.student,
-            isolation=isolation,
-        )
-        return graded.result
-
-    return map_parallel(one, entries, jobs=jobs, on_done=on_result)
+    requests = [
+        Request(entry.student, entry.path, assignment, seed, isolation, out / entry.student, resume)
+        for entry in entries
+    ]
+    if grade_each is not None:
+        return grade_each(requests, on_result)
+    return map_parallel(lambda request: request.stored() or request.grade(), requests, jobs=jobs, on_done=on_result)
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:
@@ -107,15 +100,3 @@ def _of_folder(folder: Path, assignment: str) -> Iterator[Entry]:
     for child in students:
         inner = child / assignment
         yield Entry(child.stem if child.is_file() else child.name, inner if inner.is_dir() else child)
-
-
-def _stored(entry: Entry, assignment: str, seed: int, isolation: Tier, folder: Path) -> Result | None:
-    try:
-        result = from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
-        digest = intake.read_submission(entry.path, assignment).sha256
-    except (OSError, ValueError, AutograderError):
-        return None
-    suite = suites.hidden(assignment)
-    found = (result.submission_sha256, result.suite_version, result.seed, result.isolation)
-    same = found == (digest, suite.version, seed, isolation.value)
-    return result if same and result.status is Status.GRADED else None

@@ -11,16 +11,15 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.checks import Outcome, suites
-from autograder.diagnosis import Diagnosis, Kind
+from autograder.checks import suites
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
 from autograder.grading.machine_lock import MachineLock
-from autograder.result import CheckResult, Result, Status, from_json, write_json
+from autograder.grading.unchecked import LOG, not_graded
+from autograder.result import Result, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
 from autograder.sandbox.process import Ending
@@ -29,9 +28,9 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 RESULT = "result.json"
-LOG = "grader.log"
 NOTEBOOK = "notebook.ipynb"
 TRIES = 2
+FAILED = f"The grader failed on this submission, {TRIES} times."
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
 _machine = MachineLock()
@@ -100,7 +99,7 @@ def grade_submission(
         with _machine.exclusive():
             graded = grade()
     if graded is None:
-        graded = Graded(_not_graded(suite, student, seed, isolation), None)
+        graded = Graded(not_graded(suite, student, seed, isolation, FAILED), None)
         write_json(out / RESULT, graded.result.to_json())
     return graded
 
@@ -131,24 +130,3 @@ def _notebook(path: Path) -> NotebookNode | None:
     import nbformat  # slow to import, and a source tree has no notebook
 
     return nbformat.read(path, as_version=4)
-
-
-def _not_graded(suite: suites.Suite, student: str, seed: int, isolation: Tier) -> Result:
-    sentence = (
-        f"The grader failed on this submission, {TRIES} times. This is no zero: an instructor has to grade it again. "
-        f"{LOG}, beside the result, says what happened."
-    )
-    return Result(
-        assignment=suite.assignment,
-        student=student,
-        submission_sha256="0" * 64,
-        suite_version=suite.version,
-        seed=seed,
-        isolation=isolation.value,
-        checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, "not graded") for check in suite.checks),
-        max_score=suite.max_score,
-        started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
-        seconds=0.0,
-        status=Status.NOT_GRADED,
-        diagnosis=Diagnosis(Kind.NOT_GRADED, sentence),
-    )

@@ -56,9 +56,15 @@ def test_what_the_tests_run_on_is_what_users_run_on() -> None:
     assert pins(BASE) <= pins(DEV)
 
 
-def test_the_benchmarks_add_to_what_the_tests_run_on_and_change_none_of_it() -> None:
-    assert {pin for pin in pins(BENCH) if pin.partition("==")[0] in names(DEV)} <= pins(DEV)
-    assert not any(name.startswith("ros-") for name in names(BENCH))
+@pytest.mark.parametrize("lock", [BENCH, CLUSTER])
+def test_what_comes_on_top_changes_nothing_that_the_tests_run_on(lock: str) -> None:
+    assert {pin for pin in pins(lock) if pin.partition("==")[0] in names(DEV)} <= pins(DEV)
+    assert not any(name.startswith("ros-") for name in names(lock))
+
+
+def test_the_extra_for_clusters_is_what_its_lock_pins() -> None:
+    data = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert data["dependency-groups"]["cluster"] == data["project"]["optional-dependencies"]["cluster"]
 
 
 def test_every_dependency_of_the_project_is_pinned() -> None:
@@ -68,6 +74,7 @@ def test_every_dependency_of_the_project_is_pinned() -> None:
         (BASE, project["dependencies"]),
         (DEV, [line for extra in project["optional-dependencies"].values() for line in extra]),
         (BENCH, data["dependency-groups"]["bench"]),
+        (CLUSTER, data["dependency-groups"]["cluster"]),
     ):
         missing = {canonicalize_name(Requirement(line).name) for line in asked} - names(lock)
         assert missing == set(), f"{lock} is older than pyproject.toml: run `make lock`"

@@ -1,0 +1,123 @@
+"""Takes in a worker's answer as that of a stranger: nothing of it is written before all of it holds."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from PIL import Image
+
+from autograder.checks import suites
+from autograder.cluster.exceptions import AnswerError
+from autograder.cluster.parcel import Answer
+from autograder.exceptions import UsageError
+from autograder.grading.pipeline import NOTEBOOK, RESULT
+from autograder.grading.request import Request
+from autograder.grading.unchecked import LOG, not_graded
+from autograder.result import Result, Status, from_json, write_atomically, write_json
+
+PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
+MAX_PIXELS = 25_000_000
+
+
+def accept(data: object, request: Request, sha256: str) -> Result:
+    """Check a worker's answer, write its files to the request's folder, and return the result.
+
+    Args:
+        data: what the worker sent, a packed `Answer`.
+        request: what was asked.
+        sha256: digest of the submission that was sent.
+
+    Raises:
+        AnswerError: the answer breaks a bound or the schema, is about something else, or says that the worker failed.
+            Nothing is written.
+    """
+    answer = Answer.unpack(data)
+    if answer.failure:
+        raise AnswerError(f"the worker failed: {answer.failure}")
+    files = dict(answer.files)
+    result = _result(files.pop(RESULT, b""), request, sha256)
+    notebook, log = files.pop(NOTEBOOK, None), files.pop(LOG, None)
+    _require_pictures(files, result)
+    others = {**files, **{name: data for name, data in ((NOTEBOOK, notebook), (LOG, log)) if data is not None}}
+    if notebook is not None:
+        _require_notebook(notebook)
+    _clear(request.out)
+    for name, content in others.items():
+        write_atomically(request.out / name, content)
+    return write(result, request)
+
+
+def give_up(request: Request, why: str, log: str) -> Result:
+    """Write and return the result of a submission that the cluster did not grade.
+
+    Args:
+        request: what was asked.
+        why: a sentence for the result.
+        log: what an instructor reads beside the result.
+    """
+    _clear(request.out)
+    write_atomically(request.out / LOG, log.encode("utf-8", "backslashreplace"))
+    suite = suites.hidden(request.assignment)
+    return write(not_graded(suite, request.student, request.seed, request.isolation, why), request)
+
+
+def write(result: Result, request: Request) -> Result:
+    """Write the result, with the student's name, which workers are not told."""
+    named = replace(result, student=request.student)
+    write_json(request.out / RESULT, named.to_json())
+    return named
+
+
+def _clear(out: Path) -> None:
+    for stale in (RESULT, NOTEBOOK, LOG):
+        (out / stale).unlink(missing_ok=True)
+
+
+def _result(data: bytes, request: Request, sha256: str) -> Result:
+    try:
+        result = from_json(json.loads(data), source="a worker's answer")
+    except (ValueError, UsageError, RecursionError) as error:
+        raise AnswerError(f"a worker's answer holds no result: {error}") from None
+    suite = suites.hidden(request.assignment)
+    graded = result.status is Status.GRADED
+    told = (result.assignment, result.suite_version, result.seed, result.isolation, result.max_score)
+    asked = (request.assignment, suite.version, request.seed, request.isolation.value, suite.max_score)
+    if told != asked or (graded and result.submission_sha256 not in (sha256, "0" * 64)):
+        raise AnswerError(f"a worker's answer is about something else: {told} instead of {asked}")
+    worth = [(check.id, check.group, check.points) for check in suite.checks]
+    if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
+        raise AnswerError("a worker's answer does not hold the checks of the suite")
+    if any(not 0 <= check.points <= check.max_points for check in result.checks):
+        raise AnswerError("a worker's answer gives more points than a check is worth")
+    return result
+
+
+def _require_pictures(files: Mapping[str, bytes], result: Result) -> None:
+    named = {artifact.name for artifact in result.artifacts}
+    if set(files) != named:
+        raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(named)}")
+    for name, data in files.items():
+        if not PICTURE.fullmatch(name):
+            raise AnswerError(f"a worker's answer holds a picture of the name {name[:100]!r}")
+        try:
+            with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
+                width, height = picture.size
+                if width * height > MAX_PIXELS:
+                    raise AnswerError(f"the picture {name} in a worker's answer has {width} x {height} pixels")
+                picture.verify()
+        except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+            raise AnswerError(f"the picture {name} in a worker's answer cannot be read: {error}") from None
+
+
+def _require_notebook(data: bytes) -> None:
+    import nbformat  # slow to import, and a source tree has no notebook
+
+    try:
+        nbformat.reads(data.decode(), as_version=4)
+    except Exception as error:  # nbformat's own errors have no common base
+        raise AnswerError(f"the notebook in a worker's answer cannot be read: {error}") from None

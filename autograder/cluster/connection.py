@@ -1,0 +1,113 @@
+"""Connects to a scheduler: with TLS wherever the address is not this machine's own."""
+
+from __future__ import annotations
+
+import contextlib
+import ipaddress
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import dask
+from distributed import Client, LocalCluster
+from distributed.security import Security
+
+from autograder.cluster.certificates import CERTIFICATE, KEY
+from autograder.cluster.exceptions import ClusterError
+from autograder.exceptions import UsageError
+
+LOCAL = "local"
+PRELOAD = "autograder.cluster"
+PATIENCE = 30  # s, for the first answer of a scheduler
+
+
+@contextlib.contextmanager
+def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]:
+    """Give a client of a scheduler.
+
+    Args:
+        scheduler: its address, or `local` for a cluster on this machine that ends with the client.
+        jobs: how many submissions are graded at once by `local`.
+        certificates: the folder that `autograder cluster certificates` made, for TLS.
+
+    Raises:
+        UsageError: the address cannot be used, or a certificate is missing.
+        ClusterError: nobody answers there.
+    """
+    # A lost connection is this program's to explain, in one sentence.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    if scheduler == LOCAL:
+        # The cluster would take away a worker that needs longer than 15 s to come back.
+        stays = dask.config.set({"distributed.deploy.lost-worker-timeout": 600})
+        with stays, _local(jobs) as cluster, Client(cluster, set_as_default=False) as client:
+            yield client
+        return
+    address = with_protocol(scheduler)
+    security = _security(certificates) if address.startswith("tls://") else Security(require_encryption=False)
+    try:
+        client = Client(address, security=security, timeout=PATIENCE, set_as_default=False)
+    except OSError as error:
+        raise ClusterError(f"no scheduler answers at {address}: {error}") from None
+    try:
+        yield client
+    finally:
+        with contextlib.suppress(OSError):  # the scheduler may be gone
+            client.close(timeout=PATIENCE)
+
+
+def with_protocol(scheduler: str) -> str:
+    """Return the address with its protocol: `tcp` on this machine, `tls` elsewhere.
+
+    Raises:
+        UsageError: it is no address, or would send submissions in clear text to another machine.
+    """
+    protocol, mark, rest = scheduler.rpartition("://")
+    try:
+        host, port = urlsplit(f"//{rest}").hostname, urlsplit(f"//{rest}").port
+    except ValueError:
+        host, port = None, None
+    if not host or port is None or (mark and protocol not in ("tcp", "tls")):
+        raise UsageError(f"{scheduler!r} is no address of a scheduler: give tls://HOST:PORT, or `{LOCAL}`")
+    if not mark:
+        protocol = "tcp" if _loopback(host) else "tls"
+    if protocol == "tcp" and not _loopback(host):
+        raise UsageError(
+            f"{scheduler} would send submissions and marks in clear text: start scheduler and workers with tls:// "
+            "(`autograder cluster certificates` makes what they need)"
+        )
+    return f"{protocol}://{rest}"
+
+
+def _loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _security(folder: Path) -> Security:
+    certificate, key = folder / CERTIFICATE, folder / KEY
+    for path in (certificate, key):
+        if not path.is_file():
+            raise UsageError(
+                f"{path}: there is no such file; `autograder cluster certificates` makes it, and --certificates names "
+                "the folder"
+            )
+    return Security(
+        tls_ca_file=str(certificate), tls_client_cert=str(certificate), tls_client_key=str(key), require_encryption=True
+    )
+
+
+def _local(jobs: int) -> LocalCluster:
+    # One process with a thread a grading: a thread only waits for the grading's own process.
+    return LocalCluster(
+        n_workers=1,
+        threads_per_worker=jobs,
+        processes=True,
+        dashboard_address=None,
+        memory_limit=None,
+        preload=[PRELOAD],
+        scheduler_kwargs={"preload": [PRELOAD]},
+        silence_logs=logging.CRITICAL,
+    )

@@ -1,0 +1,170 @@
+"""Sends a class to the workers of a scheduler, and takes in what comes back.
+
+Only as many submissions are under way as the workers have threads. So the memory of client and scheduler does not grow
+with the class, and after Ctrl-C there is little to wait for.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import uuid
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from distributed import Client, Future
+
+from autograder.checks import suites
+from autograder.cluster import work
+from autograder.cluster.accept import accept, give_up, write
+from autograder.cluster.dask_hooks import DEATHS
+from autograder.cluster.exceptions import AnswerError, ClusterError
+from autograder.cluster.fitting import TICK, FittingWorkers
+from autograder.cluster.parcel import Parcel
+from autograder.exceptions import StudentError
+from autograder.grading.batch import OnResult
+from autograder.grading.request import Request
+from autograder.grading.unchecked import refused
+from autograder.intake import detect_layout, read_files
+from autograder.result import Result
+
+TRIES = 2  # answers that are asked for before a submission is given up
+
+Grade = Callable[[bytes], bytes]
+
+
+@dataclass(frozen=True)
+class _Sent:
+    """A submission that is under way: its place in the class, its digest, and how often it was sent."""
+
+    place: int
+    request: Request
+    sha256: str
+    parcel: bytes
+    tries: int = 1
+
+
+def grade_on(
+    client: Client,
+    requests: Sequence[Request],
+    on_result: OnResult,
+    *,
+    say: Callable[[str], None],
+    grade: Grade = work.grade,
+) -> tuple[Result, ...]:
+    """Grade submissions of one assignment on a cluster.
+
+    After Ctrl-C nothing more is sent, and what is under way is taken in. A second Ctrl-C leaves that, too.
+
+    Args:
+        client: the connection to the scheduler.
+        requests: what is asked for, with one assignment and tier.
+        on_result: called for each result as it comes, in any order.
+        say: is told which workers are refused, and why.
+        grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
+
+    Returns:
+        The results, in the order of the requests.
+
+    Raises:
+        ClusterError: the scheduler was lost, or no worker can grade this. What came by then is stored.
+    """
+    if not requests:
+        return ()
+    dispatch = _Dispatch(client, requests, on_result, say, grade)
+    try:
+        dispatch.run()
+    except KeyboardInterrupt:
+        dispatch.finish()
+        raise
+    finally:
+        dispatch.forget()
+    return tuple(dispatch.results[place] for place in range(len(requests)))
+
+
+class _Dispatch:
+    """One class on its way."""
+
+    def __init__(
+        self, client: Client, requests: Sequence[Request], on_result: OnResult, say: Callable[[str], None], grade: Grade
+    ) -> None:
+        self.results: dict[int, Result] = {}
+        self._client, self._on_result, self._grade = client, on_result, grade
+        self._workers = FittingWorkers(client, requests[0].assignment, requests[0].isolation, say)
+        self._parcels = self._packed(requests)
+        self._under_way: dict[Future, _Sent] = {}
+        self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
+
+    def run(self) -> None:
+        """Send and take in until nothing is left."""
+        left = True
+        while left or self._under_way:
+            while left and len(self._under_way) < self._workers.threads():
+                sent = next(self._parcels, None)
+                if sent is None:
+                    left = False
+                else:
+                    self._send(sent)
+            self._take()
+
+    def finish(self) -> None:
+        """Take in what is under way."""
+        while self._under_way:
+            self._take()
+
+    def forget(self) -> None:
+        """Let the scheduler drop what is under way."""
+        with contextlib.suppress(Exception):  # the scheduler may be what was lost
+            self._client.cancel(list(self._under_way), force=True)
+
+    def _packed(self, requests: Sequence[Request]) -> Iterator[_Sent]:
+        """Yield what has to be sent; keep the results of the rest."""
+        for place, request in enumerate(requests):
+            stored = request.stored()
+            if stored is not None:
+                self._keep(place, stored)
+                continue
+            try:
+                files = read_files(request.path, request.assignment)
+                sha256 = detect_layout(files, request.assignment).sha256
+            except StudentError as error:
+                suite = suites.hidden(request.assignment)
+                result = refused(suite, request.student, request.seed, request.isolation, error.diagnosis)
+                self._keep(place, write(result, request))
+                continue
+            parcel = Parcel(request.assignment, request.seed, request.isolation, tuple(files))
+            yield _Sent(place, request, sha256, parcel.pack())
+
+    def _send(self, sent: _Sent) -> None:
+        future = self._client.submit(
+            self._grade, sent.parcel, key=f"grade-{uuid.uuid4()}", resources={self._workers.resource: 1}, pure=False
+        )
+        self._under_way[future] = sent
+        future.add_done_callback(self._ended.put)
+
+    def _take(self) -> None:
+        """Wait a moment for a future that has ended, and take it in."""
+        try:
+            future = self._ended.get(timeout=TICK)
+        except queue.Empty:
+            self._workers.threads()  # has the scheduler or the last worker gone?
+            return
+        sent = self._under_way.pop(future)
+        if future.status == "cancelled":
+            raise ClusterError("the connection to the scheduler was lost")
+        if future.status == "error":
+            why = f"The {DEATHS} workers that had this submission died."
+            self._keep(sent.place, give_up(sent.request, why, f"{future.exception()!r}\n"))
+            return
+        try:
+            self._keep(sent.place, accept(future.result(), sent.request, sent.sha256))
+        except AnswerError as error:
+            if sent.tries < TRIES:
+                self._send(replace(sent, tries=sent.tries + 1))
+                return
+            why = f"Workers failed on this submission {TRIES} times."
+            self._keep(sent.place, give_up(sent.request, why, f"{error}\n"))
+
+    def _keep(self, place: int, result: Result) -> None:
+        self.results[place] = result
+        self._on_result(result)

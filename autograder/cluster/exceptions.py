@@ -1,0 +1,18 @@
+"""The errors of grading on a cluster.
+
+GraderError
+└── ClusterError       the cluster cannot be reached, was lost, or lacks what it needs   (exit status 1)
+    └── AnswerError    what a worker sent back is no grading of what it was sent
+"""
+
+from __future__ import annotations
+
+from autograder.exceptions import GraderError
+
+
+class ClusterError(GraderError):
+    """The cluster cannot be used. What is graded by then is kept."""
+
+
+class AnswerError(ClusterError):
+    """A worker's answer breaks a bound or the schema, or is about something else than what was asked."""

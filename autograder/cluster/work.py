@@ -1,0 +1,32 @@
+"""The worker's side: grades one parcel. Dask finds `grade` by its name; bytes go in and bytes come out."""
+
+from __future__ import annotations
+
+import tempfile
+import traceback
+from pathlib import Path
+
+from autograder.cluster.parcel import MAX_ANSWER, Answer, Parcel
+from autograder.grading import grade_submission
+from autograder.intake import write_tree
+
+
+def grade(data: bytes) -> bytes:
+    """Grade the submission in a packed `Parcel`, and return a packed `Answer`. It raises nothing."""
+    try:
+        return _graded(Parcel.unpack(data)).pack()
+    except Exception:
+        # An exception would travel as a pickle. The client keeps the text in the grader's log.
+        return Answer({}, traceback.format_exc()).pack()
+
+
+def _graded(parcel: Parcel) -> Answer:
+    with tempfile.TemporaryDirectory(prefix="parcel-") as folder:
+        submission, out = Path(folder, "submission"), Path(folder, "out")
+        write_tree(parcel.files, submission)
+        grade_submission(submission, parcel.assignment, student="", seed=parcel.seed, out=out, isolation=parcel.tier)
+        files = [path for path in sorted(out.iterdir()) if path.is_file()]
+        size = sum(path.stat().st_size for path in files)
+        if size > MAX_ANSWER:
+            return Answer({}, f"the grading left {size} bytes, and {MAX_ANSWER} is the most")
+        return Answer({path.name: path.read_bytes() for path in files})

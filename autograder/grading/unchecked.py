@@ -1,0 +1,65 @@
+"""Results in which no check was run: the grader failed, or intake refused the submission."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+
+from autograder.checks import Outcome
+from autograder.checks.suites import Suite
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.result import Build, CheckResult, Result, Status
+from autograder.sandbox import Tier
+
+LOG = "grader.log"
+
+
+def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str) -> Result:
+    """Return the result of a submission on which the grader failed. It is no zero.
+
+    Args:
+        suite: the checks that were not run.
+        student: whose the submission is.
+        seed: the seed of the grading.
+        isolation: the sandbox's tier.
+        why: a sentence that says what failed.
+    """
+    sentence = (
+        f"{why} This is no zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
+    )
+    diagnosis = Diagnosis(Kind.NOT_GRADED, sentence)
+    return _without_checks(suite, student, seed, isolation, diagnosis, "not graded", Status.NOT_GRADED)
+
+
+def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis) -> Result:
+    """Return the result of a submission that intake refused, as a worker would record it.
+
+    Args:
+        suite: the checks that were not run.
+        student: whose the submission is.
+        seed: the seed of the grading.
+        isolation: the sandbox's tier.
+        diagnosis: why it was refused.
+    """
+    message = f"not checked: {diagnosis.sentence}"
+    return _without_checks(suite, student, seed, isolation, diagnosis, message, Status.GRADED)
+
+
+def _without_checks(
+    suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis, message: str, status: Status
+) -> Result:
+    return Result(
+        assignment=suite.assignment,
+        student=student,
+        submission_sha256="0" * 64,
+        suite_version=suite.version,
+        seed=seed,
+        isolation=isolation.value,
+        checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, message) for check in suite.checks),
+        max_score=suite.max_score,
+        started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        seconds=0.0,
+        status=status,
+        diagnosis=diagnosis,
+        build=Build(False, 0.0, log=diagnosis.detail) if status is Status.GRADED else None,
+        phases={"intake": 0.0} if status is Status.GRADED else {},
+    )

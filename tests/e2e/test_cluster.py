@@ -1,0 +1,187 @@
+"""Grading on a cluster: whatever is killed, the results are those of one machine, none lost and none twice."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder.checks import suites
+from autograder.cluster import fitting
+from autograder.cluster.connection import LOCAL, connected
+from autograder.cluster.dispatch import grade_on
+from autograder.cluster.exceptions import ClusterError
+from autograder.cluster.machine import Machine
+from autograder.cluster.parcel import Answer, Parcel
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.grading.request import Request
+from autograder.grading.unchecked import refused
+from autograder.intake import detect_layout
+from autograder.proof.mutants import mutants, write_mutant, write_reference
+from autograder.result import Status
+from autograder.sandbox import Tier
+from tests.e2e.cluster_arena import CLIENT, SCHEDULER, WORKERS, Arena, arena
+
+ASSIGNMENT = "01_package_structure"
+DEADLINE = 1500.0  # s
+TIMES = {"seconds", "started", "phases", "held_up", "log"}  # colcon's log holds times and the folder of the cell
+
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
+
+
+def write_class(folder: Path, flawed: int) -> list[str]:
+    """Write a class: the reference, flawed answers, one without a package, and one that intake refuses."""
+    sources = suites.hidden(ASSIGNMENT).sources
+    write_reference(sources, folder / "reference")
+    for mutant in [mutant for mutant in mutants(ASSIGNMENT) if not mutant.slow][:flawed]:
+        write_mutant(mutant, sources, folder / mutant.id)
+    (folder / "no package" / "src").mkdir(parents=True)
+    (folder / "no package" / "src" / "notes.txt").write_text("later")
+    (folder / "Zoë Ünïcode.zip").write_bytes(b"no archive")
+    return sorted(path.stem for path in folder.iterdir())
+
+
+def grade(out: str, *options: str) -> list[str]:
+    command = [sys.executable, "-m", "autograder", "grade", "class", "--assignment", ASSIGNMENT, "--out", out]
+    return [*command, "--json", f"{out}.json", *options]
+
+
+def stored(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
+    """Return each student's result without times, and the pictures."""
+    found = {}
+    for path in sorted(out.glob("*/result.json")):
+        pictures = {picture.name: picture.read_bytes() for picture in path.parent.glob("*.png")}
+        found[path.parent.name] = (without_times(json.loads(path.read_text())), pictures)
+    return found
+
+
+def without_times(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {key: without_times(value) for key, value in data.items() if key not in TIMES}
+    return [without_times(item) for item in data] if isinstance(data, list) else data
+
+
+def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:
+    """Grade the class while machines are killed; start over until as many were killed. Return the last results."""
+    victims = [CLIENT, SCHEDULER, *WORKERS]
+    until, run, killed = time.monotonic() + DEADLINE, 0, 0
+    options = ("--scheduler", cluster.address, "--certificates", str(cluster.certificates), "--resume")
+    cluster.mend()
+    client = cluster.run(CLIENT, grade(f"out{run}", *options))
+    while time.monotonic() < until:
+        try:
+            status = client.wait(draw.uniform(0.5, 8.0) if killed < kills else until - time.monotonic())
+        except subprocess.TimeoutExpired:
+            victim = draw.choice(victims) if killed >= 3 else (WORKERS[0], SCHEDULER, CLIENT)[killed]
+            cluster.kill(victim)
+            killed += 1
+            status = 1 if victim == CLIENT else 0 if client.poll() is None else client.returncode
+        cluster.mend()
+        if client.poll() is None:
+            continue
+        if status == 0:
+            if killed >= kills:
+                return cluster.place / f"out{run}"
+            run += 1
+        client = cluster.run(CLIENT, grade(f"out{run}", *options))
+    raise AssertionError(f"not graded within {DEADLINE} s, after {killed} kills:\n{cluster.log(CLIENT)[-3000:]}")
+
+
+@pytest.mark.parametrize(
+    ("kills", "flawed"), [pytest.param(3, 1, id="3"), pytest.param(20, 8, id="20", marks=pytest.mark.nightly)]
+)
+def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, kills: int, flawed: int) -> None:
+    with arena(tmp_path) as cluster:
+        students = write_class(cluster.place / "class", flawed)
+        subprocess.run(grade("serial", "-j", "1"), cwd=cluster.place, check=True)
+        out = grade_under_fire(cluster, kills, random.Random(2026))
+        told = [result["student"] for result in json.loads((cluster.place / f"{out.name}.json").read_text())]
+        assert sorted(told) == students
+        assert stored(out) == stored(cluster.place / "serial")
+        assert set(stored(out)) == set(students)
+
+
+@pytest.fixture
+def requests(tmp_path: Path) -> list[Request]:
+    """What is asked for three submissions, each another one."""
+    found = []
+    for student in ("alice", "bob", "carol"):
+        package = tmp_path / student / "src" / "package"
+        package.mkdir(parents=True)
+        (package / "package.xml").write_text(student)
+        found.append(Request(student, tmp_path / student, ASSIGNMENT, 7, Tier.PROCESS, tmp_path / "out" / student))
+    return found
+
+
+def answered(data: bytes) -> bytes:
+    """Answer as a worker does, without a grading; on bob's submission the worker dies."""
+    parcel = Parcel.unpack(data)
+    if parcel.files[0].data == b"bob":
+        os.kill(os.getpid(), signal.SIGKILL)
+    suite = suites.hidden(parcel.assignment)
+    result = replace(
+        refused(suite, "", parcel.seed, parcel.tier, Diagnosis(Kind.BUILD_FAILED, "no")),
+        submission_sha256=detect_layout(list(parcel.files), parcel.assignment).sha256,
+    )
+    return Answer({"result.json": json.dumps(result.to_json()).encode()}).pack()
+
+
+def test_a_submission_that_kills_two_workers_is_not_graded_and_the_rest_is(
+    requests: list[Request], tmp_path: Path
+) -> None:
+    with connected(LOCAL, 1, tmp_path) as client:
+        alice, bob, carol = grade_on(client, requests, lambda _: None, say=pytest.fail, grade=answered)
+    assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
+    assert bob.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
+    assert "KilledWorker" in (requests[1].out / "grader.log").read_text()
+
+
+def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
+    requests: list[Request], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    other = replace(Machine.of_this(), suites={ASSIGNMENT: "another"})
+    with connected(LOCAL, 1, tmp_path) as client:
+        monkeypatch.setattr(Machine, "of_this", classmethod(lambda _: other))
+        monkeypatch.setattr(fitting, "PATIENCE", 0.0)
+        with pytest.raises(ClusterError, match="there was no worker that can grade this"):
+            grade_on(client, requests, pytest.fail, say=said.append, grade=answered)
+    (sentence,) = said
+    assert f"is refused: its suite of {ASSIGNMENT} is" in sentence
+    assert sentence.endswith("and here it is another: give both the same version of the course.")
+
+
+def test_ctrl_c_takes_in_what_has_begun_and_resume_goes_on(tmp_path: Path) -> None:
+    write_class(tmp_path / "class", 0)
+    command = grade("out", "--scheduler", "local", "-j", "1", "--resume")
+    with subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("[1/3]")
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it, too
+        said = process.stdout.read()
+    assert process.returncode == 130, said
+    assert said.endswith("\nStopped. What is graded is in out: the same command with --resume grades the rest.\n")
+    done = {
+        student: (tmp_path / "out" / student / "result.json").stat().st_mtime_ns for student in stored(tmp_path / "out")
+    }
+    assert 1 <= len(done) < 3
+    subprocess.run(command, cwd=tmp_path, check=True)
+    assert len(stored(tmp_path / "out")) == 3
+    assert all(json.loads(path.read_text())["status"] == "graded" for path in tmp_path.glob("out/*/result.json"))

@@ -1,0 +1,151 @@
+"""A worker's answer is taken in as that of a stranger: whatever does not hold is refused, and nothing is written."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import msgpack
+import pytest
+from PIL import Image
+
+from autograder.checks import Outcome, suites
+from autograder.cluster.accept import accept, give_up
+from autograder.cluster.exceptions import AnswerError, ClusterError
+from autograder.cluster.parcel import MAX_ANSWER, Answer, Parcel
+from autograder.exceptions import StudentError
+from autograder.grading.request import Request
+from autograder.grading.unchecked import refused
+from autograder.intake import SubmittedFile, read_submission
+from autograder.result import Artifact, CheckResult, Result, Status
+from autograder.sandbox import Tier
+
+CHAPTER = "02_nodes"
+SHA256 = "a" * 64
+
+
+@pytest.fixture
+def request_(tmp_path: Path) -> Request:
+    return Request("Zoë", tmp_path / "submission", CHAPTER, 7, Tier.BUBBLEWRAP, tmp_path / "out")
+
+
+@pytest.fixture
+def result(make_result: Callable[..., Result]) -> Result:
+    suite = suites.hidden(CHAPTER)
+    checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
+    told = {"suite_version": suite.version, "max_score": suite.max_score, "submission_sha256": SHA256}
+    return make_result("", checks=checks, **told)
+
+
+def png() -> bytes:
+    out = io.BytesIO()
+    Image.new("RGB", (8, 8)).save(out, "PNG")
+    return out.getvalue()
+
+
+def answer(result: Result, **files: bytes) -> bytes:
+    return Answer({"result.json": json.dumps(result.to_json()).encode(), **files}).pack()
+
+
+def with_picture(result: Result, name: str) -> Result:
+    return replace(result, artifacts=(Artifact(name, "track", SHA256, "turns"),))
+
+
+def test_a_parcel_comes_out_as_it_went_in_whatever_its_names_are() -> None:
+    names = ("src/a b/ü.py", "src/\udcff.txt", "run")
+    files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
+    parcel = Parcel(CHAPTER, 7, Tier.PROCESS, files)
+    assert set(Parcel.unpack(parcel.pack()).files) == set(files)
+    assert Parcel(CHAPTER, 7, Tier.PROCESS, files[::-1]).pack() == parcel.pack()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"\xc1", msgpack.packb(["02_nodes", 7, "no tier", []]), msgpack.packb(["02_nodes", 7, "process", [[]]])],
+)
+def test_what_is_no_parcel_is_refused(data: bytes) -> None:
+    with pytest.raises(ClusterError, match="the parcel of a submission cannot be read"):
+        Parcel.unpack(data)
+
+
+@pytest.mark.parametrize("name", ["/etc/passwd", "src/../../x"])
+def test_a_parcel_leaves_its_folder_for_no_file(name: str) -> None:
+    data = Parcel(CHAPTER, 7, Tier.PROCESS, (SubmittedFile(PurePosixPath(name), b""),)).pack()
+    with pytest.raises(ClusterError, match="names a file outside of it"):
+        Parcel.unpack(data)
+
+
+def test_an_answer_is_stored_under_the_student_s_name(request_: Request, result: Result) -> None:
+    told = with_picture(result, "turns-track.png")
+    taken = accept(answer(told, **{"turns-track.png": png()}), request_, SHA256)
+    assert taken == replace(told, student="Zoë")
+    assert json.loads((request_.out / "result.json").read_text())["student"] == "Zoë"
+    assert (request_.out / "turns-track.png").read_bytes() == png()
+
+
+def hostile(result: Result) -> dict[str, tuple[object, str]]:
+    first, *rest = result.checks
+    picture = {"turns.png": png()}
+    large = io.BytesIO()
+    Image.new("1", (6000, 6000)).save(large, "PNG")
+    return {
+        "no bytes": ({"result.json": ""}, "sent dict instead of bytes"),
+        "no msgpack": (b"\xc1", "cannot be read"),
+        "too large": (b"\x00" * (MAX_ANSWER + 1), "is the most"),
+        "nested": (b"\x91" * 100_000, "cannot be read"),
+        "no files": (msgpack.packb([[1], ""]), "not made of named files"),
+        "no result": (Answer({}).pack(), "holds no result"),
+        "no schema": (Answer({"result.json": b'{"score": 100}'}).pack(), "holds no result"),
+        "another seed": (answer(replace(result, seed=8)), "about something else"),
+        "another submission": (answer(replace(result, submission_sha256="b" * 64)), "about something else"),
+        "another suite": (answer(replace(result, suite_version="0" * 12)), "about something else"),
+        "another tier": (answer(replace(result, isolation="process")), "about something else"),
+        "a check too few": (answer(replace(result, checks=tuple(rest))), "does not hold the checks"),
+        "a check worth more": (
+            answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),
+            "does not hold the checks",
+        ),
+        "too many points": (answer(replace(result, checks=(replace(first, points=99.0), *rest))), "more points"),
+        "a file that is no picture": (answer(result, **{"evil.sh": b"rm"}), "its result names"),
+        "a picture outside": (answer(with_picture(result, "../x.png"), **{"../x.png": png()}), "of the name"),
+        "a picture that is none": (
+            answer(with_picture(result, "turns.png"), **{"turns.png": b"GIF"}),
+            "cannot be read",
+        ),
+        "a missing picture": (answer(with_picture(result, "turns.png")), "its result names"),
+        "a picture too many": (answer(result, **picture), "its result names"),
+        "a huge picture": (answer(with_picture(result, "turns.png"), **{"turns.png": large.getvalue()}), "pixels"),
+        "no notebook": (answer(result, **{"notebook.ipynb": b"[]"}), "notebook in a worker's answer"),
+        "a failure": (Answer({}, "Traceback: disk full").pack(), "the worker failed: Traceback: disk full"),
+    }
+
+
+def test_a_hostile_answer_is_refused_and_writes_nothing(request_: Request, result: Result) -> None:
+    for name, (data, why) in hostile(result).items():
+        with pytest.raises(AnswerError, match=why):
+            pytest.fail(f"{name}: {accept(data, request_, SHA256)}")
+        assert not request_.out.exists(), name
+
+
+def test_a_submission_that_is_given_up_is_not_graded_and_no_zero(request_: Request) -> None:
+    given_up = give_up(request_, "The 2 workers that had this submission died.", "KilledWorker\n")
+    assert given_up.status is Status.NOT_GRADED
+    assert given_up.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
+    assert (request_.out / "grader.log").read_text() == "KilledWorker\n"
+
+
+def test_what_intake_refuses_has_a_result_without_any_worker(tmp_path: Path) -> None:
+    (tmp_path / "bob.zip").write_bytes(b"none")
+    with pytest.raises(StudentError) as caught:
+        read_submission(tmp_path / "bob.zip", CHAPTER)
+    result = refused(suites.hidden(CHAPTER), "bob", 7, Tier.BUBBLEWRAP, caught.value.diagnosis)
+    assert (result.status, result.score, result.diagnosis) == (Status.GRADED, 0.0, caught.value.diagnosis)
+
+
+def test_an_answer_that_would_be_too_large_is_a_failure() -> None:
+    files: dict[str, Any] = {"result.json": b"\x00" * (MAX_ANSWER + 1)}
+    assert "which is too much" in Answer.unpack(Answer(files).pack()).failure

@@ -1,0 +1,85 @@
+"""Who may grade with whom, and how they connect."""
+
+from __future__ import annotations
+
+import ssl
+import stat
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.cluster.certificates import make
+from autograder.cluster.connection import connected, with_protocol
+from autograder.cluster.machine import Machine
+from autograder.exceptions import UsageError
+from autograder.sandbox import Tier
+
+HERE = Machine({"02_nodes": "5ca1ab1e0000"}, "10cc10cc10cc", "3.12", ("process", "bubblewrap"))
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"),
+    [
+        ("tls://grader.example.edu:8786", "tls://grader.example.edu:8786"),
+        ("grader.example.edu:8786", "tls://grader.example.edu:8786"),
+        ("127.0.0.1:8786", "tcp://127.0.0.1:8786"),
+        ("localhost:8786", "tcp://localhost:8786"),
+        ("[::1]:8786", "tcp://[::1]:8786"),
+        ("tcp://127.1.2.3:1", "tcp://127.1.2.3:1"),
+    ],
+)
+def test_an_address_that_is_not_this_machine_s_own_means_tls(given: str, meant: str) -> None:
+    assert with_protocol(given) == meant
+
+
+@pytest.mark.parametrize("address", ["", "grader", "http://grader:80", "tls://:8786", "tls://grader:port"])
+def test_what_is_no_address_is_a_wrong_call(address: str) -> None:
+    with pytest.raises(UsageError, match="is no address of a scheduler: give tls://HOST:PORT, or `local`"):
+        with_protocol(address)
+
+
+def test_submissions_never_leave_the_machine_in_clear_text() -> None:
+    with pytest.raises(UsageError, match=r"in clear text: start scheduler and workers with tls://"):
+        with_protocol("tcp://10.0.0.1:8786")
+
+
+def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
+    missing = pytest.raises(UsageError, match=r"cluster.pem: there is no such file; `autograder cluster certificates`")
+    with missing, connected("tls://10.0.0.1:8786", 1, tmp_path):
+        pytest.fail("connected")
+
+
+def test_a_certificate_serves_both_ends_and_is_its_owner_s_alone(tmp_path: Path) -> None:
+    certificate, key = make(tmp_path / "new")
+    context = ssl.create_default_context(cafile=str(certificate))
+    context.load_cert_chain(certificate, key)
+    assert len(context.get_ca_certs()) == 1
+    assert stat.S_IMODE(key.stat().st_mode) == 0o600
+    with pytest.raises(UsageError, match=r"cluster\.pem exists"):
+        make(tmp_path / "new")
+
+
+@pytest.mark.parametrize(
+    ("other", "why"),
+    [
+        (HERE, ""),
+        (replace(HERE, suites={"02_nodes": "0"}), "its suite of 02_nodes is 0, and here it is 5ca1ab1e0000"),
+        (replace(HERE, suites={}), "its suite of 02_nodes is missing"),
+        (replace(HERE, lock="0"), "its requirements.lock is 0"),
+        (replace(HERE, python="3.10"), "its Python is 3.10, and here it is 3.12"),
+        (replace(HERE, tiers=("process",)), "it cannot isolate submissions by bubblewrap: `autograder doctor` there"),
+        (None, "it does not say what it grades with: start it with `--preload autograder.cluster`"),
+    ],
+)
+def test_a_worker_that_differs_is_refused_with_a_sentence(other: Machine | None, why: str) -> None:
+    assert HERE.difference(other, "02_nodes", Tier.BUBBLEWRAP).startswith(why)
+    assert (HERE.difference(other, "02_nodes", Tier.BUBBLEWRAP) == "") is (why == "")
+    offered = other.resources() if other else []
+    assert (HERE.resource("02_nodes", Tier.BUBBLEWRAP) in offered) is (why == "")
+
+
+def test_what_a_worker_tells_is_read_or_refused() -> None:
+    assert Machine.from_json({**HERE.to_json(), "tiers": list(HERE.tiers)}) == HERE
+    for told in (None, [], {}, {**HERE.to_json(), "suites": 1}, {**HERE.to_json(), "more": 1}):
+        assert Machine.from_json(told) is None
