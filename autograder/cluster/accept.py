@@ -21,6 +21,7 @@ from autograder.grading.unchecked import LOG, not_graded
 from autograder.result import Result, Status, from_json, write_atomically, write_json
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
+RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
 MAX_PIXELS = 25_000_000
 
 
@@ -42,7 +43,7 @@ def accept(data: object, request: Request, sha256: str) -> Result:
     files = dict(answer.files)
     result = _result(files.pop(RESULT, b""), request, sha256)
     notebook, log = files.pop(NOTEBOOK, None), files.pop(LOG, None)
-    _require_pictures(files, result)
+    _require_artifacts(files, result)
     others = {**files, **{name: data for name, data in ((NOTEBOOK, notebook), (LOG, log)) if data is not None}}
     if notebook is not None:
         _require_notebook(notebook)
@@ -97,21 +98,31 @@ def _result(data: bytes, request: Request, sha256: str) -> Result:
     return result
 
 
-def _require_pictures(files: Mapping[str, bytes], result: Result) -> None:
-    named = {artifact.name for artifact in result.artifacts}
-    if set(files) != named:
-        raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(named)}")
+def _require_artifacts(files: Mapping[str, bytes], result: Result) -> None:
+    pictures = {artifact.name for artifact in result.artifacts}
+    runs = {artifact.run for artifact in result.artifacts if artifact.run}
+    if set(files) != pictures | runs:
+        raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(pictures | runs)}")
     for name, data in files.items():
-        if not PICTURE.fullmatch(name):
-            raise AnswerError(f"a worker's answer holds a picture of the name {name[:100]!r}")
+        if not (PICTURE if name in pictures else RUN).fullmatch(name):
+            raise AnswerError(f"a worker's answer holds a file of the name {name[:100]!r}")
         try:
-            with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-                width, height = picture.size
-                if width * height > MAX_PIXELS:
-                    raise AnswerError(f"the picture {name} in a worker's answer has {width} x {height} pixels")
-                picture.verify()
-        except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
-            raise AnswerError(f"the picture {name} in a worker's answer cannot be read: {error}") from None
+            _require_picture(data) if name in pictures else _require_run(data)
+        except (OSError, SyntaxError, ValueError, RecursionError, Image.DecompressionBombError) as error:
+            raise AnswerError(f"the file {name} in a worker's answer cannot be read: {error}") from None
+
+
+def _require_picture(data: bytes) -> None:
+    with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
+        width, height = picture.size
+        if width * height > MAX_PIXELS:
+            raise ValueError(f"it has {width} x {height} pixels")
+        picture.verify()
+
+
+def _require_run(data: bytes) -> None:
+    if not isinstance(json.loads(data.decode()), dict):
+        raise ValueError("it is no run")
 
 
 def _require_notebook(data: bytes) -> None:

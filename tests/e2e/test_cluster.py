@@ -59,8 +59,11 @@ def stored(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
     """Return each student's result without times, and the pictures."""
     found = {}
     for path in sorted(out.glob("*/result.json")):
-        pictures = {picture.name: picture.read_bytes() for picture in path.parent.glob("*.png")}
-        found[path.parent.name] = (without_times(json.loads(path.read_text())), pictures)
+        kept = [file for pattern in ("*.png", "*.run.json") for file in path.parent.glob(pattern)]
+        found[path.parent.name] = (
+            without_times(json.loads(path.read_text())),
+            {file.name: file.read_bytes() for file in kept},
+        )
     return found
 
 
@@ -79,16 +82,14 @@ def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:
     client = cluster.run(CLIENT, grade(f"out{run}", *options))
     while time.monotonic() < until:
         try:
-            status = client.wait(draw.uniform(0.5, 8.0) if killed < kills else until - time.monotonic())
+            client.wait(draw.uniform(0.5, 8.0) if killed < kills else until - time.monotonic())
         except subprocess.TimeoutExpired:
-            victim = draw.choice(victims) if killed >= 3 else (WORKERS[0], SCHEDULER, CLIENT)[killed]
-            cluster.kill(victim)
+            cluster.kill(draw.choice(victims) if killed >= 3 else (WORKERS[0], SCHEDULER, CLIENT)[killed])
             killed += 1
-            status = 1 if victim == CLIENT else 0 if client.poll() is None else client.returncode
         cluster.mend()
         if client.poll() is None:
             continue
-        if status == 0:
+        if client.returncode == 0:
             if killed >= kills:
                 return cluster.place / f"out{run}"
             run += 1

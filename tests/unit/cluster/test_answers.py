@@ -55,6 +55,10 @@ def with_picture(result: Result, name: str) -> Result:
     return replace(result, artifacts=(Artifact(name, "track", SHA256, "turns"),))
 
 
+def with_run(result: Result, name: str) -> Result:
+    return replace(result, artifacts=(Artifact("turns.png", "track", SHA256, "turns", run=name),))
+
+
 def test_a_parcel_comes_out_as_it_went_in_whatever_its_names_are() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
@@ -80,11 +84,12 @@ def test_a_parcel_leaves_its_folder_for_no_file(name: str) -> None:
 
 
 def test_an_answer_is_stored_under_the_student_s_name(request_: Request, result: Result) -> None:
-    told = with_picture(result, "turns-track.png")
-    taken = accept(answer(told, **{"turns-track.png": png()}), request_, SHA256)
+    told = with_run(result, "turns.run.json")
+    taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), request_, SHA256)
     assert taken == replace(told, student="Zoë")
     assert json.loads((request_.out / "result.json").read_text())["student"] == "Zoë"
-    assert (request_.out / "turns-track.png").read_bytes() == png()
+    assert (request_.out / "turns.png").read_bytes() == png()
+    assert (request_.out / "turns.run.json").read_bytes() == b"{}"
 
 
 def hostile(result: Result) -> dict[str, tuple[object, str]]:
@@ -119,6 +124,14 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "a missing picture": (answer(with_picture(result, "turns.png")), "its result names"),
         "a picture too many": (answer(result, **picture), "its result names"),
         "a huge picture": (answer(with_picture(result, "turns.png"), **{"turns.png": large.getvalue()}), "pixels"),
+        "a run that is none": (
+            answer(with_run(result, "turns.run.json"), **picture, **{"turns.run.json": b"[]"}),
+            "it is no run",
+        ),
+        "a run outside": (
+            answer(with_run(result, "../x.run.json"), **picture, **{"../x.run.json": b"{}"}),
+            "of the name",
+        ),
         "no notebook": (answer(result, **{"notebook.ipynb": b"[]"}), "notebook in a worker's answer"),
         "a failure": (Answer({}, "Traceback: disk full").pack(), "the worker failed: Traceback: disk full"),
     }
