@@ -23,7 +23,7 @@ NOT_READ = frozenset(
         "doctor",
         "export",
         "feedback",
-        "handed_in",
+        "lms",
         "nbgrader",
         "notebook",
         "proof",

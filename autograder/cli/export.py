@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import click
 
 from autograder import export as exporters
+from autograder import lms
 from autograder.cli.options import json_option
+from autograder.exceptions import UsageError
 from autograder.result import write_json
 
 _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)
@@ -16,7 +19,11 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
 @click.command()
 @click.argument("results", type=click.Path(path_type=Path))
 @click.option(
-    "--format", "name", required=True, type=click.Choice(list(exporters.FORMATS)), help="The format to write."
+    "--format",
+    "name",
+    required=True,
+    type=click.Choice(sorted([*exporters.FORMATS, *lms.SYSTEMS])),
+    help="The format to write.",
 )
 @click.option(
     "--out",
@@ -24,11 +31,40 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
     type=click.Path(path_type=Path),
     help=f"The file to write. For {_FOLDERS}, it is the folder.",
 )
+@click.option(
+    "--roster",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="For canvas and moodle: the table that the system exported, into which the marks are filled.",
+)
+@click.option(
+    "--late-penalty",
+    type=click.FloatRange(0, 100),
+    default=0.0,
+    metavar="PERCENT",
+    help="For canvas and moodle: what a late submission loses of its marks.",
+)
 @json_option
-def export(results: Path, name: str, out: Path, json_file: Path | None) -> None:
+def export(
+    results: Path, name: str, out: Path, roster: Path | None, late_penalty: float, json_file: Path | None
+) -> None:
     """Write stored RESULTS (a folder or a JSON file) as marks for other programs."""
     stored = exporters.load(results)
-    written = exporters.write(stored, name, out)
+    if name in lms.SYSTEMS:
+        if roster is None:
+            raise UsageError(f"--format {name} needs --roster: the table that {name.title()} exported")
+        table = lms.read_roster(roster)
+        strangers = lms.write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
+        if strangers:
+            click.echo(f"Not in {roster}: {', '.join(strangers)}", err=True)
+        written = out
+    else:
+        written = exporters.write(stored, name, out)
     click.echo(f"{len(stored)} results: {written}")
     if json_file is not None:
         write_json(json_file, {"results": len(stored), "format": name, "written": str(written)})
+
+
+def _late(results: Path) -> tuple[str, ...]:
+    """Return the students whose submission was late, as `autograder grade --roster` found them."""
+    file = results / lms.HANDED_IN
+    return tuple(json.loads(file.read_text(encoding="utf-8"))["late"]) if file.is_file() else ()

@@ -23,7 +23,8 @@ from autograder.cli.options import (
     table,
 )
 from autograder.exceptions import UsageError
-from autograder.grading.batch import GradeEach, discover, grade_all
+from autograder.grading.batch import Entry, GradeEach, discover, grade_all
+from autograder.lms import HANDED_IN, collect, read_roster, unpacked
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
@@ -50,6 +51,11 @@ INTERRUPTED = 130  # as a shell tells it
     help="The least mark. If one is below it, the exit status is 1.",
 )
 @click.option(
+    "--roster",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="The table of students as CSV. PATHS is then one download of Moodle, Canvas, Gradescope or GitHub Classroom.",
+)
+@click.option(
     "--scheduler",
     metavar="ADDRESS",
     help="Grade on the workers of this Dask scheduler: tls://HOST:8786, or `local` for -j workers of this machine.",
@@ -65,6 +71,7 @@ def grade(
     out: Path,
     resume: bool,
     require: float | None,
+    roster: Path | None,
     scheduler: str | None,
     certificates: Path,
     jobs: int,
@@ -76,12 +83,12 @@ def grade(
 
     A path is a submission (a folder, a zip or a notebook), or a folder with a submission for each student.
 
-    The exit status is 0 when every submission was graded, 1 when one was not graded or is below --require, 2 for a
-    wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
+    The exit status is 0 when every submission was graded, 1 when one was not graded, fits no student of --roster or is
+    below --require, 2 for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their
+    end.
     """
     suites.hidden(assignment)
-    entries = discover(paths, assignment)
-    with Progress(len(entries)) as progress:
+    with _submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
         try:
             with _graders(scheduler, jobs, certificates) as grade_each:
                 results = grade_all(
@@ -107,7 +114,28 @@ def grade(
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
     short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
-    sys.exit(1 if short else 0)
+    sys.exit(1 if short or not all_fit else 0)
+
+
+@contextmanager
+def _submissions(
+    paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path
+) -> Iterator[tuple[tuple[Entry, ...], bool]]:
+    """Give the submissions, and whether each that was handed in fits a student."""
+    if roster is None:
+        yield discover(paths, assignment), True
+        return
+    if len(paths) != 1:
+        raise UsageError("--roster goes with one download: give one zip or folder")
+    with unpacked(paths[0]) as folder:
+        found = collect(folder, read_roster(roster), assignment)
+        for name, why in found.unmatched:
+            click.echo(f"Not graded: {name}: {why}.", err=True)
+        for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
+            if names:
+                click.echo(f"{title}: {', '.join(names)}")
+        write_json(out / HANDED_IN, {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")})
+        yield found.entries, not found.unmatched
 
 
 @contextmanager

@@ -32,7 +32,7 @@ STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefi
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # Parts for instructors only, as paths in the bundle.
-_PACKAGES = ("proof", "cluster", "course", "nbgrader", "export", "feedback")
+_PACKAGES = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")
 _VERBS = ("cluster", "course", "demo", "export", "grade", "notebooks", "release", "replay", "verify")
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
 

@@ -1,0 +1,126 @@
+"""Finds each student's submission in a download. The newest counts; what fits no student is listed, not dropped."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from autograder.exceptions import UsageError
+from autograder.grading.batch import ARCHIVES, Entry
+from autograder.lms.gradescope import METADATA, read_metadata
+from autograder.lms.names import HandedIn, read_name
+from autograder.lms.roster import Roster
+
+HANDED_IN = "handed_in.json"  # beside the results: who was late, what fits no student
+NOT_HANDED_IN = frozenset({"__MACOSX", ".DS_Store", METADATA})
+
+
+@dataclass(frozen=True)
+class Collected:
+    """What a download holds.
+
+    Attributes:
+        entries: the submission of each student who handed one in, in the order of the roster.
+        late: the students whose submission the system calls late.
+        older: names of files and folders that a newer one of the same student replaces.
+        unmatched: names of files and folders that fit no student, or that are no answer, with the reason.
+        missing: the students who handed nothing in.
+    """
+
+    entries: tuple[Entry, ...]
+    late: tuple[str, ...]
+    older: tuple[str, ...]
+    unmatched: tuple[tuple[str, str], ...]
+    missing: tuple[str, ...]
+
+
+@contextmanager
+def unpacked(download: Path) -> Iterator[Path]:
+    """Give the folder of a download; one that is a zip is unpacked until the block is left.
+
+    Raises:
+        UsageError: it is neither a folder nor a zip, or names a file outside of itself.
+    """
+    if download.is_dir():
+        yield download
+        return
+    with tempfile.TemporaryDirectory(prefix="handed-in-") as folder:
+        try:
+            with zipfile.ZipFile(download) as archive:
+                for info in archive.infolist():
+                    _unpack(archive, info, Path(folder))
+        except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
+            raise UsageError(f"{download}: not a folder, and not a readable zip: {error}") from None
+        yield Path(folder)
+
+
+def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
+    """Find the submission of each student.
+
+    Args:
+        folder: the unpacked download.
+        roster: the students.
+        assignment: the assignment; in nbgrader's layout, each student's folder holds one of this name.
+    """
+    newest: dict[str, HandedIn] = {}
+    older: list[str] = []
+    unmatched: list[tuple[str, str]] = []
+    for item in _handed_in(folder, roster):
+        student = roster.find(item.keys)
+        if student is None:
+            unmatched.append((item.path.name, f"no student of {roster.path.name} fits"))
+        elif not item.answer:
+            unmatched.append((item.path.name, "it is no file that was handed in"))
+        elif student.id not in newest:
+            newest[student.id] = item
+        elif item.order == newest[student.id].order:
+            unmatched.append((item.path.name, f"{student.id} handed in several, and none is the newest"))
+        else:
+            older.append(min(item, newest[student.id], key=lambda item: item.order).path.name)
+            newest[student.id] = max(item, newest[student.id], key=lambda item: item.order)
+    students = [student.id for student in roster.students]
+    return Collected(
+        tuple(Entry(name, _answer(newest[name].path, assignment)) for name in students if name in newest),
+        tuple(name for name in students if name in newest and newest[name].late),
+        tuple(older),
+        tuple(unmatched),
+        tuple(name for name in students if name not in newest),
+    )
+
+
+def _handed_in(folder: Path, roster: Roster) -> list[HandedIn]:
+    if (folder / METADATA).is_file():
+        return read_metadata(folder)
+    items = [read_name(child) for child in sorted(folder.iterdir()) if child.name not in NOT_HANDED_IN]
+    # A zip often holds one folder that holds all.
+    if len(items) == 1 and items[0].path.is_dir() and roster.find(items[0].keys) is None:
+        return _handed_in(items[0].path, roster)
+    return items
+
+
+def _answer(path: Path, assignment: str) -> Path:
+    """Return the submission in what a student handed in: a folder that holds one archive alone means the archive."""
+    if path.is_file():
+        return path
+    if (path / assignment).is_dir():
+        return path / assignment
+    inside = [child for child in path.iterdir() if child.name not in NOT_HANDED_IN]
+    return inside[0] if len(inside) == 1 and inside[0].suffix in ARCHIVES else path
+
+
+def _unpack(archive: zipfile.ZipFile, info: zipfile.ZipInfo, folder: Path) -> None:
+    path = PurePosixPath(info.filename.replace("\\", "/"))
+    if path.is_absolute() or ".." in path.parts:
+        raise ValueError(f"{info.filename} points outside the archive")
+    target = folder / path
+    if info.is_dir():
+        target.mkdir(parents=True, exist_ok=True)
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with archive.open(info) as source, target.open("wb") as file:
+        shutil.copyfileobj(source, file)

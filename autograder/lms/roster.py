@@ -1,0 +1,121 @@
+"""The table of students, as a system exports it: Moodle's grading worksheet, Canvas's gradebook, rosters in CSV.
+
+The columns are those of Moodle's assign module (offline grading worksheet), Canvas's gradebook export, GitHub
+Classroom's `classroom_roster.csv`, Gradescope's roster and nbgrader's `db student import`.
+"""
+
+from __future__ import annotations
+
+import csv
+import unicodedata
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+
+# What a column says of a student, by its heading in lower case.
+COLUMNS = {
+    "identifier": "identifier",
+    "id": "id",
+    "sis user id": "sis id",
+    "sis login id": "login",
+    "username": "login",
+    "github_username": "github",
+    "id number": "number",
+    "student id": "number",
+    "sid": "number",
+    "email address": "email",
+    "email": "email",
+    "full name": "name",
+    "student": "name",
+    "name": "name",
+}
+# The first of these that a student has names the folder of the result.
+NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
+PARTICIPANT = "participant "  # what Moodle writes before the number that it also puts into file names
+NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
+
+
+@dataclass(frozen=True)
+class Student:
+    """A student of the roster.
+
+    Attributes:
+        id: the name of the student in results.
+        keys: what is known of the student: pairs of a kind, a value of `COLUMNS`, and a text, both normalized.
+        row: the row of the table, without the headings, counted from 0.
+    """
+
+    id: str
+    keys: frozenset[tuple[str, str]]
+    row: int
+
+
+@dataclass(frozen=True)
+class Roster:
+    """A table of students.
+
+    Attributes:
+        path: the file.
+        students: the students, in the order of the table.
+        headings: the headings of the columns.
+        rows: all rows as they are in the file.
+    """
+
+    path: Path
+    students: tuple[Student, ...]
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    def find(self, keys: tuple[tuple[str, str], ...]) -> Student | None:
+        """Return the student whom the first key that fits exactly one student means."""
+        for kind, value in keys:
+            fitting = [student for student in self.students if (kind, normalized(value)) in student.keys]
+            if len(fitting) == 1:
+                return fitting[0]
+        return None
+
+
+def normalized(text: str) -> str:
+    """Return the text in Unicode's form NFKC, in one case, with single spaces."""
+    return " ".join(unicodedata.normalize("NFKC", text).casefold().split())
+
+
+def read_roster(path: Path) -> Roster:
+    """Read a table of students.
+
+    Args:
+        path: a CSV file in UTF-8, with headings in its first line.
+
+    Raises:
+        UsageError: it cannot be read, has no column that names students, or names one twice. The message says which.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            headings, *rows = [tuple(row) for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
+    except ValueError:
+        raise UsageError(f"{path}: the table is empty") from None
+    kinds = [COLUMNS.get(normalized(heading), "") for heading in headings]
+    if not set(kinds) & set(NAMES_A_STUDENT):
+        known = ", ".join(sorted(COLUMNS))
+        raise UsageError(f"{path}: no column names the students; the headings that are known are {known}")
+    students = [found for place, row in enumerate(rows) if (found := _student(kinds, row, place)) is not None]
+    names = [student.id for student in students]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise UsageError(f"{path}: two students are called {', '.join(twice)}; give each a name or number of its own")
+    return Roster(path, tuple(students), headings, tuple(rows))
+
+
+def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | None:
+    told = {kind: cell.strip() for kind, cell in zip(kinds, row, strict=False) if kind and cell.strip()}
+    if not told or normalized(row[0]) in NOT_STUDENTS:
+        return None
+    keys = {(kind, normalized(value)) for kind, value in told.items()}
+    participant = normalized(told.get("identifier", ""))
+    if participant.startswith(PARTICIPANT):
+        keys.add(("identifier", participant.removeprefix(PARTICIPANT)))
+    name = next(told[kind] for kind in NAMES_A_STUDENT if kind in told) if set(told) & set(NAMES_A_STUDENT) else ""
+    return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place) if name else None

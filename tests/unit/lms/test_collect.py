@@ -1,0 +1,151 @@
+"""Downloads as learning management systems name them: whose each is, which one counts, and what fits nobody."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.lms import Collected, collect, read_roster, unpacked
+
+CHAPTER = "02_nodes"
+MOODLE = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Feedback comments
+Participant 101,Zoë Müller-Żak,zoe@example.edu,Submitted for grading,,100.00,Yes,
+Participant 102,Jane  Doe,jane@example.edu,Submitted for grading,,100.00,Yes,
+Participant 103,Bob Roe,bob@example.edu,No submission,,100.00,Yes,
+"""
+CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,02 Nodes (55)
+    Points Possible,,,,,10
+"Doe, Jane",7001,S1,jdoe,A,
+"Müller, Zoë",7002,S2,zoe,A,
+"Student, Test",7999,,,A,
+"""
+
+
+def download(folder: Path, *names: str) -> Path:
+    """Write a download of files with these names; a name that ends in a slash is a folder."""
+    for name in names:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if name.endswith("/"):
+            path.mkdir()
+        else:
+            path.write_text(name)
+    return folder
+
+
+def found(folder: Path, table: str) -> tuple[Collected, dict[str, str]]:
+    roster = folder.parent / "roster.csv"
+    roster.write_text(table, encoding="utf-8-sig")
+    collected = collect(folder, read_roster(roster), CHAPTER)
+    return collected, {entry.student: str(entry.path.relative_to(folder)) for entry in collected.entries}
+
+
+def test_moodle_with_folders(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "moodle",
+        "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
+        "Zoë Müller-Żak_101_assignsubmission_onlinetext_/onlinetext.html",
+        "Jane Doe_102_assignsubmission_file_/02_nodes.ipynb",
+        "Jane Doe_102_assignsubmission_file_/ws/src/p/package.xml",
+        "Eve Stranger_999_assignsubmission_file_/answer.zip",
+    )
+    collected, entries = found(folder, MOODLE)
+    assert entries == {
+        "zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
+        "jane@example.edu": "Jane Doe_102_assignsubmission_file_",
+    }
+    assert collected.missing == ("bob@example.edu",)
+    assert collected.unmatched == (
+        ("Eve Stranger_999_assignsubmission_file_", "no student of roster.csv fits"),
+        ("Zoë Müller-Żak_101_assignsubmission_onlinetext_", "it is no file that was handed in"),
+    )
+
+
+def test_moodle_without_folders_and_two_files_of_which_none_is_newer(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "moodle",
+        "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip",
+        "jane doe_102_assignsubmission_file_1.zip",
+        "jane doe_102_assignsubmission_file_2.zip",
+    )
+    collected, entries = found(folder, MOODLE)
+    assert entries["zoe@example.edu"] == "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip"
+    why = "jane@example.edu handed in several, and none is the newest"
+    assert collected.unmatched == (("jane doe_102_assignsubmission_file_2.zip", why),)
+
+
+def test_canvas_names_attempts_and_late_ones(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "canvas",
+        "doejane_7001_9001_answer.zip",
+        "doejane_LATE_7001_9005_answer-1.zip",
+        "mllerzo_7002_9002_02_nodes.ipynb",
+        "testsome_7003_9003_x.zip",
+    )
+    collected, entries = found(folder, CANVAS)
+    assert entries == {"jdoe": "doejane_LATE_7001_9005_answer-1.zip", "zoe": "mllerzo_7002_9002_02_nodes.ipynb"}
+    assert (collected.late, collected.older) == (("jdoe",), ("doejane_7001_9001_answer.zip",))
+    assert [name for name, _ in collected.unmatched] == ["testsome_7003_9003_x.zip"]
+
+
+def test_gradescope_s_list_says_whose_each_folder_is_and_when_it_came(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "export", *(f"assignment_1_export/submission_{n}/ws/src/p/package.xml" for n in (1, 2, 3, 4))
+    )
+    rows = [("1", "S1", "2026-01-02 10:00:00"), ("2", "S1", "2026-01-03 09:00:00"), ("3", "S2", ""), ("4", "S9", "")]
+    (folder / "assignment_1_export" / "submission_metadata.yml").write_text(
+        "---\n"
+        + "".join(
+            f"submission_{n}:\n  :submitters:\n  - :name: Somebody\n    :sid: {sid}\n    :email: {sid}@x.edu\n"
+            f"  :created_at: {when or '2026-01-01 08:00:00'} Z\n"
+            for n, sid, when in rows
+        )
+    )
+    collected, entries = found(folder, "Name,SID,Email\nJane,S1,j@x.edu\nZoë,S2,z@x.edu\n")
+    assert entries == {"S1": "assignment_1_export/submission_2", "S2": "assignment_1_export/submission_3"}
+    assert collected.older == ("submission_1",)
+    assert [name for name, _ in collected.unmatched] == ["submission_4"]
+
+
+def test_github_classroom_names_a_clone_after_the_account(tmp_path: Path) -> None:
+    names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
+    folder = download(tmp_path / "02-nodes-submissions", *names)
+    table = "identifier,github_username,github_id,name\njane,jane-doe,1,\nzoë,zoe,2,\ndoe,doe,3,\n"
+    collected, entries = found(folder, table)
+    assert entries == {"jane": "02-nodes-jane-doe", "zoë": "02-nodes-Zoe", "doe": "02-nodes-doe"}
+    assert [name for name, _ in collected.unmatched] == ["02-nodes-eve"]
+
+
+def test_nbgrader_s_layout_and_plain_names(tmp_path: Path) -> None:
+    folder = download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
+    _, entries = found(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
+    assert entries == {"jane": f"jane/{CHAPTER}", "Jo Bloggs": "Jo Bloggs.zip"}
+
+
+def test_a_zip_is_unpacked_and_one_that_leaves_its_folder_is_refused(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "good.zip", "w") as archive:
+        archive.writestr("Zoë Müller-Żak_101_assignsubmission_file_/a.zip", "x")
+    with unpacked(tmp_path / "good.zip") as folder:
+        assert found(folder, MOODLE)[1] == {"zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/a.zip"}
+    with zipfile.ZipFile(tmp_path / "bad.zip", "w") as archive:
+        archive.writestr("../x", "x")
+    with pytest.raises(UsageError, match=r"bad.zip: not a folder, and not a readable zip: ../x points outside"):
+        unpacked(tmp_path / "bad.zip").__enter__()
+    assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(
+    ("table", "why"),
+    [
+        ("", "the table is empty"),
+        ("Nachname,Note\nDoe,1\n", "no column names the students; the headings that are known are"),
+        ("id,name\njane,a\njane,b\n", "two students are called jane"),
+    ],
+)
+def test_a_table_that_names_no_students_is_a_wrong_call(tmp_path: Path, table: str, why: str) -> None:
+    (tmp_path / "roster.csv").write_text(table)
+    with pytest.raises(UsageError, match=why):
+        read_roster(tmp_path / "roster.csv")

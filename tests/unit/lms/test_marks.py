@@ -1,0 +1,106 @@
+"""Marks in the tables that Moodle and Canvas import: the cells of the marks are filled, and all else stays."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from autograder.cli import group
+from autograder.exceptions import UsageError
+from autograder.export import Stored
+from autograder.lms import read_roster, write_marks
+from autograder.result import Result, Status, write_json
+from tests.unit.lms.test_collect import CANVAS, MOODLE
+
+MakeResult = Callable[..., Result]
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Callable[[str], Path]:
+    def write(text: str) -> Path:
+        (tmp_path / "table.csv").write_text(text, encoding="utf-8")
+        return tmp_path / "table.csv"
+
+    return write
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_moodle_gets_marks_of_its_own_maximum(
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
+) -> None:
+    stored = [
+        Stored(make_result("zoe@example.edu"), tmp_path),
+        Stored(make_result("jane@example.edu", status=Status.NOT_GRADED), tmp_path),
+        Stored(make_result("eve@example.edu"), tmp_path),
+    ]
+    roster = read_roster(table(MOODLE))
+    assert write_marks(stored, "moodle", roster, tmp_path / "out.csv") == ["eve@example.edu"]
+    before, after = rows(tmp_path / "table.csv"), rows(tmp_path / "out.csv")
+    assert [row.pop("Grade") for row in after] == ["40.00", "", ""]  # 4 of 10 points, of 100
+    assert after == [{key: value for key, value in row.items() if key != "Grade"} for row in before]
+
+
+def test_canvas_gets_the_assignment_s_column_and_late_ones_lose(
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
+) -> None:
+    stored = [Stored(make_result(name), tmp_path) for name in ("jdoe", "zoe")]
+    roster = read_roster(table(CANVAS))
+    write_marks(stored, "canvas", roster, tmp_path / "out.csv", late=("jdoe",), late_penalty=25)
+    assert [(row["ID"], row["02 Nodes (55)"]) for row in rows(tmp_path / "out.csv")] == [
+        ("", "10"),
+        ("7001", "3.00"),
+        ("7002", "4.00"),
+        ("7999", ""),
+    ]
+
+
+def test_canvas_gets_a_new_column_where_none_is_the_assignment_s(
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
+) -> None:
+    roster = read_roster(table(CANVAS.replace("02 Nodes (55)", "Essay (9)")))
+    write_marks([Stored(make_result("zoe"), tmp_path)], "canvas", roster, tmp_path / "out.csv")
+    assert list(rows(tmp_path / "out.csv")[0]) == [
+        "Student",
+        "ID",
+        "SIS User ID",
+        "SIS Login ID",
+        "Section",
+        "02_nodes",
+    ]
+    assert [row["02_nodes"] for row in rows(tmp_path / "out.csv")] == ["10.00", "", "4.00", ""]
+
+
+@pytest.mark.parametrize(
+    ("system", "text", "why"),
+    [
+        ("moodle", "Identifier,Full name\nParticipant 1,Z\n", "the column 'grade' is missing"),
+        ("moodle", MOODLE.replace("100.00", "many"), "'many' is no number of points"),
+        ("moodle", MOODLE.replace(",Yes,", ""), "row 2 has fewer columns than the headings"),
+        ("canvas", CANVAS.replace("    Points Possible", "x"), "the row `Points Possible` is missing"),
+    ],
+)
+def test_a_table_of_another_shape_is_a_wrong_call(
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult, system: str, text: str, why: str
+) -> None:
+    roster = read_roster(table(text))
+    stored = [Stored(make_result(student.id), tmp_path) for student in roster.students]
+    with pytest.raises(UsageError, match=why):
+        write_marks(stored, system, roster, tmp_path / "out.csv")
+
+
+def test_the_verb_knows_who_was_late(tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult) -> None:
+    write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
+    write_json(tmp_path / "results" / "handed_in.json", {"late": ["zoe"]})
+    command = ["export", str(tmp_path / "results"), "--format", "canvas", "--out", str(tmp_path / "out.csv")]
+    assert isinstance(CliRunner().invoke(group, command).exception, UsageError)
+    done = CliRunner().invoke(group, [*command, "--roster", str(table(CANVAS)), "--late-penalty", "50"])
+    assert done.exit_code == 0, done.output
+    assert rows(tmp_path / "out.csv")[2]["02 Nodes (55)"] == "2.00"
