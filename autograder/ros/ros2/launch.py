@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from autograder.ros.ros2 import packages
 from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, Ros2Error
@@ -84,12 +82,13 @@ def _run(args: argparse.Namespace) -> Outcome:
     source = AnyLaunchDescriptionSource(str(path))
     if args.show_args or args.print_description:
         description = source.get_launch_description(launch.LaunchContext(argv=words, noninteractive=True))
-        lines = (
-            argument_lines(description)
-            if args.show_args
-            else [launch.LaunchIntrospector().format_launch_description(description)]
-        )
-        print(*lines, sep="\n")
+        if args.show_args:
+            # `launch_testing` has the same words.
+            from launch_testing.print_arguments import print_arguments_of_launch_description
+
+            print_arguments_of_launch_description(launch_description=description)
+        else:
+            print(launch.LaunchIntrospector().format_launch_description(description))
         return None
     service = launch.LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)
     include = launch.actions.IncludeLaunchDescription(source, launch_arguments=arguments.items())
@@ -136,23 +135,6 @@ def launch_arguments(words: list[str]) -> dict[str, str]:
             raise Ros2Error(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
         parsed[name] = value
     return parsed
-
-
-def argument_lines(description: Any) -> Iterator[str]:
-    """Yield what `--show-args` prints of a launch description."""
-    yield "Arguments (pass arguments as '<name>:=<value>'):"
-    arguments = description.get_launch_arguments()
-    if not arguments:
-        yield "\n  No arguments."
-    for argument in arguments:
-        conditional = argument._conditionally_included
-        yield f"\n    '{argument.name}':{'*' if conditional else ''}"
-        yield f"        {argument.description}"
-        if argument.default_value is not None:
-            shown = " + ".join(substitution.describe() for substitution in argument.default_value)
-            yield f"        (default: {shown})"
-    if any(argument._conditionally_included for argument in arguments):
-        yield "\n* argument(s) which are only used if specific conditions occur"
 
 
 VERB = Verb("launch", "Run a launch file", _arguments, _run)

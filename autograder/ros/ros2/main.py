@@ -49,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> Outcome:
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
-        activate(overlays=_sourced_overlays())
+        activate()
     except RosError as error:
         return str(error)
     if importlib.util.find_spec("ros2cli") is not None:
@@ -96,9 +96,3 @@ def run() -> NoReturn:
 def _terminate(signum: int, _: object) -> NoReturn:
     """Leave through the `finally` clauses, so that nodes and children end with us."""
     raise SystemExit(signum)
-
-
-def _sourced_overlays() -> tuple[Path, ...]:
-    """Return the workspaces that the user has sourced, nearest first; `activate` adds the installation itself."""
-    entries = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    return tuple(Path(entry) for entry in entries if entry and Path(entry) != Path(sys.prefix))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from typing import Any
 
@@ -24,7 +25,10 @@ class ReadyToTest(Action):
     def execute(self, context: LaunchContext) -> None:
         """Let it begin."""
         for callback in self._callbacks:
-            callback()
+            try:
+                callback()
+            except Exception as error:
+                logging.getLogger(__name__).error(error)
 
 
 __getattr__ = guard(__name__)

@@ -1,0 +1,22 @@
+"""A process that keeps a launch from being idle, and finding a process by its name."""
+
+from __future__ import annotations
+
+import sys
+
+from launch.actions import ExecuteProcess
+from standin_notice import guard
+
+from .proc_lookup import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
+
+__all__ = ["NO_CMD_ARGS", "KeepAliveProc", "NoMatchingProcessException", "resolveProcesses"]
+
+_WAIT = "import signal\ntry:\n    signal.pause()\nexcept KeyboardInterrupt:\n    pass\n"
+
+
+def KeepAliveProc() -> ExecuteProcess:  # the real one's name
+    """Return a process that does nothing until the launch ends, so that the launch does not end before."""
+    return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
+
+
+__getattr__ = guard(__name__)

@@ -1,0 +1,12 @@
+"""A function that takes what nobody gives."""
+
+import launch
+import launch_testing
+import launch_testing.actions
+import pytest
+
+
+@pytest.mark.launch_test
+@launch_testing.parametrize("word", ["a"])
+def generate_test_description(word, other):
+    return launch.LaunchDescription([launch_testing.actions.ReadyToTest()])

@@ -1,0 +1,5 @@
+"""A file of tests without a launch."""
+
+
+def test_plain():
+    pass

@@ -1,0 +1,36 @@
+"""The stand-in for launch_testing runs launch tests as the real package does, by `launch_test` and by pytest.
+
+`records.yaml` was written with the real packages by `runner.py`. With them installed, this test holds them to it, too.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+import yaml
+
+from autograder.layout import ROOT
+from tests.e2e.launch_test_cases.runner import CALLS, RECORDS
+
+EXPECTED: list[dict[str, Any]] = yaml.safe_load(RECORDS.read_text())
+
+
+@pytest.fixture(scope="module")
+def found() -> list[dict[str, Any]]:
+    program = [sys.executable, "-m", "tests.e2e.launch_test_cases.runner"]
+    done = subprocess.run(program, cwd=ROOT, env={**os.environ}, stdout=subprocess.PIPE, text=True, check=True)
+    records: list[dict[str, Any]] = yaml.safe_load(done.stdout)
+    return records
+
+
+def test_each_call_has_a_record() -> None:
+    assert [record["call"] for record in EXPECTED] == list(CALLS)
+
+
+@pytest.mark.parametrize("number", range(len(CALLS)), ids=CALLS)
+def test_a_launch_test_does_what_it_does_with_the_real_package(number: int, found: list[dict[str, Any]]) -> None:
+    assert found[number] == EXPECTED[number]
