@@ -107,7 +107,8 @@ verify:         ## prove the grader: reference, release and mutants (WORKERS=4 V
 real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
 	@$(BOOTSTRAP)
 	@$(BIN)/python -m autograder.ros.real_launch
-	@$(BIN)/python -m pytest -q tests/e2e/launch_cases/test_cases.py -m "not nightly" $(PYTEST_ARGS)
+	@$(BIN)/python -m pytest -q tests/e2e/launch_cases tests/e2e/launch_test_cases tests/e2e/ros2_records \
+		-m "not nightly" $(PYTEST_ARGS)
 
 PREFIX ?= .build/opt/ros/jazzy
 sourced-layout: ## after real-launch: copy this ROS to PREFIX=, laid out as /opt/ros/jazzy is, for `source setup.bash`

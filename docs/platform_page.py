@@ -55,20 +55,23 @@ TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "what is 
 STAND_INS = """## What the stand-ins do not cover
 
 `launch`, `launch_ros`, `launch_testing` and `ros2` are not on the package index, so the course has stand-ins for them.
-Tests hold them to records of the real packages: launch files in Python, XML and YAML, and `ros2 lifecycle`. The few
-places where a stand-in's words differ are in `tests/e2e/launch_cases/differences.yaml`, each with its reason. What is
-not covered raises an error that says so. All of it works after `make real-launch`, or with a sourced Jazzy.
+Tests hold them to records of the real packages: launch files in Python, XML and YAML, launch tests, and the commands of
+`ros2`. Where a stand-in does something else, `tests/e2e/launch_cases/differences.yaml` and
+`tests/e2e/ros2_records/differences.yaml` have it, each with its reason. What is not covered raises an error that says
+so. All of it works after `make real-launch`, or with a sourced Jazzy.
 """
 UNCOVERED = ("not covered", "why", "the error")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
 INNER = "launch files do not use it: a helper inside the real package"
-RUNNER = "the runner of `launch_test` is not covered; `launch_pytest` does the same with pytest"
+OF_CPP = "it is for C++"
+SINGLE = "it is for tests of one process without a launch description"
 LAUNCH = {
     "launch_ros.actions.ComposableNodeContainer": COMPOSABLE,
     "launch_ros.actions.LoadComposableNodes": COMPOSABLE,
     "launch_ros.descriptions.ComposableNode": COMPOSABLE,
     "launch_ros.utilities.normalize_parameters": INNER,
-    "launch_testing.post_shutdown_test": RUNNER,
+    "launch_testing.actions.GTest": OF_CPP,
+    "launch_testing.tools.launch_process": SINGLE,
 }
 
 
@@ -118,6 +121,9 @@ def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
 def _uncovered() -> Iterator[tuple[str, str, str]]:
     for name, reason in LAUNCH.items():
         yield f"`{name}`", reason, f"'{name}' is not covered: this is the course's stand-in …"
+    for option in ("--node-name", "--library-name"):
+        called = f"`ros2 pkg create --build-type ament_cmake {option}`"
+        yield called, OF_CPP, f"{called}, a C++ package, is not covered by this stand-in …"
     for word, command in COMMANDS.items():
         missing = [f"ros2 {word} {verb}" for verb in command.not_covered] if command.module else [f"ros2 {word}"]
         for called in missing:

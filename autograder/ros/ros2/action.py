@@ -116,7 +116,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
     from rosidl_runtime_py import message_to_yaml
 
     action_class = graph.load_class(args.action_type, "action")
-    goal, _ = filled(action_class.Goal, args.goal, "message", stamps=False)
+    goal, _ = filled(action_class.Goal, args.goal, "message fields", stamps=False)
 
     def on_feedback(message: Any) -> None:
         print(f"Feedback:\n    {message_to_yaml(message.feedback)}")

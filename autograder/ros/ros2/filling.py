@@ -29,10 +29,12 @@ def filled(interface: Any, text: str, noun: str, *, stamps: bool = True) -> tupl
         values = yaml.safe_load(text)
     except yaml.YAMLError as error:
         raise Ros2Error(f"The passed value is not valid YAML: {error}") from None
-    if not isinstance(values, dict):
+    if not isinstance(values, dict) and stamps:
         raise Ros2Error("The passed value needs to be a dictionary in YAML format")
     message = interface()
     try:
+        if not isinstance(values, dict):
+            raise TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
         return message, set_message_fields(message, values, expand_header_auto=stamps, expand_time_now=stamps)
     except (AssertionError, AttributeError, OverflowError, TypeError, ValueError) as error:
         raise Ros2Error(f"Failed to populate {noun}: {error}") from None

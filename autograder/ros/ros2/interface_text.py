@@ -29,7 +29,7 @@ def unfold(
     for line in read(name).rstrip().splitlines():
         shown = line.rstrip() if comments else _without_comment(line)
         if comments or shown:
-            yield "\t" * depth + shown
+            yield "\t" * depth + shown if shown else ""
         inner = nested_type(line, name.split("/")[0])
         if inner:
             yield from unfold(inner, read, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1)

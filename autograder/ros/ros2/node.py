@@ -45,7 +45,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
 def _info(args: argparse.Namespace) -> Outcome:
     with open_session(args) as session:
         wanted = graph.find_node(session, args.node_name)
-        if wanted is None:
+        if wanted is None or wanted.full_name != args.node_name:  # it takes full names alone, as the real command
             return f"Unable to find node '{args.node_name}'"
         session.settle(longest=NAMED_QUIET)
         same = graph.node_names(session, include_hidden=True).count(wanted)

@@ -111,8 +111,8 @@ def _get(args: argparse.Namespace) -> Outcome:
         return None
     kind = _TYPES[found.type]
     label = f"{kind.removesuffix(' array').capitalize()} {'values are' if kind.endswith('array') else 'value is'}:"
-    # An array prints as array('d', [...]), as in the real command.
-    value = getattr(found, f"{kind.replace('boolean', 'bool').replace(' ', '_')}_value")
+    value = parameter_value_to_python(found)
+    value = list(value) if hasattr(value, "typecode") else value
     print(value if args.hide_type else f"{label} {value}")
     return None
 

@@ -9,7 +9,6 @@ import argparse
 import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, NotCoveredError
 
@@ -17,8 +16,6 @@ STAND_IN_NOTE = f"This is a stand-in for ros2cli, without a daemon. The real one
 
 # What a verb returns: nothing or 0 for success, another exit code, or a text for stderr (exit code 1).
 Outcome = int | str | None
-
-Number = TypeVar("Number", int, float)
 
 
 @dataclass(frozen=True)
@@ -143,24 +140,30 @@ def _parser(prog: str, description: str) -> argparse.ArgumentParser:
 
 def positive_int(text: str) -> int:
     """Parse an argument that has to be a whole number above 0."""
-    return _accepted(text, int, lambda value: value > 0, "a positive integer")
+    return _whole(text, 1, "positive")
 
 
 def unsigned_int(text: str) -> int:
     """Parse an argument that has to be a whole number, 0 included."""
-    return _accepted(text, int, lambda value: value >= 0, "a non-negative integer")
+    return _whole(text, 0, "non-negative")
 
 
 def positive_float(text: str) -> float:
     """Parse an argument that has to be a finite number above 0."""
-    return _accepted(text, float, lambda value: 0 < value < float("inf"), "a positive number")
-
-
-def _accepted(text: str, kind: Callable[[str], Number], accept: Callable[[Number], bool], expected: str) -> Number:
     try:
-        value = kind(text)
+        value = float(text)
     except ValueError:
-        value = None
-    if value is None or not accept(value):
-        raise argparse.ArgumentTypeError(f"value must be {expected}")
+        raise argparse.ArgumentTypeError("Expects a floating point number") from None
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError("Value must be positive")
+    return value
+
+
+def _whole(text: str, least: int, kind: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"value must be a {kind} integer")
     return value

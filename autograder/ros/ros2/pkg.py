@@ -39,8 +39,6 @@ def _executables_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _executables(args: argparse.Namespace) -> Outcome:
     names = [args.package_name] if args.package_name else packages.package_names()
-    if args.package_name:
-        _prefix_or_error(args.package_name)
     for name in names:
         for path in packages.executables_of(name):
             print(path if args.full_path else f"{name} {path.name}")
@@ -57,15 +55,16 @@ def _xml(args: argparse.Namespace) -> Outcome:
     if not path.is_file():
         return f"Could not find the package.xml of '{args.package_name}', expected at {path}"
     text = path.read_text(encoding="utf-8")
-    if args.tag is None:
-        print(text)
-        return None
     try:
-        tags = ET.fromstring(text).findall(f".//{args.tag}")
+        manifest = ET.fromstring(text)
+        tags = [] if args.tag is None else manifest.findall(f".//{args.tag}")
     except (ET.ParseError, SyntaxError) as error:
         return f"{path} or the tag '{args.tag}' cannot be read: {error}"
+    if args.tag is None:
+        print(ET.tostring(manifest, encoding="unicode"))
+        return None
     if not tags:
-        return f"No value for tag '{args.tag}' in package.xml for package '{args.package_name}'"
+        return "XML tag not found"
     for tag in tags:
         print((tag.text or "").strip())
     return None

@@ -140,7 +140,9 @@ def _spec(args: argparse.Namespace) -> PackageSpec:
         raise NotCoveredError(f"`ros2 pkg create --build-type ament_cmake {option}`, a C++ package,")
     node = args.node_name
     if args.build_type == "ament_python" and args.package_name == "test":
-        raise Ros2Error("A Python package cannot be named 'test': its code and its tests would share a folder")
+        raise Ros2Error(
+            "Aborted since 'ament_python' packages can't be named 'test'. Please choose a different package name."
+        )
     if node and node == args.library_name:
         node = f"{node}_node"
         print("[WARNING] node name can not be equal to the library name", file=sys.stderr)

@@ -100,7 +100,7 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _call(args: argparse.Namespace) -> Outcome:
     service_class = graph.load_class(args.service_type, "srv")
-    request, _ = filled(service_class.Request, args.values, "request", stamps=False)
+    request, _ = filled(service_class.Request, args.values, "field", stamps=False)
     with open_session(args) as session:
         client = session.node.create_client(service_class, args.service_name)
         if not client.service_is_ready():

@@ -85,7 +85,7 @@ def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) ->
         (("my-pkg",), "'my-pkg' cannot be the name of a package"),
         (("p", "--node-name", "2fast"), "'2fast' cannot be the name of a node"),
         (("p", "--library-name", "a b"), "'a b' cannot be the name of a library"),
-        (("test", "--build-type", "ament_python"), "A Python package cannot be named 'test'"),
+        (("test", "--build-type", "ament_python"), "Aborted since"),
         (("p", "--build-type", "cmake"), "`ros2 pkg create --build-type cmake` is not covered"),
         (
             ("p", "--node-name", "n"),

@@ -30,7 +30,7 @@ class _MessageDumper(yaml.Dumper):
 
 _MessageDumper.add_representer(
     OrderedDict,
-    lambda dumper, data: dumper.represent_mapping("tag:yaml.org,2002:map", list(data.items())),
+    lambda dumper, data: dumper.represent_mapping("tag:yaml.org,2002:map", list(data.items()), flow_style=False),
 )
 
 
@@ -66,7 +66,7 @@ def message_to_yaml(
 ) -> str:
     """Convert a message to YAML text; the arguments are those of `message_to_ordereddict`.
 
-    `flow_style` writes mappings and lists in braces and brackets, on one line.
+    `flow_style` writes lists in brackets, on one line.
     """
     values = message_to_ordereddict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
     text: str = yaml.dump(

@@ -60,7 +60,7 @@ def get_interface_path(interface_name: str) -> str:
     """
     parts = interface_name.split("/")
     if len(parts) < 2:
-        raise ValueError(f"Invalid name '{interface_name}'. Expected at least two parts separated by '/'")
+        raise ValueError(f"Invalid name '{interface_name}'. Expected three parts separated by '/'")
     if not all(parts):
         raise ValueError(f"Invalid name '{interface_name}'. Must not contain empty parts")
     if ".." in parts:
@@ -77,7 +77,7 @@ def get_interface_path(interface_name: str) -> str:
         for candidate in candidates:
             if candidate.is_file():
                 return str(candidate)
-    raise LookupError(f"Could not find the interface '{interface_name}'")
+    raise LookupError(f"Could not find the interface '{share.joinpath(*folders[0]).with_suffix('.idl')}'")
 
 
 def _of_kind(kind: str, package_names: Iterable[str]) -> dict[str, list[str]]:

@@ -10,7 +10,7 @@ import threading
 from typing import Any
 
 import rclpy
-from arena_interfaces.action import Count
+from example_interfaces.action import Fibonacci
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -59,10 +59,10 @@ class Helper(Node):
         self.create_service(SetBool, "switch", self.switch)
         self.server = ActionServer(
             self,
-            Count,
+            Fibonacci,
             "count",
             self.execute,
-            goal_callback=lambda goal: GoalResponse.REJECT if goal.target < 0 else GoalResponse.ACCEPT,
+            goal_callback=lambda goal: GoalResponse.REJECT if goal.order < 0 else GoalResponse.ACCEPT,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
             callback_group=ReentrantCallbackGroup(),
         )
@@ -76,21 +76,23 @@ class Helper(Node):
         return response
 
     def execute(self, goal: Any) -> Any:
-        """Count to the target; a target above 100 is never reached."""
-        total = 0
-        for now in range(1, goal.request.target + 1):
+        """Compute as many numbers as the order says; an order above 100 never comes to its end."""
+        numbers = [0, 1]
+        while len(numbers) <= goal.request.order:
             # Slow enough for feedback to be heard before the result overtakes it.
             self.ending.wait(0.1)
-            goal.publish_feedback(Count.Feedback(now=now))
-            total += now
-            while goal.request.target > 100 and not goal.is_cancel_requested and not self.ending.wait(0.01):
+            numbers.append(numbers[-1] + numbers[-2])
+            goal.publish_feedback(Fibonacci.Feedback(sequence=numbers))
+            while goal.request.order > 100 and not goal.is_cancel_requested and not self.ending.wait(0.01):
                 pass
+            if self.ending.is_set():
+                goal.abort()
+                return Fibonacci.Result()
             if goal.is_cancel_requested:
                 goal.canceled()
-                print("cancelled", flush=True)
-                return Count.Result(total=total)
+                return Fibonacci.Result(sequence=numbers)
         goal.succeed()
-        return Count.Result(total=total)
+        return Fibonacci.Result(sequence=numbers)
 
 
 def main() -> None:

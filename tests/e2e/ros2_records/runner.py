@@ -1,0 +1,256 @@
+"""Runs commands of whichever `ros2` is installed, and writes down what each printed and how it ended.
+
+`python -m tests.e2e.ros2_records.runner` runs the commands of `records.yaml` and prints that file anew, or the groups
+that are named. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of `arena.py`
+answer. Each command is run by a fork of this process, which has imported what a command needs.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import distributions
+from pathlib import Path
+from typing import Any, TextIO
+
+import yaml
+
+HERE = Path(__file__).parent
+RECORDS = HERE / "records.yaml"
+PREFIX = HERE.parent / "launch_cases" / "prefix"
+SECONDS = 120.0  # for one command, on a busy machine
+TOGETHER = 8
+# Groups whose commands change something run one after the other; questions run side by side.
+IN_ORDER = ("change",)
+# Verbs that look at the graph take the time to do so. Those that list have no condition to wait for, nor have those
+# that will not find what was named.
+LOOKING = ("node", "topic", "service", "action", "param")
+WITHOUT_SPIN_TIME = ("topic pub", "service call", "action send_goal")
+# The real ones of these always ask ros2cli's daemon.
+WITHOUT_CHOICE = ("topic hz", "topic bw")  # of asking it or not
+BY_DAEMON = ("service type", "service find", "action list", "action info", "action type")
+LISTING, NAMED = 5, 60
+ASKED = ("command", "stdin", "files", "until", "lines", "sorted")  # the fields of a record that say what to do
+# What differs from run to run.
+CHANGING = (
+    (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)"), r"\2"),
+    (re.compile(r"usage: .*\n( +.*\n)*"), "usage\n"),
+    (re.compile(r"(\bG?ID: |pid \[?)[0-9a-f.]+"), r"\1ID"),
+    (re.compile(r"(hello |<string length: <)\d+"), r"\1N"),
+    (re.compile(r"(/(?:parameter_events|rosout) \[.*\]) \d+"), r"\1 N"),  # the commands have these, too
+    (re.compile(r"(sec[:=] ?)\d{2,}"), r"\1N"),
+    (re.compile(r"((?:timestamp|sequence_number)'?: )\S+?(,?\n|, |})"), r"\1N\2"),
+    (re.compile(r"\d+\.\d{3,}(s?\b)"), r"N\1"),
+    (re.compile(r"(std dev: \S+ window: |from )\d+"), r"\1N"),
+    (re.compile(r"<launch[\w.]*\.(\w+) object at 0x[0-9a-f]+>"), r"<\1>"),
+    (re.compile(r"\d[\d.]* ([KM]?B)\b"), r"N \1"),
+    (re.compile(r".*/_ros2cli_.*\n"), ""),  # the commands themselves, side by side
+    (re.compile(r"(waiting for service to become available|Waiting for at least 1 matching sub.*)\.\.\.\n"), ""),
+    # The result does not wait for feedback that is still on its way.
+    (re.compile(r"(Feedback:\n(?:[ -].*\n)+\n)(?:Feedback:\n(?:[ -].*\n)+\n)*"), r"\1"),
+    (re.compile(r"\[INFO\] \[launch\]: All log files.*\n"), ""),
+    (re.compile(r"(Creating|creating|destination directory:).*/([\w.]+)\n"), r"\1 \2\n"),
+    (re.compile(r"lib/python3\.\d+"), "lib/python3"),
+)
+
+
+@dataclass
+class Running:
+    """A command that was started.
+
+    Attributes:
+        call: what was asked for: `command`, and if it is so `stdin`, `files`, `until` (what is to be printed before
+            Ctrl-C), `lines` (how many lines count) and `sorted` (their order does not count).
+        folder: where it runs.
+        pid: the fork that runs it.
+        deadline: when it has to have ended.
+    """
+
+    call: Mapping[str, Any]
+    folder: Path
+    pid: int
+    deadline: float
+    pressed: bool = False
+
+    @classmethod
+    def start(cls, call: Mapping[str, Any], folder: Path) -> Running:
+        """Run a command in a fork."""
+        (folder / "here").mkdir(parents=True)
+        (folder / "in").write_text(call.get("stdin", ""))
+        for name, text in call.get("files", {}).items():
+            (folder / "here" / name).write_text(text)
+        pid = os.fork()
+        if pid == 0:
+            os.setsid()
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+            os.chdir(folder / "here")
+            for number, (name, mode) in enumerate((("in", os.O_RDONLY), ("out", os.O_WRONLY), ("err", os.O_WRONLY))):
+                os.dup2(os.open(folder / name, mode | os.O_CREAT), number)
+            os._exit(_ros2(call))
+        return cls(call, folder, pid, time.monotonic() + SECONDS)
+
+    def ended(self) -> dict[str, Any] | None:
+        """Return the record of a command that has ended; press Ctrl-C as soon as it has printed `until`."""
+        pid, status = os.waitpid(self.pid, os.WNOHANG)
+        if not pid:
+            if not self.pressed and (until := self.call.get("until")) and until in self._text("out"):
+                self.pressed = True
+                os.killpg(self.pid, signal.SIGINT)
+            if time.monotonic() < self.deadline:
+                return None
+            os.killpg(self.pid, signal.SIGKILL)
+            raise TimeoutError(f"ros2 {self.call['command']} did not end: {self._text('out')} {self._text('err')}")
+        found = {name: self.call[name] for name in ASKED if name in self.call}
+        found |= {"status": os.waitstatus_to_exitcode(status), "output": self._text("out")}
+        if "lines" in self.call:
+            found["output"] = "".join(found["output"].splitlines(keepends=True)[: self.call["lines"]])
+        if "sorted" in self.call:
+            found["output"] = "".join(sorted(found["output"].splitlines(keepends=True)))
+        if error := self._text("err"):
+            found["error"] = error
+        here = self.folder / "here"
+        files = {str(path.relative_to(here)) for path in here.rglob("*") if path.is_file()}
+        if made := files - set(self.call.get("files", ())):
+            found["made"] = sorted(made)
+        return found
+
+    def _text(self, stream: str) -> str:
+        text = (self.folder / stream).read_text() if (self.folder / stream).exists() else ""
+        for folder, name in ((self.folder / "here", "HERE"), (PREFIX, "PREFIX"), (sys.prefix, "ENVIRONMENT")):
+            text = text.replace(str(folder), name)
+        for pattern, steady in CHANGING:
+            text = pattern.sub(steady, text)
+        return text
+
+
+def is_stand_in() -> bool:
+    """Return whether `ros2` is the stand-in."""
+    return importlib.util.find_spec("ros2cli") is None
+
+
+def _ros2(call: Mapping[str, Any]) -> int:
+    """Do what the program `ros2` does; return its exit status."""
+    main = importlib.import_module("autograder.ros.ros2.main").main
+    sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115  # they end with this process
+    sys.stderr = open(2, "w", buffering=1, closefd=False)  # noqa: SIM115
+    sys.argv = ["ros2", *shlex.split(call["command"]), *_spin_time(call)]
+    try:
+        try:
+            outcome = main()
+        except SystemExit as ended:
+            outcome = ended.code
+        if isinstance(outcome, str):
+            print(outcome, file=sys.stderr)
+        status = 1 if isinstance(outcome, str) else int(outcome or 0)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+        status = 1
+    sys.stdout.flush()
+    sys.stderr.flush()
+    return status
+
+
+def _spin_time(call: Mapping[str, Any]) -> list[str]:
+    words = shlex.split(call["command"])
+    if words[0] not in LOOKING or " ".join(words[:2]) in WITHOUT_SPIN_TIME:
+        return []
+    if not is_stand_in():
+        no_daemon = [] if " ".join(words[:2]) in WITHOUT_CHOICE else ["--no-daemon"]
+        return [] if " ".join(words[:2]) in BY_DAEMON else [*no_daemon, "--spin-time", str(LISTING)]
+    listing = words[1] in ("list", "find") or call.get("status", 0) != 0
+    return ["--spin-time", str(LISTING if listing else NAMED)]
+
+
+def records(groups: Mapping[str, list[Mapping[str, Any]]], scratch: Path) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """Run the commands of each group; yield its name and its records."""
+    for group, calls in groups.items():
+        waiting, running = list(enumerate(calls)), dict[int, Running]()
+        found: dict[int, dict[str, Any]] = {}
+        while waiting or running:
+            while waiting and len(running) < (1 if group in IN_ORDER else TOGETHER):
+                number, call = waiting.pop(0)
+                running[number] = Running.start(call, scratch / group / str(number))
+            for number, one in list(running.items()):
+                if (record := one.ended()) is not None:
+                    found[number] = record
+                    del running[number]
+            time.sleep(0.01)
+        yield group, [found[number] for number in range(len(calls))]
+
+
+def prepare() -> None:
+    """Import once, for all forks, what commands import."""
+    importlib.import_module("rclpy.action")
+    if is_stand_in():
+        for name in ("action", "interface", "launch", "node", "param", "pkg", "run", "service", "topic"):
+            importlib.import_module(f"autograder.ros.ros2.{name}")
+        sys.path.append(str(importlib.import_module("autograder.ros.ros2.main").STAND_INS))
+    for name in ("rosidl_runtime_py", "example_interfaces.action", "sensor_msgs.msg", "launch"):
+        importlib.import_module(name)
+
+
+def run(out: TextIO, *names: str) -> None:
+    """Start the nodes, run the commands of all groups, or of those named, and write their records."""
+    groups = {name: calls for name, calls in yaml.safe_load(RECORDS.read_text()).items() if name in names or not names}
+    os.environ["AMENT_PREFIX_PATH"] = f"{PREFIX}{os.pathsep}{os.environ['AMENT_PREFIX_PATH']}"
+    with tempfile.TemporaryDirectory() as scratch:
+        os.environ["ROS_LOG_DIR"] = f"{scratch}/log"
+        with subprocess.Popen([sys.executable, str(HERE / "arena.py")], stdout=subprocess.PIPE, text=True) as arena:
+            try:
+                assert arena.stdout is not None
+                assert arena.stdout.readline() == "ready\n"
+                prepare()
+                with _daemon():
+                    found = dict(records(groups, Path(scratch)))
+            finally:
+                arena.terminate()
+    version = {one.name: one.version for one in distributions()}.get("ros2cli", "stand-in")
+    print(f"# Recorded with ros2cli {version}, Python {sys.version_info[0]}.{sys.version_info[1]}.", file=out)
+    yaml.dump(found, out, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)
+
+
+@contextmanager
+def _daemon() -> Iterator[None]:
+    """Run ros2cli's daemon, and let it discover the nodes, if this is the real one."""
+    if is_stand_in():
+        yield
+        return
+    ros2 = [sys.executable, "-m", "autograder.ros.ros2"]
+    subprocess.run([*ros2, "daemon", "start"], check=True, stdout=subprocess.DEVNULL)
+    deadline = time.monotonic() + SECONDS
+    while b"/lab/count" not in subprocess.run([*ros2, "action", "list"], check=True, stdout=subprocess.PIPE).stdout:
+        if time.monotonic() > deadline:
+            raise TimeoutError("ros2cli's daemon does not see the nodes")
+    try:
+        yield
+    finally:
+        subprocess.run([*ros2, "daemon", "stop"], check=True, stdout=subprocess.DEVNULL)
+
+
+class _Readable(yaml.SafeDumper):
+    """Writes texts of several lines as such, and each text where it belongs."""
+
+    def ignore_aliases(self, data: object) -> bool:
+        return True
+
+
+_Readable.add_representer(
+    str,
+    lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style="|" if "\n" in text else None),
+)
+
+
+if __name__ == "__main__":
+    importlib.import_module("autograder.ros").activate()
+    run(sys.stdout, *sys.argv[1:])

@@ -1,0 +1,54 @@
+"""The stand-in for `ros2` prints what the real command prints, and ends as it does: the same commands, the same nodes.
+
+`records.yaml` was written with the real ros2cli by `runner.py`. With it installed, this test holds it to them, too.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+import yaml
+
+from autograder.layout import ROOT
+from autograder.ros.domains import Domain
+from tests.e2e.ros2_records.runner import HERE, RECORDS, is_stand_in
+
+EXPECTED: dict[str, list[dict[str, Any]]] = yaml.safe_load(RECORDS.read_text())
+# Where the stand-in does something else, and why.
+DIFFERENCES: dict[str, dict[str, Any]] = {
+    one.pop("command"): one for one in yaml.safe_load((HERE / "differences.yaml").read_text())
+}
+CALLS = [(group, number) for group, calls in EXPECTED.items() for number in range(len(calls))]
+NOTHING = {"output": "", "error": "", "made": []}
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, list[dict[str, Any]]]:
+    program = [sys.executable, "-m", "tests.e2e.ros2_records.runner"]
+    with Domain() as domain:
+        variables = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
+        done = subprocess.run(program, cwd=ROOT, env=variables, stdout=subprocess.PIPE, text=True, check=True)
+    records: dict[str, list[dict[str, Any]]] = yaml.safe_load(done.stdout)
+    return records
+
+
+def test_a_difference_is_one_and_has_its_reason() -> None:
+    calls = {call["command"]: {**NOTHING, **call} for calls in EXPECTED.values() for call in calls}
+    for command, difference in DIFFERENCES.items():
+        assert difference["reason"]
+        assert any(difference[name] != calls[command][name] for name in difference if name != "reason")
+
+
+@pytest.mark.parametrize(
+    ("group", "number"), CALLS, ids=[f"{group}: {EXPECTED[group][number]['command']}" for group, number in CALLS]
+)
+def test_a_command_does_what_the_real_one_does(group: str, number: int, found: dict[str, list[dict[str, Any]]]) -> None:
+    expected = {**NOTHING, **EXPECTED[group][number]}
+    if is_stand_in():
+        expected |= DIFFERENCES.get(expected["command"], {})
+        expected.pop("reason", None)
+    assert {**NOTHING, **found[group][number]} == expected
