@@ -1,7 +1,7 @@
 """The proof's part for each change: the references and releases of all chapters, some variants and some mutants.
 
-The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in fifteen
-of a chapter's, and one variant in three. The runs of several commits take them all, and so does `make nightly`.
+The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in thirty of
+a chapter's, and one variant in three. The runs of several commits take them all, and so does `make nightly`.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ def of(kind: CaseKind, assignment: str = "") -> list[str]:
 
 def chosen(draw: str | None = None) -> set[str]:
     """Return the ids of the cases that run for each change."""
-    mutants = (drawn(of(CaseKind.MUTANT, name), 15, draw) for name in suites.graded())
+    mutants = (drawn(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded())
     return set().union(of(CaseKind.REFERENCE), of(CaseKind.RELEASE), drawn(of(CaseKind.VARIANT), 3, draw), *mutants)
 
 
 def test_the_commits_draw_all_cases_in_turn() -> None:
-    draws = [chosen(str(number)) for number in range(200)]
+    draws = [chosen(str(number)) for number in range(400)]
     assert set.union(*draws) == set(PROOF)
     assert len({len(draw) for draw in draws}) == 1
-    assert len(draws[0]) < len(PROOF) / 4
+    assert len(draws[0]) < len(PROOF) / 5
 
 
 @pytest.fixture(scope="session")
