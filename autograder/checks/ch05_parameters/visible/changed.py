@@ -28,11 +28,13 @@ def test_contradiction(robot: Robot) -> None:
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 @hint("speed, which is given, asks for both distances at each command.")
 def test_together(robot: Robot) -> None:
-    """It takes both distances in one request, and stops where they say."""
+    """It takes both distances in one request, and stops where they say; 1.8 m then fits the slow distance of 2.0 m."""
     answer = robot.change(PAIR)
     expect(answer.accepted, f"It refused 1.5 m and 2.0 m in one request: “{answer.reason}”.")
     expect_speed(robot.speed_at(1.4), 0.0, "With a safety distance of 1.5 m and a wall 1.4 m ahead")
     expect_speed(robot.speed_at(2.1), 0.3, "With a slow distance of 2.0 m and a wall 2.1 m ahead")
+    answer = robot.change({"safety_distance": 1.8})
+    expect(answer.accepted, f"With a slow distance of 2.0 m, it refused 1.8 m: “{answer.reason}”.")
 
 
 @check(points=1, holds="apply-rate", depends=("table",))
