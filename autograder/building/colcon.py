@@ -16,7 +16,7 @@ from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
 
-COLCON = str(Path(sys.executable).with_name("colcon"))
+HOST = Path(__file__).with_name("colcon_host.py")
 LOG_LINES = 40
 
 
@@ -30,7 +30,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
     """
-    command = [COLCON, "--log-base", str(workspace.scratch / "colcon-log"), "build"]
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "build"]
     command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *choice]
     environment = workspace.environment()
     faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
@@ -44,14 +44,14 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         workdir=workspace.root,
         mounts=(
             *system,
-            *map(Mount, workspace.underlays),
+            *map(Mount, (HOST, *workspace.underlays)),
             Mount(workspace.root, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
         environment=environment,
         limits=BUILD,
     )
-    with launch(command, spec) as process:
+    with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode
     if ending is not Ending.EXITED or status != 0:

@@ -74,7 +74,7 @@ def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Pro
         status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
     """
     command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
-    return launch(command, spec, pass_fds=() if status is None else (status,), profile="tests")
+    return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
 def sandbox(workspace: Workspace) -> Sandbox:

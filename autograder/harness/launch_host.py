@@ -4,6 +4,7 @@
 
 When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
 first child; whatever loses its parent becomes another one. If DESCRIPTOR is a dash, this process becomes `ros2` itself.
+Where it was forked, the Python programs that a launch starts are forked, too.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ def main() -> None:
         if child:
             hold(child, int(descriptor))
         os.close(int(descriptor))
+    if fork_children := globals().get("fork_children"):  # given by `prefork`
+        fork_children()
     del sys.path[0]  # this file's folder is none of the launch's business
     runpy.run_module("autograder.ros.ros2", run_name="__main__", alter_sys=True)
 

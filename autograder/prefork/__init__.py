@@ -5,5 +5,5 @@ server (`server.py`) is a trusted process outside every sandbox. It has imported
 and reads no file of a student's. Bubblewrap makes the sandbox, as for any command. The server forks a process, which
 enters the sandbox and gives up its rights there (`confinement.py`), and then becomes the program (`emulation.py`).
 
-`client.py` is the grader's end. What a forked program starts itself, such as the nodes of a launch, is started as ever.
+What a forked program starts can be forked as well: `children.py`. `client.py` is the grader's end.
 """

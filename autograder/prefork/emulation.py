@@ -6,7 +6,10 @@ import builtins
 import ctypes
 import importlib
 import os
+import re
 import sys
+import sysconfig
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import CodeType, ModuleType, TracebackType
@@ -17,13 +20,14 @@ Program = tuple[CodeType, dict[str, Any]]
 _ARG_START = 45  # among the fields of /proc/self/stat behind the name, before _ARG_END, proc_pid_stat(5)
 
 
-def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool]) -> Program:
+def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], **given: Any) -> Program:
     """Make this interpreter like one that was started with a command line; return its code and its globals.
 
     Args:
-        command: what follows `python`: a script, or a folder with a `__main__.py`, and its arguments.
+        command: what follows `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
         environment: all environment variables.
         base: where Python finds modules without any PYTHONPATH, and whether that is there outside the sandbox.
+        given: more globals of the program.
     """
     code: CodeType | None = None
 
@@ -37,18 +41,28 @@ def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping
     os.environ.clear()
     ctypes.CDLL(None).clearenv()  # libraries that were loaded have set some, of which `os` does not know
     os.environ.update(environment)
-    path = Path(command[0]).absolute()
-    file, folder = (path / "__main__.py", path) if path.is_dir() else (path, path.parent)
-    source = file.read_bytes()
-    _find_modules(command, str(folder), base)
+    words = [*command]
+    while words[0] == "-W":
+        action, _, message = words[1].partition(":")
+        warnings.filterwarnings(action, message)  # type: ignore[arg-type]
+        words = words[2:]
+    if words[0] == "-c":
+        file, folder, source = None, "", words.pop(1).encode()
+    else:
+        path = Path(words[0]).absolute()
+        file, folder = (path / "__main__.py", str(path)) if path.is_dir() else (path, str(path.parent))
+        source = file.read_bytes()
+    _find_modules(command, folder, base)
     _seed_anew()
     set_command_line([sys.executable, *command])
-    sys.argv[:] = command
+    sys.argv[:] = words
     sys.orig_argv[:] = [sys.executable, *command]
     _load_libraries(part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in loaded)
     main = sys.modules["__main__"] = ModuleType("__main__")
-    main.__dict__.update(__builtins__=builtins, __annotations__={}, __file__=str(file), __cached__=None)
-    code = compile(source, str(file), "exec", dont_inherit=True)
+    main.__dict__.update(__builtins__=builtins, __annotations__={}, **given)
+    if file:
+        main.__dict__.update(__file__=str(file), __cached__=None)
+    code = compile(source, str(file or "<string>"), "exec", dont_inherit=True)
     return code, main.__dict__
 
 
@@ -58,9 +72,9 @@ def _seed_anew() -> None:
         numbers.seed()
 
 
-def forget_autograder() -> None:
-    """Unload the grader's own modules."""
-    for name in [name for name in sys.modules if name.partition(".")[0] == "autograder"]:
+def forget(words: Iterable[str]) -> None:
+    """Unload the modules of packages whose names begin with one of these words."""
+    for name in [name for name in sys.modules if re.split("[._]", name)[0] in words]:
         del sys.modules[name]
 
 
@@ -85,6 +99,7 @@ def _find_modules(command: Sequence[str], first: str, base: Mapping[str, bool]) 
     sys.path_importer_cache.clear()  # it knows the folders of the outside
     if any(Path(module, "sitecustomize.py").exists() for module in modules):
         importlib.import_module("sitecustomize")
+        importlib.reload(sysconfig)  # colcon's sitecustomize sets another prefix
     sys.path.insert(0, first)
 
 

@@ -7,10 +7,13 @@ fail in the grader as it does elsewhere.
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from importlib import import_module
+from dataclasses import dataclass
+from importlib import import_module, util
+from importlib.metadata import distributions
 from pathlib import Path
 
 AUTOGRADER = Path(__file__).resolve().parents[1]
@@ -19,6 +22,21 @@ MESSAGES = (
     *("std_msgs", "std_srvs", "geometry_msgs", "sensor_msgs", "nav_msgs"),
 )
 KINDS = ("generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport_introspection_c")
+
+
+@dataclass(frozen=True)
+class Profile:
+    """What is imported early for one kind of program.
+
+    Attributes:
+        load: imports it.
+        forks: whether what such a program starts is forked, too (`children.py`).
+        own: first words of the names of packages that the programs it starts do not have.
+    """
+
+    load: Callable[[], None]
+    forks: bool = False
+    own: tuple[str, ...] = ()
 
 
 def _import(*names: str, folder: Path | None = None) -> None:
@@ -55,4 +73,27 @@ def _tests() -> None:
     _import(*(f"_pytest.{name}" for name in sys.modules["_pytest.config"].default_plugins))
 
 
-PROFILES: dict[str, Callable[[], None]] = {"lockstep": _lockstep, "tests": _tests}
+def _launch() -> None:
+    """Import the launch packages, the real ones or their stand-ins, and what the programs that are launched share."""
+    _tests()
+    names = ("launch_ros.actions", "launch_ros.substitutions", "launch.launch_description_sources")
+    _import(*names, folder=AUTOGRADER / "ros" / "standins" if util.find_spec("launch") is None else None)
+
+
+def _colcon() -> None:
+    """Import what colcon imports to build Python packages, and what their setup.py imports."""
+    # colcon looks for CMake when it is imported, and finds it in the sandbox there.
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"])
+    _import("asyncio.subprocess", "setuptools", "distutils.core", "colcon_core.command")
+    for point in (point for package in distributions() for point in package.entry_points):
+        if point.group.startswith("colcon_") or point.group in ("distutils.commands", "egg_info.writers"):
+            with suppress(Exception):  # colcon and setuptools do without it, too
+                point.load()
+
+
+PROFILES = {
+    "lockstep": Profile(_lockstep),
+    "tests": Profile(_tests),
+    "launch": Profile(_launch, forks=True, own=("launch", "standin")),
+    "colcon": Profile(_colcon, forks=True, own=("colcon",)),
+}

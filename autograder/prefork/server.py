@@ -19,8 +19,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from autograder.prefork import confinement
-from autograder.prefork.emulation import Program, become, forget_autograder
+from autograder.prefork import children, confinement
+from autograder.prefork.emulation import Program, become, forget
 from autograder.prefork.profiles import PROFILES
 from autograder.prefork.protocol import MAX_BYTES, MAX_FDS, Request
 
@@ -29,16 +29,19 @@ def main() -> Program:
     """Serve until there are no more requests; return in the process of a program only, with what it is to run."""
     atexit.register(_release)  # the first that is registered is called last
     del sys.path[0]  # the working folder, which -m adds
-    requests, load = socket.socket(fileno=int(sys.argv[1])), PROFILES[sys.argv[2]]
+    requests, profile = socket.socket(fileno=int(sys.argv[1])), PROFILES[sys.argv[2]]
     given = {str(Path(part).absolute()) for part in os.environ.get("PYTHONPATH", "").split(os.pathsep)}
-    base = {path: Path(path).exists() for path in sys.path if path not in given}
+    before = [path for path in sys.path if path not in given]
     gc.disable()  # nothing of what is imported is garbage
-    load()
+    profile.load()
     gc.freeze()  # no program looks through what all share, which would copy it
     gc.enable()
+    added = [path for path in sys.path if path not in before and path.startswith(sys.prefix)]  # by setuptools
+    base = {path: Path(path).exists() for path in (*before, *added)}
     request = serve(requests)
-    forget_autograder()
-    return become(request.command, {**request.environment, "PWD": request.workdir}, base)
+    forget(("autograder",))
+    namespace = {"fork_children": children.opener(profile.own)} if profile.forks else {}
+    return become(request.command, {**request.environment, "PWD": request.workdir}, base, **namespace)
 
 
 def _release() -> None:

@@ -6,7 +6,8 @@ When pytest has ended, its exit status and its report, a file of JUnit XML, go t
 the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears for their
 claim.
 
-The generator of messages is not imported, which a message's module does if it can.
+Where this process was forked with the launch packages, what the tests launch is forked, too. The generator of messages
+is not imported, which a message's module does if it can.
 """
 
 from __future__ import annotations
@@ -46,4 +47,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     sys.path.pop(0)  # this file's folder is none of the tests' business
+    if fork_children := globals().get("fork_children"):  # given by `prefork`
+        fork_children()
     main()

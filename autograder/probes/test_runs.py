@@ -151,12 +151,13 @@ def _run(workspace: Workspace, source: Source, wanted: TestRun, lane: int) -> Re
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
-    arguments = _arguments(source, folder, wanted)
+    launches = _launches(source, wanted)
+    arguments = _arguments(source, folder, wanted, launches)
     if not wanted.sniffed:
-        return _host(_confined(there, folder, wanted, place / "home"), wanted, arguments)
+        return _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
     with RtpsSniffer() as sniffer:
         spec = _confined(replace(there, domain=sniffer.domain), folder, wanted, place / "home")
-        report = _host(spec, wanted, arguments)
+        report = _host(spec, wanted, arguments, launches)
         return replace(report, joined_domain=sniffer.take_announcements())
 
 
@@ -169,28 +170,33 @@ def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -
     return replace(sandboxed(replace(workspace, scratch=home), folder, HOST, network=True), workdir=folder)
 
 
-def _arguments(source: Source, folder: Path, wanted: TestRun) -> list[str]:
+def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) -> list[str]:
     files = [str(folder / "test" / name) for name in wanted.files]
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
-    plain += ["-p", "launch_pytest.plugin"] if _launches(source, wanted) else []
+    plain += ["-p", "launch_pytest.plugin"] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
     asked = [*(["-x"] if wanted.first_failure else []), *([] if wanted.conftest else ["--noconftest"])]
     return [*plain, *quiet, *asked, *files]
 
 
 def _launches(source: Source, wanted: TestRun) -> bool:
-    """Return whether tests may launch something, for which pytest needs a plug-in."""
+    """Return whether tests may launch something, for which there is more to import."""
     read = [*wanted.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
     return any(b"launch" in source.tests.get(name, b"") for name in read)
 
 
-def _host(spec: Sandbox, wanted: TestRun, arguments: list[str]) -> Report:
+def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) -> Report:
     answer_read, answer_write = os.pipe()
     go_read, go_write = os.pipe()
     report = Path(spec.environment["HOME"]) / "report.xml"
     command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(wanted.backwards)), str(report)]
     try:
-        process = launch([*command, *arguments], spec, pass_fds=(answer_write, go_read), profile="tests")
+        process = launch(
+            [*command, *arguments],
+            spec,
+            pass_fds=(answer_write, go_read),
+            profile="launch" if launches else "tests",
+        )
     finally:
         os.close(answer_write)
         os.close(go_read)

@@ -78,7 +78,7 @@ def main() -> None:
     worker.prepare()
     for profile in PROFILES:  # a server that a child warmed up would end with it
         warm_up(profile)
-    PROFILES["tests"]()  # a worker needs most of that, too
+    PROFILES["tests"].load()  # a worker needs most of that, too
     gc.collect()
     gc.freeze()  # what the children share is not theirs to look through
     with os.fdopen(jobs) as lines, os.fdopen(replies, "w") as answers:

@@ -216,7 +216,9 @@ def imports(scratch: Path, profile: str, code: str) -> list[str]:
         ("lockstep", "import std_srvs\nstd_srvs.srv"),
         ("tests", "import std_msgs.msg\nstd_msgs.srv"),
         ("tests", "from geometry_msgs.msg import Twist\nimport sensor_msgs\nsensor_msgs.msg"),
-        ("tests", "import rclpy\nrclpy.executors"),
+        ("launch", "import rclpy\nrclpy.executors"),
+        ("launch", "import lifecycle_msgs\nlifecycle_msgs.msg"),
+        ("colcon", "import setuptools\nsetuptools.no_such_thing"),
     ],
 )
 def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(profile: str, code: str) -> None:

@@ -1,0 +1,27 @@
+"""colcon in a sandbox.
+
+    python colcon_host.py ARGUMENTS-OF-COLCON
+
+To build one Python package, colcon starts Python three times for its setup.py, and most of what those do is to import
+setuptools. Where this process was forked, they are forked, too.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+
+def main() -> int | str | None:
+    """Run colcon."""
+    sys.path[0] = str(Path(sys.executable).parent)  # where colcon's own script is, and no module of this folder
+    sys.argv[0] = "colcon"
+    if fork_children := globals().get("fork_children"):  # given by `prefork`
+        fork_children()
+    status: int | str | None = importlib.import_module("colcon_core.command").main()
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

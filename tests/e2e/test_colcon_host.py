@@ -1,0 +1,157 @@
+"""A colcon that is forked builds what colcon builds, and a setup.py sees and says the same in both."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import layout
+from autograder.building.colcon import HOST
+from autograder.harness import Workspace
+from autograder.ros import environment
+from autograder.sandbox import Mount, Sandbox
+from autograder.sandbox.launcher import launch
+from autograder.sandbox.limits import BUILD
+from tests.e2e.cell_support import in_cell, is_forked
+
+pytestmark = pytest.mark.usefixtures("forks")
+
+SPIES = """
+import atexit, json, logging, os, signal, sys, sysconfig, warnings
+from pathlib import Path
+
+seen = {
+    'argv': sys.argv, 'path': sys.path, 'executable': sys.executable, 'prefix': sys.prefix, 'name': __name__,
+    'file': globals().get('__file__'), 'cwd': os.getcwd(), 'environment': dict(os.environ),
+    'descriptors': sorted(name for name in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{name}')),
+    'streams': [os.path.basename(os.readlink(f'/proc/self/fd/{n}')).split(':')[0] for n in (0, 1, 2)],
+    'signals': [str(signal.getsignal(n)) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGCHLD)],
+    'handlers': len(logging.root.handlers), 'level': logging.root.level, 'main': sorted(vars(sys.modules['__main__'])),
+    'encodings': [sys.stdout.encoding, sys.stderr.encoding, sys.stderr.errors],
+    'forked': 'asyncio' in sys.modules,
+    'purelib': sysconfig.get_paths()['purelib'], 'warned': warnings.filters[0][0],
+}
+with open(Path.home() / 'seen', 'a') as log:
+    print(json.dumps(seen), file=log)
+atexit.register(lambda: open(Path.home() / 'ended', 'a').write('ended\\n'))
+if 'install' in sys.argv:
+    print('a word to stdout')
+    print('a word to stderr', file=sys.stderr)
+"""
+AT_INSTALL = "if 'install' in sys.argv:"
+FROM_RUN_TO_RUN = re.compile(r"\[-?[0-9.]+m?s[^]]*\]|<<<|>>>|0x[0-9a-f]+")
+
+
+def bring(workspace: Workspace, package: str, *lines: str) -> None:
+    """Put a reference package there, and lines at the beginning of its setup.py."""
+    folder = workspace.root / "src" / package
+    shutil.copytree(layout.SOLUTIONS / package, folder, ignore=layout.NOT_COPIED)
+    setup = folder / "setup.py"
+    setup.write_text("\n".join([*lines, setup.read_text()]))
+
+
+def build(workspace: Workspace, profile: str | None) -> tuple[int | None, str]:
+    """Build with colcon, started or forked; return its exit status and its output. The spaces are left."""
+    for folder in (workspace.root / "build", workspace.install, workspace.scratch):
+        shutil.rmtree(folder, ignore_errors=True)
+    workspace.scratch.mkdir()
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "log"), "build", "--executor"]
+    command += ["sequential", "--event-handlers", "console_cohesion+", "desktop_notification-"]
+    mounts = (Mount(HOST), Mount(workspace.root, writable=True), Mount(workspace.scratch, writable=True))
+    spec = Sandbox(workspace.root, mounts, environment=workspace.environment(), limits=BUILD)
+    with launch(command, spec, profile=profile) as process:
+        assert profile is None or is_forked(process)
+        assert process.wait(BUILD.wall_seconds)
+        return process.returncode, process.output
+
+
+def builds(scratch: Path, packages: list[list[str]]) -> list[dict[str, Any]]:
+    """Build packages, each with its lines, started and forked; return what each build did."""
+    workspace = Workspace(scratch / "ws", environment.find(), scratch / "home")
+    for package, *lines in packages:
+        bring(workspace, package, *lines)
+    (workspace.root / "src/speed_guard/sitecustomize.py").write_text("raise SystemExit(3)\n")
+    found = []
+    for profile in (None, "colcon"):
+        status, output = build(workspace, profile)
+        notes = [workspace.scratch / name for name in ("seen", "ended")]
+        seen, ended = (note.read_text().splitlines() if note.exists() else [] for note in notes)
+        installed = files(workspace.install)
+        found.append({"status": status, "output": output, "seen": seen, "ended": ended, "installed": installed})
+    return found
+
+
+def told(output: str) -> set[str]:
+    """What a build says of packages and errors; colcon mixes its children's streams in any order.
+
+    Its own threads share stderr, too: what one logs may come before another's end of line. From Python 3.13 on, a
+    traceback shows the source of `python -c`, if the program was started.
+    """
+    text = re.sub(r" (ERROR|WARNING):", r"\n\1:", FROM_RUN_TO_RUN.sub("", output))
+    lines = (line.strip() for line in text.splitlines() if re.search(r"speed_guard|setup\.py|[Ee]rror|status", line))
+    return {line for line in lines if not line.startswith("import sys;")}
+
+
+def files(folder: Path) -> dict[str, list[Any]]:
+    """Return mode and a digest of each file."""
+    return {
+        str(path.relative_to(folder)): [path.stat().st_mode, hashlib.sha256(path.read_bytes()).hexdigest()]
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_reference_packages_are_installed_alike() -> None:
+    started, forked = in_cell(builds, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
+    assert (started["status"], forked["status"]) == (0, 0), forked["output"]
+    assert len(started["installed"]) > 100
+    assert forked["installed"] == started["installed"]
+    assert told(forked["output"]) ^ told(started["output"]) == set()
+
+
+def test_a_setup_py_sees_the_same() -> None:
+    found = in_cell(builds, [["speed_guard", SPIES]])
+    for built in found:
+        assert built["status"] == 0, built["output"]
+        assert "a word to stderr" in built["output"]
+        assert built["ended"] == ["ended"] * 3
+        built["seen"] = [json.loads(line) for line in built["seen"]]
+        for run in built["seen"]:
+            run["path"] = [path for path in run["path"] if Path(path).name != "_vendor"]  # setuptools adds it
+            # The wheels' hook writes these folders in any order.
+            run["environment"]["LD_LIBRARY_PATH"] = sorted(run["environment"]["LD_LIBRARY_PATH"].split(":"))
+    started, forked = found
+    assert [run.pop("forked") for run in started["seen"] + forked["seen"]] == [False] * 3 + [True] * 3
+    assert forked["seen"] == started["seen"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "this is no Python",
+        f"{AT_INSTALL} raise RuntimeError('no such thing')",
+        f"{AT_INSTALL} os._exit(7)",
+        *(
+            pytest.param(line, marks=pytest.mark.nightly)
+            for line in (
+                "import no_such_module",
+                f"{AT_INSTALL} sys.exit(3)",
+                f"{AT_INSTALL} exit('so it ends')",
+                f"{AT_INSTALL} os.kill(os.getpid(), 9)",
+                f"{AT_INSTALL} print(colcon_core)",
+            )
+        ),
+    ],
+)
+def test_a_setup_py_that_fails_is_told_alike(line: str) -> None:
+    started, forked = in_cell(builds, [["speed_guard", "import os, sys", line]])
+    assert started["status"] != 0
+    assert forked["status"] == started["status"]
+    assert told(forked["output"]) ^ told(started["output"]) == set()
