@@ -128,7 +128,7 @@ def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
     missing = workspace.ros2("pkg", "prefix", "nothing")
     assert (missing.returncode, missing.stderr) == (1, "Package not found\n")
     untagged = workspace.ros2("pkg", "xml", "py_pkg", "--tag", "url")
-    assert untagged.stderr == "No value for tag 'url' in package.xml for package 'py_pkg'\n"
+    assert untagged.stderr == "XML tag not found\n"
 
 
 def test_run_starts_an_executable(workspace: Workspace) -> None:
