@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from pathlib import Path
 
 from autograder.ros.ros2 import packages
@@ -19,6 +20,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         "-n",
         "--noninteractive",
         action="store_true",
+        default=not sys.stdin.isatty(),
         help="Run the launch system non-interactively, with no terminal associated",
     )
     parser.add_argument(
