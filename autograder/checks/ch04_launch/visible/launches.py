@@ -1,7 +1,8 @@
-"""What the three launch files start."""
+"""What the three launch files start, and what ends them."""
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -115,3 +116,13 @@ def test_safe_start(launches: Launches) -> None:
 def test_respawn(launches: Launches) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.full)
+
+
+@check(points=1, holds="safe-driver", group="safe_start", depends=("respawn",), doc=contract.EVENTS)
+@hint("RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))")
+def test_driver_stops(launches: Launches) -> None:
+    """When the driver gets SIGTERM and ends, everything shuts down."""
+    harness = launches.full
+    expect(harness.kill("driver", signal.SIGTERM) == 1, "There is not one driver.")
+    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    expect(ended, "The driver ended, and the launch goes on without it.")
