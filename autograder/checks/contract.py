@@ -46,6 +46,12 @@ def contract(assignment: str) -> dict[str, Sentence]:
     return sentences(notebook["cells"])
 
 
+def counts(assignments: Iterable[str]) -> dict[str, int]:
+    """Return how many sentences the contracts of chapters have, and how many of them no check holds."""
+    found = [sentence for name in assignments for sentence in contract(name).values()]
+    return {"contract_sentences": len(found), "contract_unchecked": sum(bool(each.unchecked) for each in found)}
+
+
 def sentences(cells: Iterable[Mapping[str, Any]]) -> dict[str, Sentence]:
     """Return the sentences that the metadata of a notebook's cells name. The first place of an id counts."""
     found: dict[str, Sentence] = {}

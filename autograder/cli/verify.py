@@ -10,6 +10,7 @@ import click
 
 from autograder import layout
 from autograder.checks import suites
+from autograder.checks.contract import counts
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
 from autograder.proof import CaseKind, Claim, cases, holds, prove, summary
@@ -74,7 +75,7 @@ def verify(
 
         claims = prove(chosen, seed=seed, out=out, lanes=lanes, on_claim=show)
     click.echo("\n" + table([(_name(claim), marks(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
-    counted = summary(claims, time.monotonic() - began)
+    counted = summary(claims, time.monotonic() - began) | counts(assignments or suites.graded())
     click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     report = {"summary": counted, "claims": [_plain(claim) for claim in claims]}
     for path in filter(None, (out / "verify.json", json_file)):

@@ -13,6 +13,7 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, Driver, stopped
+from autograder.probes.pace import is_paced, mean_period
 
 check = group("action")
 MOVES = ("drive_moves",)
@@ -82,7 +83,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
 def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
     for speed in (0.5, 0.4):
-        distance = draw.uniform(0.6, 0.8)
+        distance = draw.uniform(2.2, 2.6)  # a tenth of it is more than what is allowed
         x, y = placed_driver.x, placed_driver.y
         goal = placed_driver.start(distance, speed)
         commands = placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
@@ -100,8 +101,8 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = placed_driver.x, placed_driver.y
-    goal = placed_driver.start(draw.uniform(0.15, 0.35), 0.5)
-    placed_driver.finish(goal, LONG, "With a short way to drive")
+    goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # a tenth of it is more than what is allowed
+    placed_driver.finish(goal, LONG, "With a way of some metres to drive")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
@@ -112,8 +113,8 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
 @check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)
 @hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
 def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
-    """Feedback comes on the way: driven grows, and remaining is what is left."""
-    distance = draw.uniform(0.4, 0.5)
+    """Ten times a second come a command and feedback: driven grows, and remaining is what is left."""
+    distance, began = draw.uniform(0.7, 0.8), placed_driver.seconds
     goal = placed_driver.start(distance, 0.5)
     placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
     heard = [stamped.message for stamped in goal.feedback]
@@ -123,6 +124,10 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     expect(not wrong, f"With {distance:.2f} m to drive, a feedback said {said}.")
     driven = [one.driven for one in heard]
     expect(driven == sorted(driven) and driven[-1] > driven[0], "driven did not grow on the way.")
+    for what, told in (("feedback", goal.feedback), ("command", placed_driver.messages(COMMANDS, since=began))):
+        seen = mean_period(told)
+        paced = is_paced(seen, contract.PERIOD, placed_driver.time)
+        expect(paced, f"A {what} came every {seen:.3f} s, instead of every {contract.PERIOD} s.", fraction=0.5)
 
 
 @check(points=2, holds="rejects", depends=("drive_serves",), doc=contract.ACTION)
@@ -130,15 +135,15 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
     """A goal whose distance or speed is out of its range is rejected, and the robot stays."""
-    over = draw.uniform(0.05, 2.0)
+    over, factor = draw.uniform(0.05, 2.0), draw.uniform(1.02, 1.06)
     bad = (
         (0.0, 0.2),
         (-over, 0.2),
-        (MAX_DISTANCE + over, 0.2),
+        (MAX_DISTANCE * factor, 0.2),
         (math.nan, 0.2),
         (1.0, 0.0),
         (1.0, -over),
-        (1.0, MAX_SPEED + over),
+        (1.0, MAX_SPEED * factor),
         (1.0, math.nan),
     )
     accepted = []

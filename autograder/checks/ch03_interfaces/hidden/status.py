@@ -11,6 +11,7 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import TOPIC, Reporter, same
+from autograder.probes.pace import is_paced, mean_period
 
 check = group("status")
 NEEDS = ("publishes_status",)
@@ -58,16 +59,12 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
 @hint("create_timer(period, self.publish_status), with the period that read_parameters() returns.")
 def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     """It publishes once a second, and at another rate when status_period says so."""
-    began = reporter.seconds
-    reporter.run(4.0)
-    rate = reporter.rate(TOPIC, since=began)
-    expect(0.7 <= rate <= 1.3, f"It published {rate:.2g} messages a second, instead of 1.")
-    began = tuned_reporter.seconds
-    tuned_reporter.run(2.0)
-    rate = tuned_reporter.rate(TOPIC, since=began)
+    seen = _period(reporter, 5.0)
+    expect(is_paced(seen, 1.0, reporter.time), f"It published every {seen:.2f} s, instead of every second.")
+    seen = _period(tuned_reporter, 2.0)
     expect(
-        3.4 <= rate <= 4.6,
-        f"With status_period 0.25 s it published {rate:.2g} messages a second, instead of 4.",
+        is_paced(seen, 0.25, tuned_reporter.time),
+        f"With status_period 0.25 s it published every {seen:.2f} s.",
         fraction=0.5,
     )
 
@@ -118,13 +115,17 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(
             said == level, f"At percentage {(level + offset) / 100.0:.3f} battery_level is {said}, instead of {level}."
         )
+    for half in (0.125, 0.625):  # exactly halfway between two percents, also as a float32
+        reporter.publish_battery(half)
+        said, up = reporter.status().battery_level, math.ceil(half * 100.0)
+        expect(said == up, f"At percentage {half} battery_level is {said}, instead of {up}: halves go up.")
 
 
 @check(points=1, holds="percent-unknown", depends=NEEDS, doc=contract.BATTERY)
 @hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
-    for percentage in (math.nan, 1.0 + draw.uniform(0.2, 5.0), -draw.uniform(0.2, 1.0)):
+    for percentage in (math.nan, 1.0 + draw.uniform(0.02, 0.09), -draw.uniform(0.02, 0.09)):
         reporter.publish_battery(0.5)
         reporter.run(0.1)
         reporter.publish_battery(percentage)
@@ -152,6 +153,12 @@ def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
         said = list(reporter.status().joint_positions)
         right = len(said) == count and all(map(same, said, positions))
         expect(right, f"Of {count} positions, joint_positions holds {_some(said)} instead of {_some(positions)}.")
+
+
+def _period(reporter: Reporter, seconds: float) -> float:
+    began = reporter.seconds
+    reporter.run(seconds)
+    return mean_period(reporter.messages(TOPIC, since=began))
 
 
 def _some(numbers: list[float]) -> str:

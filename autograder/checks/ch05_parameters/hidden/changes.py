@@ -135,8 +135,7 @@ def test_undisturbed(robot: Robot) -> None:
             robot.publish("/scan", scan(2.5))
         _change(robot, {"max_linear_velocity": 0.2 + 0.01 * turn})
         robot.live(0.05)
-    rate = robot.rate("/cmd_vel", since=began)
-    expect_rate(rate, 10.0, "While max_linear_velocity was changed all the time")
+    expect_rate(robot.rate_since(began), 10.0, "While max_linear_velocity was changed all the time")
 
 
 @check(points=1, holds="lets-pass", depends=("names",))

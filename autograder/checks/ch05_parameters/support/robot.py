@@ -16,11 +16,13 @@ from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
 from autograder.harness.steps import FINEST_TICK_NS
+from autograder.probes.pace import mean_period
 from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
 TOLERANCE = 0.01  # m/s
+RATE_TOLERANCE = 0.08  # of the rate
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
@@ -89,7 +91,11 @@ class Robot(AutoHarness):
         self.see(3.0, 0.3)  # a period that has just been changed counts from now on
         began = self.seconds
         self.see(3.0, seconds)
-        return self.rate("/cmd_vel", since=began)
+        return self.rate_since(began)
+
+    def rate_since(self, began: float) -> float:
+        """Return how many commands a second came after `began`, by the mean time between them."""
+        return 1.0 / mean_period(self.messages("/cmd_vel", since=began))
 
     def charge(self, percent: float) -> None:
         """Let the battery say its charge."""
@@ -146,8 +152,8 @@ def expect_speed(speed: float, wanted: float, situation: str) -> None:
 
 
 def expect_rate(rate: float, wanted: float, situation: str) -> None:
-    """Fail the check unless commands come at the wanted rate, within a tenth of it and one command."""
+    """Fail the check unless commands come at the wanted rate. An error of a tenth is seen."""
     expect(
-        abs(rate - wanted) <= 0.1 * wanted + 0.5,
+        abs(rate - wanted) <= RATE_TOLERANCE * wanted,
         f"{situation}, it published {rate:.1f} commands a second; it should publish {wanted:.0f}.",
     )

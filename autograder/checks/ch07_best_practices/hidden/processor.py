@@ -9,8 +9,10 @@ from statistics import fmean
 from rclpy.qos import ReliabilityPolicy
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGGING, QOS, TOLERANCE
+from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGGING, PACKAGE, QOS, TOLERANCE
 from autograder.checks.ch07_best_practices.support.robot import Processor, scan
+from autograder.harness import Workspace
+from autograder.probes.namespaces import left_behind
 
 check = group("processor")
 SECONDS = 20.0
@@ -27,7 +29,7 @@ def test_endpoints(processor: Processor) -> None:
         expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
 
 
-@check(points=2, holds=("scan", "scan-filtered"), depends=("endpoints",), doc=QOS)
+@check(points=1, holds=("scan", "scan-filtered"), depends=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
     """It asks for scans as a lidar offers them, and offers its own likewise: best effort."""
@@ -37,6 +39,15 @@ def test_sensor_qos(processor: Processor) -> None:
     offered = processor.node.get_publishers_info_by_topic("/scan_filtered")
     reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in offered)
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+
+
+@check(points=1, holds="relative", depends=("endpoints",))
+@hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
+@hint("'scan' is relative, '/scan' is not.")
+def test_relative(workspace: Workspace) -> None:
+    """The topics of sensor_processor are relative: in a namespace, it takes them with it."""
+    left = left_behind(workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance"))
+    expect(not left, left)
 
 
 @check(points=2, holds=("scan-filtered", "other-fields"), depends=("endpoints",))

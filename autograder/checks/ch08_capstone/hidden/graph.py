@@ -39,6 +39,11 @@ ENDPOINTS = (
 )
 
 
+def names_of(node: str) -> list[str]:
+    """Return the relative names of a node's topics and services."""
+    return [endpoint.name.removeprefix("/") for endpoint in ENDPOINTS if endpoint.node == node]
+
+
 def expect_endpoints(graph: Node, name: str) -> None:
     """Fail the check unless a node is there under its name, with all its ends; say what is there instead.
 

@@ -12,9 +12,16 @@ from std_srvs.srv import SetBool
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
-from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints
+from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
 from autograder.checks.ch08_capstone.support import contract
-from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PARAMETERS, PROCESSOR, TOLERANCE
+from autograder.checks.ch08_capstone.support.contract import (
+    CONTROLLER,
+    MONITOR,
+    PARAMETERS,
+    PROCESSOR,
+    PROGRAMS,
+    TOLERANCE,
+)
 from autograder.checks.ch08_capstone.support.system import (
     SharedSystem,
     System,
@@ -22,6 +29,10 @@ from autograder.checks.ch08_capstone.support.system import (
     expect_still,
     expect_turning,
 )
+from autograder.harness import Workspace
+from autograder.probes.namespaces import left_behind
+from autograder.probes.pace import is_paced, mean_period
+from autograder.time_record import LOCKSTEP
 
 check = group("step_2")
 BUILT = ("build", "clearance_message", "interface_package")
@@ -29,7 +40,9 @@ SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 NEAR = PARAMETERS[CONTROLLER]["safety_distance"].default
 STALE = PARAMETERS[CONTROLLER]["data_timeout"].default
-MARGIN = 0.25  # s beyond a time-out that a chain of nodes at 10 Hz may need
+MARGIN = 0.09  # s around a time-out, a little less than the time between two commands
+REAL_MARGIN = 0.25  # s, where time is real
+EDGE = 0.03  # m around the safety distance, a twentieth of it
 OPEN = scan(fill=math.inf)
 ENDS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
@@ -58,6 +71,15 @@ def test_monitor(shared_system: SharedSystem) -> None:
     expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
 
 
+@check(points=1, holds="relative", depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
+@hint("'scan' is relative, '/scan' is not.")
+def test_relative(workspace: Workspace) -> None:
+    """All names are relative: in a namespace, each node takes its topics and its service with it."""
+    left = [said for name in PROGRAMS if (said := left_behind(workspace, contract.PACKAGE, name, names_of(name)))]
+    expect(not left, " ".join(left))
+
+
 @check(points=2, holds=("processor", "late-joiner"), depends=("processor", "monitor"), doc=contract.QOS_DOC)
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
@@ -73,7 +95,7 @@ def test_qos(shared_system: SharedSystem) -> None:
 
 
 @check(
-    points=3,
+    points=2,
     holds=("sector", "processor", "clearance-header", "front", "left", "right"),
     depends=("processor",),
     doc=contract.SCAN_DOC,
@@ -112,7 +134,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
     expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
 
 
-@check(points=3, holds=("readings", "no-reading", "valid-field"), depends=("sectors",), doc=contract.REP_117)
+@check(points=3, holds=("readings", "no-reading", "valid-field", "sector"), depends=("sectors",), doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")
 @hint("min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.")
 def test_readings(seeing: System, draw: random.Random) -> None:
@@ -137,8 +159,13 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         newest = _newest(seeing, scan(Part(first, last, draw.choice((math.nan, 0.0)))))
         if newest.valid:
             wrong.append(f"With no reading that counts {where}, valid was true.")
+    edges = ((28.0, 1.0), (31.0, 3.0), (-29.0, 1.0), (-32.0, 3.0))  # half_angle is 29.8°
+    for first, wanted in edges:
+        front = _newest(seeing, scan(Part(first, first + 1.0, 1.0))).front
+        if abs(front - wanted) > TOLERANCE:
+            wrong.append(f"With something 1.00 m away at {first:.0f}° to {first + 1.0:.0f}°, front was {front:.2f}.")
     if wrong:
-        total = len(cases) + len(blind)
+        total = len(cases) + len(blind) + len(edges)
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 
@@ -170,6 +197,14 @@ def test_turns(driving: System, draw: random.Random) -> None:
         later = f"{situation}, once it turns and the sides have changed,"
         expect_turning(driving.see(scan(obstacle, narrow, other)).commands, later, side, TURN, fraction=0.5)
         expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
+    for near in (NEAR + EDGE, NEAR - EDGE):
+        driving.see(OPEN)
+        said = driving.see(scan(Part(-10.0, 10.0, near))).commands
+        situation = f"With something {near:.2f} m ahead, and a safety distance of {NEAR:.2f} m"
+        if near > NEAR:
+            expect_driving(said, situation, SPEED, fraction=0.5)
+        else:
+            expect_turning(said, situation, "left", TURN, fraction=0.5)
 
 
 @check(points=3, holds=("untrusted", "newest"), depends=("drives",))
@@ -183,16 +218,19 @@ def test_stops(driving: System) -> None:
         driving.see(scan(Part(-35.0, 35.0, math.nan))).commands, "With nan from every beam ahead", fraction=0.25
     )
     driving.see(OPEN)
+    margin = MARGIN if driving.harness.time == LOCKSTEP else REAL_MARGIN
     began = driving.seconds
     driving.wait(2.0)
-    late = driving.messages(began + STALE + MARGIN).commands
+    fresh = driving.messages(began, began + STALE - margin).commands
+    expect_driving(fresh, f"Less than {STALE} s after the last scan", SPEED, fraction=0.5)
+    late = driving.messages(began + STALE + margin).commands
     expect_still(late, f"More than {STALE} s after the last scan", fraction=0.5)
     driving.see(OPEN)
     old = driving.see(OPEN, 1.5, age=1.0).commands
     expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
 
 
-@check(points=2, holds=("enable", "disabled"), depends=("drives",), doc=contract.SERVICE_DOC)
+@check(points=2, holds=("enable", "disabled", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
 def test_enable(driving: System, shared_system: SharedSystem) -> None:
@@ -208,7 +246,11 @@ def _hold_and_release(system: System) -> None:
     system.see(OPEN)
     answer = system.call(SetBool, "/enable", SetBool.Request(data=False))
     expect(answer.success, "Asked to hold still, it answered success = false.")
-    expect_still(system.see(OPEN).commands, "After enable with data: false")
+    held = system.see(OPEN, 1.7).commands
+    expect_still(held, "After enable with data: false")
+    period = mean_period(held)
+    said = f"Held still, it published a command every {period:.3f} s, instead of ten a second."
+    expect(is_paced(period, 0.1, system.harness.time), said, fraction=0.75)
     answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
     expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
     expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)

@@ -20,6 +20,7 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
+from autograder.probes.namespaces import left_behind
 
 check = group("nodes")
 BUILT = ("installs",)
@@ -65,7 +66,7 @@ def test_stamps(start: Start) -> None:
     expect(right, f"By their stamps, its readings were {ages} s old when they came: a reading is sent as it is made.")
 
 
-@check(points=3, holds=("smoother", "window", "smoother-topics"), depends=BUILT, doc=contract.NODES_DOC)
+@check(points=2, holds=("smoother", "window", "smoother-topics"), depends=BUILT, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
 def test_average(start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
@@ -155,6 +156,20 @@ def test_passes_on(start: Start, draw: Random) -> None:
     expect(stamp >= 100, f"The decision's stamp is {stamp} s, not that of the average.")
     given = told[0].celsius
     expect(abs(given - celsius) <= TOLERANCE, f"The decision on {celsius} °C says {given:.1f} °C.", fraction=0.5)
+
+
+@check(points=1, holds="relative", depends=("readings", "average", "hysteresis"), doc=contract.NODES_DOC)
+@hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
+@hint("'temperature' is relative, '/temperature' is not.")
+def test_relative(workspace: Workspace) -> None:
+    """The topics of all three nodes are relative: in a namespace, each takes them with it."""
+    topics = {
+        THERMOMETER: ("temperature",),
+        SMOOTHER: ("temperature", "smoothed"),
+        GUARD: ("smoothed", "decision"),
+    }
+    left = [said for name, names in topics.items() if (said := left_behind(workspace, contract.PACKAGE, name, names))]
+    expect(not left, " ".join(left))
 
 
 def _expect_averages(seen: list[float], readings: list[float], window: int) -> None:
