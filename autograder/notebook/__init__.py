@@ -4,7 +4,7 @@
 faster than real time; `side_by_side(...)` compares drives. `check(...)` runs the visible checks. `grade(...)` stands in
 the locked cells. `source(...)` does for the kernel what `source install/setup.bash`
 does in a terminal; `simulator(...)` runs the simulator beside it for a while. `graph()` draws the nodes that run and
-their topics.
+their topics; `score(...)` compares one's own drives to a goal.
 
 Students' programs run in processes of their own, never in the kernel.
 """
@@ -21,6 +21,7 @@ from autograder.notebook.comparing import side_by_side
 from autograder.notebook.driving import DriveReport, drive
 from autograder.notebook.graph import Graph, graph
 from autograder.notebook.notices import NotGraded, Notice
+from autograder.notebook.scoring import ScoreTable, score
 from autograder.notebook.simulator_session import SimulatorSession, simulator
 from autograder.notebook.sourcing import source
 from autograder.ros import activate
@@ -33,12 +34,14 @@ __all__ = [
     "DriveReport",
     "Graph",
     "Notice",
+    "ScoreTable",
     "SimulatorSession",
     "check",
     "drive",
     "grade",
     "graph",
     "ros",
+    "score",
     "side_by_side",
     "simulator",
     "source",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from autograder.notebook.notices import Notice
+from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
 QUIET = ("/rosout", "/parameter_events", "/clock")
@@ -88,7 +89,8 @@ def graph(seconds: float = 10.0, hidden: tuple[str, ...] = QUIET) -> Graph | Not
     from rclpy.node import Node
 
     context = Context()
-    rclpy.init(context=context)
+    with announcing_often():
+        rclpy.init(context=context)
     try:
         looker = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
         return _settled(looker, seconds, hidden)

@@ -20,6 +20,7 @@ RUNS += [
     for number in range(10)
     for busy in (False, True)
 ]
+DISPLAY = "from IPython.display import display"
 AFTER = "\nfor run in robots.recording.poses.transpose(1, 0, 2):\n    print('moved', max(abs(run[:, 2] - run[0, 2])))\n"
 
 
@@ -46,7 +47,7 @@ def test_all_nodes_are_found_and_both_robots_drive(busy: None, reference: Termin
     (chapter,) = (chapter for chapter in chapters() if chapter.assignment == "04_launch")
     cells = {cell.id: cell.source for cell in chapter.read().cells}
     script = tmp_path / "cell.py"
-    script.write_text("\n".join([cells["setup"], cells["try-fleet-run"].replace("shell(BUILD)\n", ""), AFTER]))
+    script.write_text("\n".join([DISPLAY, cells["setup"], cells["try-fleet-run"].replace("shell(BUILD)\n", ""), AFTER]))
     (tmp_path / "ws").symlink_to(reference.root)
     told = subprocess.run(
         [sys.executable, str(script)],
@@ -58,7 +59,9 @@ def test_all_nodes_are_found_and_both_robots_drive(busy: None, reference: Termin
     )
     lines = told.stdout.splitlines()
     assert told.returncode == 0, told.stderr
-    assert [line for line in lines if line.startswith("/")] == NODES, told.stdout
+    assert [line for line in lines if line.startswith("/") and "->" not in line] == NODES, told.stdout
+    assert f"5 nodes: {', '.join(NODES)}" in lines, told.stdout  # the drawn graph, in words
+    assert "/robot2/reporter -> /fleet/status" in lines
     moved = [float(line.split()[1]) for line in lines if line.startswith("moved")]
     assert len(moved) == 2
     assert min(moved) > 0.5, told.stdout

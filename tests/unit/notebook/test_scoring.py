@@ -1,0 +1,58 @@
+"""Scores of drives to a goal: what counts, in which order, and what is kept of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder.exceptions import UsageError
+from autograder.notebook import DriveReport, Notice, score
+from autograder.notebook.scoring import Score, ScoreTable, score_of
+from sim import Command, Goal, Pose, RobotSpec, Simulation, World, box, run
+
+ROOM = World.from_segments(
+    box(6.0, 2.0).tolist(), name="a room", starts=[Pose(-2.0, 0.0, 0.0)], goals=[Goal(1.0, 0.0, 0.5)]
+)
+
+
+def drive(speed: float, world: World = ROOM) -> DriveReport:
+    simulation = Simulation(world, (RobotSpec(radius=0.18),))
+    return DriveReport(run(simulation, lambda state, scans: Command(linear=speed), 10.0), "", ())
+
+
+def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
+    fast = score_of(drive(0.5).recording, "fast")  # 2.5 m to the circle; it ends at the wall, which counts no more
+    assert fast.arrived == pytest.approx(2.5 / 0.5, abs=0.6)  # it speeds up first
+    assert (fast.left, fast.metres) == (0.0, pytest.approx(2.5, abs=0.06))
+    assert fast.margin == pytest.approx(0.82, abs=0.01)  # to the side walls
+    slow = score_of(drive(0.1).recording, "slow")
+    assert (slow.arrived, slow.left) == (None, pytest.approx(2.5 - slow.metres, abs=0.02))
+
+
+def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first(tmp_path: Path) -> None:
+    file = tmp_path / "scores.json"
+    for speed, name in ((0.1, "slow"), (0.3, ""), (0.5, "fast")):
+        table = score(drive(speed), name, file)
+    assert isinstance(table, ScoreTable)
+    assert [each.run for each in table.scores] == ["fast", "run 2", "slow"]
+    assert repr(table).splitlines()[1].startswith("1. ← this run  fast   after")
+    assert "<td>fast</td>" in table._repr_html_()
+
+
+def test_arriving_counts_more_than_touching_nothing_and_that_more_than_the_time() -> None:
+    def rank(arrived: float | None, margin: float, left: float = 0.0) -> tuple[bool, bool, float]:
+        return Score("maze", "", arrived, left, 1.0, margin).rank
+
+    ranks = [rank(50.0, 0.1), rank(60.0, 0.1), rank(40.0, 0.0), rank(None, 0.1, 1.0), rank(None, 0.0, 0.5)]
+    assert ranks == sorted(ranks)
+
+
+def test_what_is_no_drive_or_has_no_goal_or_no_scores_is_told(tmp_path: Path) -> None:
+    notice = Notice("It did not start.")
+    assert score(notice, file=tmp_path / "scores.json") is notice
+    with pytest.raises(UsageError, match="the world 'an empty hall' has no goal: drive in another one, such as 'maze'"):
+        score(drive(0.1, World.from_segments(box(4.0, 4.0).tolist(), name="an empty hall")), file=tmp_path / "s.json")
+    (tmp_path / "scores.json").write_text('[{"world": 3}]')
+    with pytest.raises(UsageError, match=r"scores\.json: holds no scores .*; remove the file to begin a new table"):
+        score(drive(0.1), file=tmp_path / "scores.json")
