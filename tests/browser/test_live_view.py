@@ -38,6 +38,13 @@ live(world, broken)
 """
 
 
+REPLAY = """
+from sim import run
+recording = run(Simulation(world), lambda state, scans: Command(linear=0.3, angular=0.4), 5.0)
+live(recording, play=False)
+"""
+
+
 def pixels(image: Locator) -> Any:
     """The part of the live image that shows the world, without the clock above it, as (H, W, 3) numbers."""
     picture = np.asarray(Image.open(io.BytesIO(image.screenshot())).convert("RGB"), dtype=np.int16)
@@ -110,6 +117,25 @@ def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, scr
     expect(page.get_by_text("in broken")).to_be_visible()
     expect(page.get_by_title("Play", exact=True)).to_be_visible()
     page.screenshot(path=screenshots / "live-view-error.png")
+
+
+def test_a_recording_plays_in_the_notebook_and_its_keys_are_not_the_notebooks(
+    page: Page, lab: Lab, screenshots: Path
+) -> None:
+    first = DRIVE.format(world=str(ROOT / "assets/worlds/empty_room.yaml")).replace("\nview\n", "\nview.pause()\n")
+    lab.open(page, "replay.ipynb", [first, REPLAY])
+    player = page.locator(".run-player")
+    expect(player.locator("canvas")).to_be_visible(timeout=PATIENCE * 1000)
+    expect(player.locator("img")).to_be_hidden()
+    player.get_by_label("Time in seconds").fill("2")
+    cells = page.locator(".jp-Notebook .jp-Cell").count()
+    for key, shown in (("ArrowRight", "2.10"), ("b", "2.10"), ("Home", "0.00")):  # b adds a cell in command mode
+        page.keyboard.press(key)
+        expect(player.locator("output")).to_have_text(f"{shown} s")
+    assert page.locator(".jp-Notebook .jp-Cell").count() == cells
+    player.get_by_role("button", name="Play").click()
+    expect(player.locator("output")).to_have_text("5.00 s", timeout=PATIENCE * 1000)
+    page.screenshot(path=screenshots / "replay-in-notebook.png")
 
 
 def test_a_static_picture_stands_in_the_notebook_with_its_alternative_text(
