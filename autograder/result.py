@@ -14,11 +14,14 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import UsageError
+
+if TYPE_CHECKING:
+    from jsonschema.protocols import Validator
 
 SCHEMA = "autograder-result/1"
 MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that is held up for so long loses no check
@@ -189,7 +192,17 @@ def schema() -> dict[str, Any]:
     return json.loads(Path(__file__).with_name("result.schema.json").read_text(encoding="utf-8"))  # type: ignore[no-any-return]
 
 
-def from_json(data: object, *, source: str = "result") -> Result:
+@cache
+def _validator() -> Validator:
+    """Return the schema's validator; to check the schema itself each time takes longer than all else."""
+    from jsonschema.validators import validator_for
+
+    kind = validator_for(schema())
+    kind.check_schema(schema())
+    return kind(schema())
+
+
+def from_json(data: Any, *, source: str = "result") -> Result:
     """Return the result that a JSON form describes.
 
     Args:
@@ -199,13 +212,12 @@ def from_json(data: object, *, source: str = "result") -> Result:
     Raises:
         UsageError: `data` does not match the schema. The message names `source` and the field.
     """
-    import jsonschema  # imported here because it takes a second, and workers do not need it
+    from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
 
-    try:
-        jsonschema.validate(data, schema())
-    except jsonschema.ValidationError as error:
+    error = best_match(_validator().iter_errors(data))
+    if error is not None:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
-        raise UsageError(f"{source}: not a grading result: {field}: {error.message}") from None
+        raise UsageError(f"{source}: not a grading result: {field}: {error.message}")
     assert isinstance(data, dict)
     fields = _known_fields(Result, data)
     fields["status"] = Status(fields["status"])
