@@ -104,16 +104,16 @@ def test_one_at_a_time_gives_the_same_result_as_two_at_once(
 
 
 def test_a_check_is_replayed_with_the_seed_of_its_result(
-    together: dict[str, Result], reference: Path, tmp_path: Path
+    together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
-    write_json(tmp_path / "result.json", together["tree"].to_json())
-    arguments = ["replay", str(tmp_path), "--check", "room", "--submission", str(reference), "--mcap", "--no-open"]
+    write_json(tmp_path / "result.json", together["zip"].to_json())
+    arguments = ["replay", str(tmp_path), "--check", "room", "--submission", str(layouts[0].path), "--mcap", "--no-open"]
     said = CliRunner().invoke(cli.group, arguments)
     assert said.exit_code == 0, said.output
     assert "is not what was graded then" not in said.output
     folder = tmp_path / "replay" / "room"
     assert (folder / "room-track" / "room-track.mcap").is_file()
-    picture = next(artifact for artifact in together["tree"].artifacts if artifact.check == "room")
+    picture = next(artifact for artifact in together["zip"].artifacts if artifact.check == "room")
     assert picture.caption in (folder / "feedback.html").read_text(encoding="utf-8")  # the metres are the same
 
 

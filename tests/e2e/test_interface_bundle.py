@@ -43,7 +43,6 @@ def workspace(root: Path) -> Workspace:
 def test_a_bundle_is_built_once_and_works_wherever_it_is_brought(tmp_path: Path, own_cache: Path) -> None:
     first, second = workspace(tmp_path / "first"), workspace(tmp_path / "second")
     assert build(first, (NODES,)).ok
-    assert len(list((first.scratch / "cmake-overlay" / "parsed").iterdir())) == 3  # .idl files, for all generators
     (kept,) = own_cache.glob("*/install")
     shutil.rmtree(first.root)  # whatever still named the first place would fail now
     assert build(second, (NODES,)).ok

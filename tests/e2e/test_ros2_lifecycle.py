@@ -25,7 +25,7 @@ def nodes(ros_domain: int) -> Iterator[None]:
     ]
     yield
     for program in programs:
-        program.terminate()
+        program.kill()  # how they end is not asked here, and rclpy can miss a SIGTERM
     for program in programs:
         program.wait()
 

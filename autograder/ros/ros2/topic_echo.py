@@ -16,6 +16,7 @@ from autograder.ros.ros2.qos import add_qos_arguments, profile_to_listen_with
 from autograder.ros.ros2.session import add_session_arguments, open_session
 
 TRUNCATE_LENGTH = 128
+DISCOVERY_SECONDS = 5.0  # for a publisher's QoS, on a busy machine
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -74,7 +75,7 @@ def run(args: argparse.Namespace) -> Outcome:
             message_class = graph.load_class(args.message_type, "msg")
         # The type is known before the publishers' QoS is; a subscription that does not match hears nothing.
         if not args.message_type:
-            session.wait_for(lambda: bool(node.get_publishers_info_by_topic(name)), timeout=0.5)
+            session.wait_for(lambda: bool(node.get_publishers_info_by_topic(name)), timeout=DISCOVERY_SECONDS)
         printed = rclpy.Future()
 
         def on_message(message: Any, info: Any) -> None:

@@ -20,7 +20,7 @@ from nbgrader.apps import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from traitlets.config import PyFileConfigLoader
 
-import autograder.grading.batch
+import autograder.grading.request
 from autograder.checks import Check, Outcome
 from autograder.grading import Graded
 from autograder.grading.pipeline import NOTEBOOK
@@ -131,7 +131,7 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
             nbformat.write(graded.notebook, out / NOTEBOOK)
         return graded
 
-    monkeypatch.setattr(autograder.grading.batch, "grade_submission", grade)
+    monkeypatch.setattr(autograder.grading.request, "grade_submission", grade)
     return made
 
 

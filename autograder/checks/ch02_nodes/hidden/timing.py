@@ -55,7 +55,7 @@ def test_warns(fresh_robot: Robot) -> None:
 @check(points=1, holds="logs-status", depends=("subscribes_status",))
 @hint("self.get_logger().info(msg.data), in status_callback.")
 def test_logs_status(robot: Robot, draw: random.Random) -> None:
-    """It logs each status at level info."""
+    """The text of each status is in its log, at level info."""
     for _ in range(2):
         words = f"battery {draw.randrange(10**6)}"
         robot.publish("/status", String(data=words))
