@@ -107,7 +107,8 @@ def test_a_check_is_replayed_with_the_seed_of_its_result(
     together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
     write_json(tmp_path / "result.json", together["zip"].to_json())
-    arguments = ["replay", str(tmp_path), "--check", "room", "--submission", str(layouts[0].path), "--mcap", "--no-open"]
+    submission = str(layouts[0].path)
+    arguments = ["replay", str(tmp_path), "--check", "room", "--submission", submission, "--mcap", "--no-open"]
     said = CliRunner().invoke(cli.group, arguments)
     assert said.exit_code == 0, said.output
     assert "is not what was graded then" not in said.output
