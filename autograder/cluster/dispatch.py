@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import signal
+import threading
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -73,13 +75,35 @@ def grade_on(
         return ()
     dispatch = _Dispatch(client, requests, on_result, say, grade)
     try:
-        dispatch.run()
-    except KeyboardInterrupt:
-        dispatch.finish()
-        raise
+        with _first_interrupt() as interrupted:
+            dispatch.run(interrupted)
     finally:
         dispatch.forget()
+    if interrupted.is_set():
+        raise KeyboardInterrupt
     return tuple(dispatch.results[place] for place in range(len(requests)))
+
+
+@contextlib.contextmanager
+def _first_interrupt() -> Iterator[threading.Event]:
+    """Yield an event that the first Ctrl-C sets; the second one raises KeyboardInterrupt.
+
+    Python drops an exception that comes in a finalizer, and futures of Dask have one. So the first raises none.
+    """
+    noted = threading.Event()
+    if threading.current_thread() is not threading.main_thread():  # only the main one hears signals
+        yield noted
+        return
+
+    def note(*_: object) -> None:
+        noted.set()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield noted
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 class _Dispatch:
@@ -95,21 +119,17 @@ class _Dispatch:
         self._under_way: dict[Future, _Sent] = {}
         self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
-    def run(self) -> None:
-        """Send and take in until nothing is left."""
+    def run(self, interrupted: threading.Event) -> None:
+        """Send and take in until nothing is left; once interrupted, take in what is under way."""
         left = True
         while left or self._under_way:
+            left = left and not interrupted.is_set()
             while left and len(self._under_way) < self._workers.threads():
                 sent = next(self._parcels, None)
                 if sent is None:
                     left = False
                 else:
                     self._send(sent)
-            self._take()
-
-    def finish(self) -> None:
-        """Take in what is under way."""
-        while self._under_way:
             self._take()
 
     def forget(self) -> None:
