@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from sim import Recording
     from sim.view import Player
 
+READY_SECONDS = 180.0  # real time: the first simulation on a machine compiles the engine, on a busy one for a minute
+
 
 class SimulatorSession:
     """What the robots did while they were simulated; the track is there once the block is over."""
@@ -71,7 +73,7 @@ def simulator(
         settings = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
         node = [sys.executable, "-m", "sim.bridge", "--ros-args", *settings]
         command = shlex.join([sys.executable, "-m", "autograder", "ros", *node])
-        with running(command, until="robot(s)", workspace=folder):
+        with running(command, until="robot(s)", seconds=READY_SECONDS, workspace=folder):
             yield session
         session.recording = _load(recording)
 

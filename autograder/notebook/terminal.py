@@ -62,7 +62,7 @@ def running(
     Args:
         command: as typed in a terminal, in the assignment's folder.
         until: a text, or several; the block begins once the command has printed them all, or has ended.
-        seconds: after so long without them, the block begins all the same.
+        seconds: after so long without them, the block begins all the same, and a line says what was not printed.
         workspace: sourced first, once it has been built.
 
     Raises:
@@ -77,6 +77,9 @@ def running(
     with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.said() for text in texts), seconds)
         terminal.show()
+        missing = [text for text in texts if text not in terminal.said()]
+        if missing and terminal.runs:
+            print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing))}]")
         yield
         terminal.end()
 
@@ -119,6 +122,11 @@ class _Terminal:
         self._process.wait()
         self._file.close()
 
+    @property
+    def runs(self) -> bool:
+        """Whether the command has not ended."""
+        return self._process.poll() is None
+
     def said(self) -> str:
         """Return all that the command has printed so far."""
         return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
@@ -141,7 +149,7 @@ class _Terminal:
 
     def end(self) -> None:
         """Press Ctrl-C if the command still runs; print the rest, and how it ended if it failed by itself."""
-        pressed = self._process.poll() is None
+        pressed = self.runs
         if pressed:
             self._signal(signal.SIGINT)
             self.wait(lambda: False, STOP_SECONDS)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from pathlib import Path
 
+import nbformat
 import pytest
+from nbformat.v4 import new_code_cell
 from playwright.sync_api import Page, expect
 
 from autograder.course import Form, chapters, in_form
 from autograder.course.sync import write_notebook
+from autograder.notebook.writefile import REPLACED
 from tests.browser.jupyter import PATIENCE, Lab, lab
 
 __all__ = ["lab"]
@@ -20,52 +22,73 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 FIRST = next(chapter for chapter in chapters() if chapter.assignment == "00_welcome")
 FILE = "ws/src/first_robot/first_robot/square.py"
 ANSWER = "# written in the editor\n"
-RESTART_AND_RUN = """async () => {
+CELL = f"%%writefile {FILE}\n# written in the cell\n"
+OPEN = """async path => {
+    const editor = await window.jupyterapp.commands.execute("docmanager:open", {path, factory: "Editor"});
+    await editor.context.ready;
+}"""
+# Jupyter's own command, without its question. It ends when the last cell has.
+RUN_ALL = """async () => {
     const panel = window.jupyterapp.shell.currentWidget;
     await panel.sessionContext.session.kernel.restart();
-    const cells = panel.content.widgets.filter(cell => cell.model.type === "code"
-        && /^(%%writefile|from autograder)/.test(cell.model.sharedModel.source));
-    for (const cell of cells) {
-        panel.content.activeCellIndex = panel.content.widgets.indexOf(cell);
-        await window.jupyterapp.commands.execute("notebook:run-cell");
-    }
-    return cells.length;
+    await window.jupyterapp.commands.execute("notebook:run-all-cells");
+    return panel.content.widgets.filter(cell => cell.model.type === "code").map(cell => cell.model.executionCount);
 }"""
-OUTPUTS = """() => JSON.stringify(window.jupyterapp.shell.currentWidget.content.widgets
-    .filter(cell => cell.model.type === "code").map(cell => cell.model.outputs.toJSON()))"""
-# The editor's own commands: the file is opened, changed and saved as a student does it.
-EDIT = """async ([path, text]) => {
-    const commands = window.jupyterapp.commands;
-    const editor = await commands.execute("docmanager:open", {path, factory: "Editor"});
-    await editor.context.ready;
-    editor.context.model.sharedModel.setSource(text);
-    await editor.context.save();
-    editor.dispose();
-}"""
+OUTPUTS = """() => window.jupyterapp.shell.currentWidget.content.widgets
+    .filter(cell => cell.model.type === "code").map(cell => JSON.stringify(cell.model.outputs.toJSON())).join("\\n")"""
 
 
 @pytest.fixture
-def chapter(lab: Lab) -> Path:
-    """The first chapter's release, in the folder that JupyterLab serves."""
-    folder = lab.folder / FIRST.assignment
-    shutil.rmtree(folder, ignore_errors=True)
+def chapter(lab: Lab, request: pytest.FixtureRequest) -> Path:
+    """The first chapter's release, in a folder of the test's own; of its cells, those that write files."""
+    folder = lab.folder / request.node.name
     shutil.copytree(FIRST.folder, folder, ignore=shutil.ignore_patterns("build", "install", "log"))
-    write_notebook(folder / FIRST.path.name, in_form(FIRST.read(), Form.RELEASED))
+    released = in_form(FIRST.read(), Form.RELEASED)
+    written = [cell for cell in released.cells if cell.source.startswith("%%writefile")]
+    released.cells = [new_code_cell("from autograder.notebook import ros\n\nros()"), *written]
+    write_notebook(folder / FIRST.path.name, released)
     return folder
 
 
-def test_run_all_keeps_a_file_that_was_edited_in_the_editor(page: Page, lab: Lab, chapter: Path) -> None:
-    name = FIRST.assignment
-    lab.show(page, f"{name}/{FIRST.path.name}")
-    assert page.evaluate(RESTART_AND_RUN) >= 2
-    stub = (chapter / FILE).read_text()
-    page.evaluate(EDIT, [f"{name}/{FILE}", ANSWER])
-    assert (chapter / FILE).read_text() == ANSWER != stub
+def edit_in_the_editor(page: Page, folder: Path) -> None:
+    """Open the file in a tab of JupyterLab, type the answer over its text and save it with Ctrl-S."""
+    page.evaluate(OPEN, f"{folder.name}/{FILE}")
+    page.locator(".jp-FileEditor .cm-content").click()
+    page.keyboard.press("Control+A")
+    page.keyboard.insert_text(ANSWER)
+    page.keyboard.press("Control+S")
+    expect(page.locator(".jp-mod-dirty")).to_have_count(0, timeout=PATIENCE * 1000)
+    assert (folder / FILE).read_text() == ANSWER
 
-    lab.show(page, f"{name}/{FIRST.path.name}")
-    page.evaluate(RESTART_AND_RUN)
+
+def run_all(page: Page, lab: Lab, folder: Path) -> str:
+    """Open the notebook, restart its kernel, run all cells; return what they show."""
+    lab.show(page, f"{folder.name}/{FIRST.path.name}")
+    assert page.evaluate(RUN_ALL) == [1, 2, 3]
+    return str(page.evaluate(OUTPUTS))
+
+
+def test_run_all_keeps_a_file_that_was_edited_in_the_editor(page: Page, lab: Lab, chapter: Path) -> None:
+    run_all(page, lab, chapter)
+    assert "NotImplementedError" in (chapter / FILE).read_text()
+    edit_in_the_editor(page, chapter)
+    told = run_all(page, lab, chapter)
     assert (chapter / FILE).read_text() == ANSWER
-    assert f"{FILE} was kept as it is" in json.dumps(json.loads(page.evaluate(OUTPUTS)))
+    assert f"{FILE} was kept as it is" in told
+    assert not (chapter / "ws" / REPLACED).exists()
+
+
+def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, lab: Lab, chapter: Path) -> None:
+    run_all(page, lab, chapter)
+    edit_in_the_editor(page, chapter)
+    notebook = nbformat.read(chapter / FIRST.path.name, as_version=4)
+    notebook.cells[-1].source = CELL
+    write_notebook(chapter / FIRST.path.name, notebook)
+    told = run_all(page, lab, chapter)
+    copy = Path("ws", REPLACED, Path(FILE).relative_to("ws")).with_suffix(".py.1")
+    assert (chapter / FILE).read_text() == CELL.partition("\n")[2]
+    assert (chapter / copy).read_text() == ANSWER
+    assert f"{FILE} was changed outside of this cell. Its old text is kept in {copy}." in told
 
 
 def test_a_student_has_no_button_that_praises_an_unsolved_notebook(page: Page, lab: Lab, chapter: Path) -> None:

@@ -6,7 +6,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+from nbformat.v4 import new_code_cell
+from nbgrader.validator import Validator
 
+from autograder.course import Form, chapters, in_form
+from autograder.course.sync import write_notebook
 from autograder.layout import SOLUTIONS
 from autograder.notebook import CheckReport, DriveReport, Notice, check, drive, ros
 from autograder.notebook.driving import FAULTS
@@ -105,3 +109,14 @@ def test_a_crash_is_shown_by_the_students_own_files(tmp_path: Path) -> None:
     shown = f'  File "ws/src/{path.relative_to(tmp_path / "src")}", line {line}, in main'
     assert notice.detail.splitlines()[1] == shown
     assert "autograder" not in notice.detail
+
+
+def test_nbgraders_validate_praises_no_unsolved_notebook(tmp_path: Path) -> None:
+    chapter = next(chapter for chapter in chapters() if chapter.assignment == "02_nodes")
+    released = in_form(chapter.read(), Form.RELEASED)
+    graded = [cell for cell in released.cells if cell.metadata.get("nbgrader", {}).get("grade")]
+    released.cells = [new_code_cell("from autograder.notebook import grade"), *graded]
+    write_notebook(tmp_path / chapter.path.name, released)
+    found = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.path.name))
+    assert graded
+    assert [cell["source"] for cell in found["failed"]] == [cell.source for cell in graded]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,6 +15,7 @@ from autograder import layout
 from autograder.checks import Check, Visibility, suites
 from autograder.cli import course as command
 from autograder.course import judged_later
+from autograder.notebook import CheckReport, checking
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
@@ -70,11 +73,26 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
     assert run(course, "check", "01_small").exit_code == 1
 
 
-def test_each_graded_chapter_says_what_is_judged_after_handing_in() -> None:
+def test_the_lists_of_what_is_judged_later_are_up_to_date() -> None:
     assert judged_later.outdated() == {}, "run `autograder course tables`"
-    titles = json.loads(layout.judged_later("02_nodes").read_text())
-    assert "The node is called robot_controller." in titles
-    assert not {check.title for check in suites.visible("02_nodes").checks} & set(titles)
+    assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_a_student_whose_checks_have_all_passed_reads_what_is_judged_after_handing_in(
+    assignment: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = {check.title for check in suites.visible(assignment).checks}
+    judged = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
+    declared = [dataclasses.asdict(check) for check in suites.visible(assignment).checks]
+    passed = [{"id": each["id"], "outcome": "passed", "message": "", "hints": []} for each in declared]
+    answer = {"diagnosis": {"kind": "ok"}, "declared": declared, "checks": passed}
+    monkeypatch.setattr(checking, "send", lambda *_, **__: nullcontext((answer, None)))
+    report = checking.check(assignment)
+    assert isinstance(report, CheckReport)
+    lines = repr(report).splitlines()
+    assert lines[-len(judged) - 1] == f"After you hand in, {len(judged)} more checks judge, with inputs of their own:"
+    assert lines[-len(judged) :] == [f"- {title}" for title in judged]
 
 
 def test_a_list_of_what_is_judged_later_that_is_missing_is_written(

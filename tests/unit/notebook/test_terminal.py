@@ -90,6 +90,14 @@ def test_the_block_begins_when_the_text_has_come_and_ctrl_c_ends_the_command(
     assert not alive(pid)
 
 
+def test_a_block_that_begins_without_the_text_says_so(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with running("echo up; sleep 600", until=["up", "ready", "set"], seconds=0.5, workspace=ws):
+        assert capsys.readouterr().out == "up\n[not printed within 0.5 s: 'ready', 'set']\n"
+    with running("echo up; exit 3", until="ready", workspace=ws):
+        pass
+    assert capsys.readouterr().out == "up\n[exit status 3]\n"
+
+
 def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def fail() -> None:
         with running("echo $$; sleep 600", until="\n", workspace=ws):

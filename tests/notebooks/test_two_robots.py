@@ -1,0 +1,80 @@
+"""Chapter 4's two robots, run as a student runs them: what the cell shows is what the text above it says.
+
+`RUNS` says how often at night, half of the runs beside two programs that keep two cores busy.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from nbformat.v4 import new_code_cell
+
+from autograder.course import Chapter, Form, chapters, in_form
+from autograder.course.execute import execute, working_copy
+from autograder.ros.domains import Domain
+from tests.notebooks.outputs import said
+
+NODES = ["/robot1/driver", "/robot1/reporter", "/robot2/driver", "/robot2/reporter", "/simulator"]
+CELLS = ["setup", "build", "robot-launch", "two-robots-launch", "try-fleet-run"]
+TURNS = """import numpy
+for run in robots.recording.poses.transpose(1, 0, 2):
+    print('turned', abs(numpy.unwrap(run[:, 2])[-1] - run[0, 2]) / (2 * numpy.pi))
+"""
+RUNS = [pytest.param(False, id="once")]
+RUNS += [
+    pytest.param(number % 2 == 1, id=f"{number}-{'busy' if number % 2 else 'idle'}", marks=pytest.mark.nightly)
+    for number in range(int(os.environ.get("RUNS", "20")))
+]
+
+
+def _compute() -> None:
+    while True:
+        pass
+
+
+@pytest.fixture
+def busy(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Keep two cores busy meanwhile, where it is asked for."""
+    others = [multiprocessing.get_context("spawn").Process(target=_compute, daemon=True) for _ in range(2)]
+    for other in others if request.param else []:
+        other.start()
+    yield
+    for other in others if request.param else []:
+        other.kill()
+        other.join()
+
+
+@pytest.fixture(scope="module")
+def folder() -> Iterator[Path]:
+    """The chapter's folder, which all runs use, one after another."""
+    with working_copy(_chapter().folder) as copy:
+        yield copy
+
+
+def _chapter() -> Chapter:
+    return next(chapter for chapter in chapters() if chapter.assignment == "04_launch")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("busy", RUNS, indirect=True)
+def test_all_nodes_are_found_and_both_robots_drive_a_circle(busy: None, folder: Path) -> None:
+    notebook = in_form(_chapter().read(), Form.SOLVED)
+    cells = {cell.id: cell for cell in notebook.cells}
+    notebook.cells = [*(cells[name] for name in CELLS), new_code_cell(TURNS)]
+    with Domain() as domain:
+        failure = execute(notebook, folder, 400, {**os.environ, "ROS_DOMAIN_ID": str(domain.number)})
+    assert failure is None, failure
+    told = said(notebook.cells[-2:])
+    lines = told.splitlines()
+    assert [line for line in lines if line.startswith("/") and "->" not in line] == NODES, told
+    assert f"5 nodes: {', '.join(NODES)}" in lines, told  # the drawn graph, in words
+    assert {f"/{robot}/reporter -> /fleet/status" for robot in ("robot1", "robot2")} <= set(lines), told
+    assert {f"data: {robot} drives at 0.12 m/s" for robot in ("robot1", "robot2")} <= set(lines), told
+    turned = [float(line.split()[1]) for line in lines if line.startswith("turned")]
+    assert len(turned) == 2, told
+    assert min(turned) >= 1.0, told
+    assert told.count("[WARN]") == 2, told  # both robots' watchdogs, once the drivers have ended
