@@ -25,6 +25,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
+from autograder.lockstep.tracebacks import own_frames
 from autograder.sandbox import Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import CALLS
@@ -218,8 +219,10 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
     data = failed if isinstance(failed, dict) else {}
     kind, message, trace = (str(data.get(name, "")) for name in ("raised", "message", "traceback"))
     if kind == "ModuleNotFoundError" and module in message:
-        sentence = f"The package installs no module {module}: look at its place, at __init__.py and at packages in "
-        return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}setup.py.", trace)
+        sentence = f"The package installs no module {module}: is its file written? Look at its place, at __init__.py "
+        own = own_frames(trace)  # all frames, and so only the loader's, where none is the student's
+        detail = own if own != trace else ""
+        return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}and at packages in setup.py.", detail)
     return diagnose_crash(Crash("import", kind, message, trace))
 
 
