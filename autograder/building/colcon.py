@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from autograder.building import cmake_overlay
+from autograder.building.build_log import place_in_setup, readable
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import tail
@@ -55,7 +56,9 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode
     if ending is not Ending.EXITED or status != 0:
-        raise StudentError(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(output, LOG_LINES)))
+        raise StudentError(
+            Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(readable(output), LOG_LINES))
+        )
     require_contained(workspace.install)
     return tail(output, LOG_LINES)
 
@@ -98,5 +101,5 @@ def _build_failure(output: str, ending: Ending | None) -> str:
     # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]
     errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]
-    first = f" The first error: {errors[0][:300]}" if errors else ""
+    first = f" The first error: {place_in_setup(output)}{errors[0][:300]}" if errors else ""
     return f"colcon build failed.{first}"

@@ -27,15 +27,10 @@ from std_srvs.srv import SetBool, Trigger
 
 from sim.bridge.driver import Driver, Sent
 from sim.bridge.messages import clock_to_msg, odom_to_msg, scan_to_msg, twist_to_command
+from sim.bridge.pace import PERIOD, Pace
 from sim.bridge.settings import declare, simulation_of
 from sim.exceptions import SimError
 from sim.recording import Recorder
-
-PERIOD = 0.01
-"""Seconds of real time between two looks at the clock."""
-
-LONGEST_LEAP = 0.25
-"""Seconds of real time made up for at once. A machine that sleeps must not make the robot leap."""
 
 RECORD_NS = 50_000_000
 """Simulated time between two states of a recording, in ns. A state with an event or a scan is recorded in any case."""
@@ -55,7 +50,7 @@ class SimulatorNode(Node):
         self._speed = float(values["speed"])
         self._step_time = float(values["step_time"])
         self._paused = bool(values["start_paused"])
-        self._behind = 0.0
+        self._pace = Pace(self._driver.simulation.tick)
         self._recording = values["recording"]
         self._recorder = self._new_recorder()
 
@@ -78,7 +73,6 @@ class SimulatorNode(Node):
         self.add_post_set_parameters_callback(self._on_parameters)
         self.create_timer(PERIOD, self._on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
         world = self._driver.simulation.world
-        self._last = time.monotonic()
         self.get_logger().info(f"world {world.name!r}, {len(self._scans)} robot(s), speed {self._speed:g}")
 
     @property
@@ -101,16 +95,12 @@ class SimulatorNode(Node):
         return on_command
 
     def _on_timer(self) -> None:
-        now = time.monotonic()
-        passed, self._last = now - self._last, now
+        ticks = self._driver.ticks(self._pace.due(time.monotonic(), self._speed, self._paused))
         if self._paused:
             return
-        if passed > LONGEST_LEAP:
+        if self._pace.late:
             self.get_logger().warning("this machine can't keep up: lower 'speed'", throttle_duration_sec=5.0)
-            passed = LONGEST_LEAP
-        self._behind += passed * self._speed
-        ticks = self._driver.ticks(self._behind)
-        self._behind -= ticks * self._driver.simulation.tick
+        self._pace.went_on(ticks * self._driver.simulation.tick)
         self._advance(ticks)
 
     def _advance(self, ticks: int) -> None:
@@ -167,7 +157,7 @@ class SimulatorNode(Node):
     def reset(self) -> None:
         """Go back to the start."""
         self._driver.reset()
-        self._behind = 0.0
+        self._pace.forget()
         self._recorder = self._new_recorder()
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

@@ -139,7 +139,9 @@ def _no_script(source: Path) -> None:
     [
         pytest.param(shutil.rmtree, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
         pytest.param(_remove("setup.py"), Kind.HALF_WRITTEN_PACKAGE, "has no setup.py", id="no setup.py"),
-        pytest.param(_replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "colcon build failed", id="setup.py"),
+        pytest.param(
+            _replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "The first error: setup.py, line ", id="setup.py"
+        ),
         pytest.param(_no_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
         pytest.param(
             lambda source: (source / "link").symlink_to("/etc"), Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"

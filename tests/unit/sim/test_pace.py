@@ -1,0 +1,56 @@
+"""Simulated time follows real time: by small parts, so that commands are seen in between, and without leaps."""
+
+from __future__ import annotations
+
+import pytest
+
+from sim.bridge.pace import AT_ONCE, LONGEST_LEAP, PERIOD, Pace
+
+
+def look(pace: Pace, now: float, speed: float) -> float:
+    """Look at the clock and go on by what is due."""
+    seconds = pace.due(now, speed)
+    pace.went_on(seconds)
+    return seconds
+
+
+def test_time_begins_with_the_first_look() -> None:
+    pace = Pace(0.02)
+    assert look(pace, 1000.0, 2.0) == 0.0
+    assert not pace.late
+    assert look(pace, 1000.01, 2.0) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("speed", [1.0, 2.0])
+def test_a_delay_is_made_up_for_by_parts_that_no_watchdog_notices(speed: float) -> None:
+    pace = Pace(0.02)
+    look(pace, 0.0, speed)
+    parts = [look(pace, 0.2, speed) for _ in range(10)]
+    assert max(parts) == AT_ONCE
+    assert sum(parts) == pytest.approx(0.2 * speed)
+    assert not pace.late
+
+
+def test_what_is_more_than_a_leap_is_told_and_forgotten() -> None:
+    pace = Pace(0.02)
+    look(pace, 0.0, 2.0)
+    first = look(pace, 60.0, 2.0)
+    assert pace.late
+    assert first + sum(look(pace, 60.0, 2.0) for _ in range(100)) == pytest.approx(LONGEST_LEAP * 2.0 + 0.02)
+    assert not pace.late
+
+
+@pytest.mark.parametrize(("tick", "speed"), [(1.0, 0.1), (0.02, 1000.0)])
+def test_a_long_tick_and_a_high_speed_are_reached(tick: float, speed: float) -> None:
+    pace = Pace(tick)
+    gone = sum(look(pace, number * PERIOD, speed) for number in range(3001))
+    assert gone == pytest.approx(30.0 * speed)
+
+
+def test_a_pause_and_a_new_start_are_not_made_up_for() -> None:
+    pace = Pace(0.02)
+    look(pace, 0.0, 1.0)
+    assert pace.due(5.0, 1.0, paused=True) == 0.0
+    assert pace.due(5.1, 1.0) == pytest.approx(0.1)
+    pace.forget()
+    assert pace.due(5.1, 1.0) == 0.0
