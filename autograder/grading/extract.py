@@ -17,10 +17,10 @@ from autograder import layout
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.grading import submitted_notebook
-from autograder.grading.kernel import SandboxedKernelManager
+from autograder.grading.kernel import SandboxedKernel
 from autograder.grading.submitted_notebook import STUB
 from autograder.lockstep.failures import tail
-from autograder.sandbox import Mount, Sandbox
+from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.limits import KERNEL
 from autograder.workspace import Workspace
 from sim.grading import GRADING_VARIABLE
@@ -72,17 +72,16 @@ def execute(
     """
     connections = workspace.scratch / "jupyter"
     connections.mkdir(exist_ok=True)
-    manager = SandboxedKernelManager(_sandbox(folder, workspace), connections)
+    kernel = SandboxedKernel(_sandbox(folder, workspace), connections)
     skipped = {index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)}
-    client = _Client(notebook, km=manager, timeout=cell_seconds, allow_errors=True, skipped=skipped)
-    try:
-        client.execute()
-    except (DeadKernelError, CellTimeoutError):
-        return notebook
-    except RuntimeError as error:  # nbclient raises it if the kernel does not start
-        raise _no_kernel(manager, error) from error
-    finally:
-        manager.end()
+    client = _Client(notebook, km=kernel, timeout=cell_seconds, allow_errors=True, skipped=skipped)
+    with kernel.process as process:
+        try:
+            client.execute()
+        except (DeadKernelError, CellTimeoutError):
+            return notebook
+        except RuntimeError as error:  # nbclient raises it if the kernel does not start
+            raise _no_kernel(process, error) from error
     return notebook
 
 
@@ -102,16 +101,15 @@ class _Client(NotebookClient):
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
         self._received += len(repr(msg.get("content", "")))
         if self._received > MAX_OUTPUT:
-            manager: Any = self.km
-            manager.provisioner.process.kill()
+            kernel: Any = self.km
+            kernel.process.kill()
             return None
         return super().process_message(msg, cell, cell_index)
 
 
-def _no_kernel(manager: SandboxedKernelManager, error: RuntimeError) -> Exception:
+def _no_kernel(process: Process, error: RuntimeError) -> Exception:
     """Return a StudentError if the kernel died, which a submitted file can cause, and a GraderError otherwise."""
-    process = manager.process
-    if process is None or process.ending is None:
+    if process.ending is None:
         return GraderError(f"the sandboxed kernel did not answer: {error}")
     sentence = (
         "The notebook's kernel could not start: a file beside the notebook, such as ipykernel_launcher.py, "
