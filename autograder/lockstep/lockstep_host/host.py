@@ -248,7 +248,8 @@ class Host:
                 self.pipes.send(event="description", **self._describe())
             elif command["op"] == "match":
                 self.counts.match(self._prefix(), command["kept"], command["early"])
-                self.pipes.send(event="matched", sent=self.counts.flush())
+                self.counts.flush()
+                self.pipes.send(event="matched")
             else:
                 break
         self._instants = command["instants"]

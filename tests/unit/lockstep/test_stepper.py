@@ -16,6 +16,7 @@ from autograder.lockstep.stepper import Timeout
 from autograder.sandbox import Ending, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
+DONE = '{"event": "done", "sent": {"/cmd_vel": 3}, "lost": [], "changed": false, "wake": null, "notes": []}\\n'
 Open = Callable[[str], Stepper]
 
 
@@ -42,16 +43,15 @@ def _kind(action: Callable[[], object]) -> Kind:
 
 
 def test_a_host_that_answers_is_stepped(host: Open) -> None:
-    answers = r"""
-os.write(write, b'{"event": "ready"}\n')
+    answers = rf"""
+os.write(write, b'{{"event": "ready"}}\n')
 os.read(read, 999)
-os.write(write, b'{"event": "done", "sent": {"/cmd_vel": 3}, "lost": []}\n')
-os.read(read, 999)
+os.write(write, b'{DONE}')
+signal.pause()
 """
     program = host(answers)
     program.wait_ready()
     assert program.step([10**9], {"/scan": 1}).sent == {"/cmd_vel": 3}
-    assert program.quit() == 0
 
 
 def test_a_line_that_comes_in_pieces_is_read_whole(host: Open) -> None:
@@ -118,10 +118,10 @@ def test_a_deadlock_is_told_as_one(host: Open) -> None:
 def test_a_program_that_answers_without_listening_does_not_hold_up_the_grader(
     host: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    program = host(r"""
-os.write(write, b'{"event": "ready"}\n')
+    program = host(rf"""
+os.write(write, b'{{"event": "ready"}}\n')
 while True:
-    os.write(write, b'{"event": "done"}\n' * 100)
+    os.write(write, b'{DONE}' * 100)
 """)
     program.wait_ready()
 
