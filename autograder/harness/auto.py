@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any, TypeVar
 
 from rclpy.node import Node
@@ -19,7 +18,6 @@ from rclpy.node import Node
 from autograder.exceptions import StudentError
 from autograder.harness.base import Harness
 from autograder.harness.goals import Goal, Stamped
-from autograder.harness.grader_node import Handler
 from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
@@ -40,42 +38,43 @@ AnyHarness = TypeVar("AnyHarness", bound=Harness)
 class AutoHarness:
     """A `SteppedHarness` for programs that can be stepped, else a `RealTimeHarness`; made like these, used like these.
 
-    What is not documented here is as in `Harness`.
-
     Attributes:
         time: "lockstep" or "real".
+        optional: executables that may fail: the others run on without them.
     """
 
-    def __init__(
-        self,
-        workspace: Workspace,
-        package: str = "",
-        executable: str = "",
-        *,
-        programs: tuple[Program, ...] = (),
-        offers: Mapping[str, type] | None = None,
-        listens: Mapping[str, type] | None = None,
-        arguments: tuple[str, ...] = (),
-        files: Mapping[str, str] | None = None,
-    ) -> None:
-        def make(kind: type[AnyHarness]) -> AnyHarness:
-            return kind(
-                workspace,
-                package,
-                executable,
-                programs=programs,
-                offers=offers,
-                listens=listens,
-                arguments=arguments,
-                files=files,
-            )
+    # What it has of the harness that was chosen, by `__getattr__`.
+    node: Node
+    tick_ns: int
+    now_ns: int
+    seconds: float
+    process: Process
+    processes: tuple[Process, ...]
+    running: frozenset[str]
+    output: str
+    discovery_seconds: float
+    nodes: Callable[[], list[str]]
+    takes: Callable[[str], bool]
+    publish: Callable[[str, Any], None]
+    messages: Callable[..., list[Stamped]]
+    rate: Callable[..., float]
+    step: Callable[[int], None]
+    run: Callable[[float], None]
+    until: Callable[[Callable[[], bool], float], bool]
+    wait_for: Callable[[Callable[[], bool], float], bool]
+    call: Callable[..., Any]
+    send_goal: Callable[..., Goal]
 
-        self._make_plain = make
-        self._workspace = workspace
-        self._handlers: dict[str, tuple[Any, Handler]] = {}
+    def __init__(self, workspace: Workspace, *names: str, **options: Any) -> None:
+        self._workspace, self._names, self._options = workspace, names, options
         self._optional: frozenset[str] = frozenset()
         self._entered: Harness | None = None
         self.time = LOCKSTEP
+
+    def __getattr__(self, name: str) -> Any:
+        if self._entered is None:
+            raise RuntimeError(f"{type(self).__name__} is used before it is entered: write `with ... as harness`")
+        return getattr(self._entered, name)
 
     def __enter__(self: AnyAuto) -> AnyAuto:
         stepped = self._make(SteppedHarness)
@@ -86,12 +85,19 @@ class AutoHarness:
         self._entered = (self._make(RealTimeHarness) if reasons else stepped).__enter__()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._harness.__exit__(kind, error, trace)
+    def __exit__(self, *ending: Any) -> None:
+        if self._entered is not None:
+            self._entered.__exit__(*ending)
 
-    # What it has beyond a harness of either kind.
+    @property
+    def optional(self) -> frozenset[str]:
+        return self._optional
+
+    @optional.setter
+    def optional(self, executables: frozenset[str]) -> None:
+        self._optional = executables
+        if self._entered is not None:
+            self._entered.optional = executables
 
     @property
     def next_ns(self) -> int:
@@ -103,114 +109,11 @@ class AutoHarness:
         if self.time == REAL:
             self.until(condition, seconds)
 
-    # What can be set before it is entered.
-
-    @property
-    def optional(self) -> frozenset[str]:
-        """Executables that may fail: the others run on without them."""
-        return self._optional
-
-    @optional.setter
-    def optional(self, executables: frozenset[str]) -> None:
-        self._optional = executables
-        if self._entered is not None:
-            self._entered.optional = executables
-
-    def serve(self, service_type: Any, name: str, handler: Handler) -> None:
-        if self._entered is None:
-            self._handlers[name] = service_type, handler
-        else:
-            self._entered.serve(service_type, name, handler)
-
-    # What it passes on to the harness that was chosen.
-
-    @property
-    def node(self) -> Node:
-        return self._harness.node
-
-    @property
-    def tick_ns(self) -> int:
-        return self._harness.tick_ns
-
-    @property
-    def now_ns(self) -> int:
-        return self._harness.now_ns
-
-    @property
-    def seconds(self) -> float:
-        return self._harness.seconds
-
-    @property
-    def processes(self) -> tuple[Process, ...]:
-        return self._harness.processes
-
-    @property
-    def process(self) -> Process:
-        return self._harness.process
-
-    @property
-    def running(self) -> frozenset[str]:
-        return self._harness.running
-
-    @property
-    def output(self) -> str:
-        return self._harness.output
-
-    @property
-    def discovery_seconds(self) -> float:
-        return self._harness.discovery_seconds
-
-    def nodes(self) -> list[str]:
-        return self._harness.nodes()
-
-    def takes(self, topic: str) -> bool:
-        return self._harness.takes(topic)
-
-    def publish(self, topic: str, message: Any) -> None:
-        self._harness.publish(topic, message)
-
-    def messages(self, topic: str, **bounds: float) -> list[Stamped]:
-        return self._harness.messages(topic, **bounds)
-
-    def rate(self, topic: str, since: float) -> float:
-        return self._harness.rate(topic, since)
-
-    def step(self, dt_ns: int) -> None:
-        self._harness.step(dt_ns)
-
-    def run(self, seconds: float) -> None:
-        self._harness.run(seconds)
-
-    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        return self._harness.until(condition, seconds)
-
-    def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        return self._harness.wait_for(condition, seconds)
-
-    def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
-        return self._harness.call(service_type, name, request, seconds)
-
-    def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
-        return self._harness.send_goal(action_type, name, goal, seconds)
-
-    @property
-    def _harness(self) -> Harness:
-        """The harness that was chosen.
-
-        Raises:
-            RuntimeError: this harness is not entered.
-        """
-        if self._entered is None:
-            raise RuntimeError(f"{type(self).__name__} is used before it is entered: write `with ... as harness`")
-        return self._entered
-
     # The choice.
 
     def _make(self, kind: type[AnyHarness]) -> AnyHarness:
-        harness = self._make_plain(kind)
+        harness = kind(self._workspace, *self._names, **self._options)
         harness.optional = self._optional
-        for name, (service_type, handler) in self._handlers.items():
-            harness.serve(service_type, name, handler)
         return harness
 
     def _reasons(self, programs: tuple[Program, ...]) -> dict[str, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import shutil
 import time
 from abc import ABC, abstractmethod
 from bisect import bisect_right
@@ -17,11 +16,12 @@ from typing import Any, TypeVar
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness.goals import Actions, Goal, Stamped
-from autograder.harness.grader_node import NAME, GraderNode, Handler, OnMessage
-from autograder.harness.programs import Program, write_files
+from autograder.harness.grader_node import NAME, GraderNode, OnMessage
+from autograder.harness.programs import Program
 from autograder.harness.steps import TICK_NS
+from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
-from autograder.sandbox import Process
+from autograder.sandbox import Mount, Process
 from autograder.workspace import Workspace
 
 MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
@@ -52,8 +52,7 @@ class Harness(ABC):
         programs: several programs, which talk with each other as well.
         offers: topics that the grader publishes, with their types.
         listens: topics that the grader subscribes to, with their types.
-        arguments: of the one program; "{files}" in them is replaced by the folder of `files`.
-        files: texts by name, which the programs can read.
+        arguments: of the one program.
 
     Attributes:
         node: the grader's node; its graph functions show what the student's programs really offer.
@@ -76,19 +75,17 @@ class Harness(ABC):
         offers: Mapping[str, type] | None = None,
         listens: Mapping[str, type] | None = None,
         arguments: tuple[str, ...] = (),
-        files: Mapping[str, str] | None = None,
     ) -> None:
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
         # Two harnesses may be open at once, with programs of the same names: each has a ROS domain of its own.
         self._domain = Domain(workspace.domain + next(_NUMBERS))
         self._workspace = replace(workspace, domain=self._domain.number)
-        self._sandbox = self._workspace.sandbox()
+        plain = self._workspace.sandbox()
+        often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # who start together find each other at once
+        self._sandbox = replace(plain, mounts=(*plain.mounts, Mount(PROFILES)), environment=often)
         self._offers, self._listens = dict(offers or {}), dict(listens or {})
         self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
-        self._services: dict[str, tuple[Any, Handler]] = {}
-        self._files, self._folder = dict(files or {}), ""
-        self._inside = False
 
     # What each kind of harness defines.
 
@@ -138,11 +135,7 @@ class Harness(ABC):
         self._grader_node = GraderNode(self._domain.number)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
-        self._inside = True
         try:
-            self._sandbox, self._folder = write_files(self._files, self._workspace, self._sandbox)
-            for name, (kind, handler) in self._services.items():
-                self._grader_node.serve(kind, name, handler)
             self._start()
             self._match()
         except BaseException:
@@ -153,10 +146,8 @@ class Harness(ABC):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._inside = False
         self._grader_node.close()
         self._domain.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
 
     @property
     def process(self) -> Process:
@@ -219,19 +210,6 @@ class Harness(ABC):
             return None
         self._grader_node.ask(service_type, name, request, answers.append)
         return answers[0] if self.until(lambda: bool(answers), began + seconds - self.seconds) else None
-
-    def serve(self, service_type: Any, name: str, handler: Handler) -> None:
-        """Offer a service to the student's programs; before the harness is entered, it is there when they start.
-
-        Args:
-            service_type: its class.
-            name: the service.
-            handler: gets a request and returns a response, or None for a service that never answers.
-        """
-        self._services[name] = service_type, handler
-        if self._inside:
-            self._grader_node.serve(service_type, name, handler)
-            self._match()
 
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
         """Send a goal to an action server of the student's; it advances while the programs run on.

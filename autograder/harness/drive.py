@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -12,6 +11,8 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.harness.auto import AutoHarness
+from autograder.harness.base import Harness
 from autograder.harness.goals import Stamped
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
@@ -24,25 +25,6 @@ SCAN_SECONDS = SCAN_NS / 1e9
 
 ScanFilter = Callable[[Scan, float], Scan | None]
 """Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
-
-
-class Steppable(Protocol):
-    """What driving needs of a harness: `Harness` and `AutoHarness` have it."""
-
-    @property
-    def tick_ns(self) -> int: ...
-
-    @property
-    def now_ns(self) -> int: ...
-
-    @property
-    def output(self) -> str: ...
-
-    def publish(self, topic: str, message: Any) -> None: ...
-
-    def messages(self, topic: str) -> list[Stamped]: ...
-
-    def step(self, dt_ns: int) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -61,7 +43,7 @@ class Drive:
 
 
 def drive(
-    harness: Steppable,
+    harness: Harness | AutoHarness,
     simulation: Simulation,
     seconds: float,
     *,
@@ -119,7 +101,7 @@ def _move(simulation: Simulation, state: State, command: Command | None, target_
 
 
 def _sense(
-    harness: Steppable,
+    harness: Harness | AutoHarness,
     simulation: Simulation,
     state: State,
     origin: int,

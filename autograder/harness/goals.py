@@ -10,6 +10,8 @@ from typing import Any
 from action_msgs.msg import GoalInfo, GoalStatus
 from action_msgs.srv import CancelGoal
 
+from autograder.harness.grader_node import requested_qos
+
 
 @dataclass(frozen=True)
 class Stamped:
@@ -64,8 +66,8 @@ class Actions:
             self._names.add(name)
             feedback, status = f"{name}/_action/feedback", f"{name}/_action/status"
             peers = self._grader_node.publishers_of(feedback)
-            self._grader_node.subscribe(feedback, kind.Impl.FeedbackMessage, self._on_feedback, peers)
-            self._grader_node.subscribe(status, kind.Impl.GoalStatusMessage, self._on_status, [])
+            self._grader_node.subscribe(feedback, kind.Impl.FeedbackMessage, self._on_feedback, requested_qos(peers))
+            self._grader_node.subscribe(status, kind.Impl.GoalStatusMessage, self._on_status, requested_qos([]))
         return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in _services(kind).items()]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:

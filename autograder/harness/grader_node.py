@@ -1,4 +1,4 @@
-"""The grader's node: its publishers, subscriptions, clients and services.
+"""The grader's node: its publishers, subscriptions and clients.
 
 It counts by channel what it has sent and what it has taken, as the programs do (see `lockstep_host`). So a harness
 in lockstep knows when it has taken all that was sent to it.
@@ -24,17 +24,16 @@ from autograder.ros.discovery import announcing_often
 DEPTH = 1000
 NAME = "grader"
 
-Handler = Callable[[Any], Any]
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
 
 
 @dataclass(eq=False)
 class Reader:
-    """A subscription, client or service of the grader's: something that takes messages.
+    """A subscription or client of the grader's: something that takes messages.
 
     Attributes:
-        kind: subscription, client or service.
+        kind: subscription or client.
         channels: what it takes.
         entity: rclpy's object.
         take: takes one message and handles it; False when there is none.
@@ -112,18 +111,17 @@ class GraderNode:
         """
         peers = self.publishers_of(topic)
         if topic not in self.subscribed() and _have_type(kind, peers):
-            self.subscribe(topic, kind, receive, peers)
+            self.subscribe(topic, kind, receive, requested_qos(peers))
 
-    def subscribe(self, topic: str, kind: Any, receive: OnMessage, peers: list[Any]) -> None:
+    def subscribe(self, topic: str, kind: Any, receive: OnMessage, qos: QoSProfile) -> None:
         """Make a subscription.
 
         Args:
             topic: its name.
             kind: the message class.
             receive: called with each message.
-            peers: the publishers that it is compatible with, as `publishers_of` returns them.
+            qos: its profile.
         """
-        qos = requested_qos(peers)
         subscription = self.node.create_subscription(kind, topic, receive, qos)
 
         def take() -> bool:
@@ -181,28 +179,6 @@ class GraderNode:
         self._waiting[(id(client), sequence)] = then
         self.sent[channels.request(name, kind)] += 1
 
-    def serve(self, kind: Any, name: str, handler: Handler) -> None:
-        """Offer a service.
-
-        Args:
-            kind: its class.
-            name: the service.
-            handler: gets a request and returns the response, or None to leave it unanswered.
-        """
-        service = self.node.create_service(kind, name, lambda request, response: response)
-
-        def take() -> bool:
-            request, header = service.handle.service_take_request(kind.Request)
-            if header is None:
-                return False
-            answer = handler(request)
-            if answer is not None:
-                service.send_response(answer, header)
-                self.sent[channels.response(name, kind, channels.client_prefix(header.request_id))] += 1
-            return True
-
-        self.readers.append(Reader("service", (channels.request(name, kind),), service, take))
-
     def clients(self) -> list[tuple[str, Any]]:
         """Return each client with the channel of its requests."""
         return [(channel, client) for (_, channel), client in self._clients.items()]
@@ -248,15 +224,11 @@ class GraderNode:
         readers = list(self.readers)
         numbers = Counter(reader.kind for reader in readers)
         wait_set = rclpy_implementation.WaitSet(
-            numbers["subscription"], 1, 0, numbers["client"], numbers["service"], 0, self.context.handle
+            numbers["subscription"], 1, 0, numbers["client"], 0, 0, self.context.handle
         )
         wait_set.clear_entities()
         wait_set.add_guard_condition(self._unused_guard.handle)  # a wait set must not be empty
-        add = {
-            "subscription": wait_set.add_subscription,
-            "client": wait_set.add_client,
-            "service": wait_set.add_service,
-        }
+        add = {"subscription": wait_set.add_subscription, "client": wait_set.add_client}
         for reader in readers:
             add[reader.kind](reader.entity.handle)
         wait_set.wait(int(timeout * 1e9))

@@ -16,19 +16,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import rclpy
 from rcl_interfaces.srv import GetParameters
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 import autograder
 from autograder.exceptions import StudentError
-from autograder.harness.grader_node import DEPTH, NAME
+from autograder.harness.grader_node import DEPTH, GraderNode, OnMessage
 from autograder.lockstep.failures import diagnose_ending
-from autograder.ros.discovery import announcing_often
 from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
@@ -125,15 +120,10 @@ class LaunchHarness:
         self._status_text = b""
 
     def __enter__(self) -> LaunchHarness:
-        self._context = Context()
-        with announcing_often():  # launched nodes come when they come
-            rclpy.init(args=[], context=self._context, domain_id=self._domain.number)
-            self.node = Node(NAME, context=self._context, enable_rosout=False, start_parameter_services=False)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self.node)
+        self._grader_node = GraderNode(self._domain.number)
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._listens.items():
-            self.node.create_subscription(kind, topic, self._received[topic].append, profile)
+            self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
         self._pipe, theirs = os.pipe()
         os.set_blocking(self._pipe, False)
         try:
@@ -174,7 +164,7 @@ class LaunchHarness:
         deadline = time.monotonic() + seconds
         while True:
             over = time.monotonic() > deadline or self.status is not None
-            self._executor.spin_once(timeout_sec=0.0 if over else _POLL_SECONDS)
+            self._grader_node.spin(0.0 if over else _POLL_SECONDS)
             if condition():
                 return True
             if self.process.ending is not None:
@@ -188,16 +178,15 @@ class LaunchHarness:
 
     def nodes(self) -> list[str]:
         """Return the full names of the nodes that are seen now; a name that several nodes have comes as often."""
-        found = self.node.get_node_names_and_namespaces()
-        return sorted(_full(name, space) for name, space in found if (name, space) != (NAME, "/") and name[0] != "_")
+        return [name for name in self._grader_node.other_nodes() if "/_" not in name]
 
     def publishers(self, topic: str) -> list[str]:
         """Return the full names of the nodes that publish on `topic`, but for the grader's own."""
-        return _others(self.node.get_publishers_info_by_topic(topic))
+        return _names_of(self._grader_node.publishers_of(topic))
 
     def subscribers(self, topic: str) -> list[str]:
         """Return the full names of the nodes that subscribe to `topic`, but for the grader's own."""
-        return _others(self.node.get_subscriptions_info_by_topic(topic))
+        return _names_of(self._grader_node.subscriptions_of(topic))
 
     def messages(self, topic: str) -> list[Any]:
         """Return the messages that came on a topic of `listens`."""
@@ -214,11 +203,17 @@ class LaunchHarness:
         Returns:
             Values by name, None for one that the node has not declared; or None if it does not answer.
         """
-        values = self._ask(node, names, seconds)
-        if values is None or len(values) == len(names):
-            return values
-        # A node that lacks one of the parameters answers with no value at all.
-        return {name: (self._ask(node, (name,), seconds) or {}).get(name) for name in names}
+        values: dict[str, Any] = {}
+        service, answers = f"{node}/get_parameters", list[Any]()
+        if not self.wait_for(self._grader_node.client(GetParameters, service).service_is_ready, seconds):
+            return None
+        for name in names:
+            # One request each: a node that lacks one of the parameters answers with no value at all.
+            self._grader_node.ask(GetParameters, service, GetParameters.Request(names=[name]), answers.append)
+            if not self.wait_for(lambda: len(answers) > len(values), seconds):
+                return None
+            values[name] = next(map(parameter_value_to_python, answers[-1].values), None)
+        return values
 
     def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids."""
@@ -258,32 +253,16 @@ class LaunchHarness:
 
     def _leave(self) -> None:
         os.close(self._pipe)
-        self._executor.shutdown(timeout_sec=0)
-        self.node.destroy_node()
-        self._context.try_shutdown()
+        self._grader_node.close()
         self._domain.close()
 
-    def _ask(self, node: str, names: Collection[str], seconds: float) -> dict[str, Any] | None:
-        client = self.node.create_client(GetParameters, f"{node}/get_parameters")
-        try:
-            if not self.wait_for(client.service_is_ready, seconds):
-                return None
-            future = client.call_async(GetParameters.Request(names=list(names)))
-            if not self.wait_for(future.done, seconds):
-                return None
-            values = [parameter_value_to_python(value) for value in future.result().values]
-        finally:
-            self.node.destroy_client(client)
-        return dict(zip(names, values, strict=False))
+
+def _keep_in(received: list[Any]) -> OnMessage:
+    return lambda message, arrived_ns: received.append(message)
 
 
-def _full(name: str, space: str) -> str:
-    return f"{space.rstrip('/')}/{name}"
-
-
-def _others(endpoints: list[Any]) -> list[str]:
-    full = (_full(found.node_name, found.node_namespace) for found in endpoints)
-    return sorted(name for name in full if name != f"/{NAME}")
+def _names_of(endpoints: list[Any]) -> list[str]:
+    return sorted(f"{found.node_namespace.rstrip('/')}/{found.node_name}" for found in endpoints)
 
 
 def _command_of(pid: int) -> list[str]:

@@ -13,8 +13,7 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
     readers = [reader.channels for reader in grader_node.readers if reader.kind == "subscription"]
     readers = [*(names for program in programs for names, _ in program.readers), *readers]
     writers = [*(name for program in programs for name, _ in program.writers), *grader_node.written.values()]
-    answered = [reader.channels[0] for reader in grader_node.readers if reader.kind == "service"]
-    served = {*answered, *(name for program in programs for name in program.servers)}
+    served = {name for program in programs for name in program.servers}
 
     def subscriptions(channel: str) -> int:
         return sum(channel in names for names in readers)

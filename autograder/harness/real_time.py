@@ -33,7 +33,7 @@ class RealTimeHarness(Harness):
     def _start(self) -> None:
         self._began = time.monotonic()
         for program, path in zip(self.programs, self._paths, strict=True):
-            command = [sys.executable, str(path), *program.words(self._folder)]
+            command = [sys.executable, str(path), *program.arguments]
             self._running = [*self._running, (program, launch(command, self._sandbox))]
         up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
         if not up and len(self.nodes()) < len(self.running - self.optional):

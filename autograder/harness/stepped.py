@@ -72,8 +72,7 @@ class SteppedHarness(Harness):
         self.notes: dict[str, str] = {}
         self._delivery_seconds_left = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
-            arguments = program.words(self._folder)
-            stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=arguments)
+            stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=program.arguments)
             self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
         for stepped in self._stepped:
             with suppress(_OptionalProgramLost), self._attributing(stepped):
@@ -132,11 +131,6 @@ class SteppedHarness(Harness):
                 return False
             self.step(min(self.tick_ns, end - self._now_ns))
         return True
-
-    def quit(self) -> int | None:
-        """Interrupt the programs as Ctrl-C does; return the first one's exit status, None if it did not stop."""
-        statuses = [stepped.stepper.quit() for stepped in self._stepped]
-        return statuses[0]
 
     # Rounds.
 
@@ -229,10 +223,9 @@ class SteppedHarness(Harness):
         for reader in self._grader_node.readers:
             if reader.new:
                 reader.new = False
-                source = [
-                    d.early if reader.kind == "service" else d.kept if reader.latched else {} for d in descriptions
-                ]
-                reader.expected += sum(_sum(source)[channel] for channel in reader.channels)
+                if reader.latched:
+                    kept = _sum(description.kept for description in descriptions)
+                    reader.expected += sum(kept[channel] for channel in reader.channels)
         self._collect()
 
     def _topics(self) -> tuple[set[str], set[str]]:

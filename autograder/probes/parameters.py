@@ -13,15 +13,15 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import yaml
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically
-from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 
 from autograder.checks import CheckFailed
+from autograder.harness import AutoHarness, Harness
 
 Value = bool | int | float | str | list[object] | None
 
@@ -37,15 +37,6 @@ TYPES = {
     ParameterType.PARAMETER_DOUBLE: "a double",
     ParameterType.PARAMETER_STRING: "a string",
 }
-
-
-class ServiceCaller(Protocol):
-    """What asking for parameters needs of a harness: `Harness` and `AutoHarness` have it."""
-
-    @property
-    def node(self) -> Node: ...
-
-    def call(self, service_type: Any, name: str, request: Any, seconds: float) -> Any: ...
 
 
 @dataclass(frozen=True)
@@ -70,7 +61,7 @@ class NodeParameters:
         node: its fully qualified name.
     """
 
-    harness: ServiceCaller
+    harness: Harness | AutoHarness
     node: str
 
     def names(self) -> frozenset[str]:

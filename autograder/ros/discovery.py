@@ -8,18 +8,12 @@ looks at a graph, or waits for nodes that start one after another, announces its
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 PROFILES_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
-PROFILES = """<?xml version="1.0" encoding="UTF-8"?>
-<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
-  <participant profile_name="announces often" is_default_profile="true"><rtps><builtin><discovery_config>
-    <leaseAnnouncement><sec>0</sec><nanosec>100000000</nanosec></leaseAnnouncement>
-  </discovery_config></builtin></rtps></participant>
-</profiles></dds>
-"""
+PROFILES = Path(__file__).with_name("announces_often.xml")
 
 
 @contextmanager
@@ -32,11 +26,8 @@ def announcing_often() -> Iterator[None]:
     if PROFILES_VARIABLE in os.environ:
         yield
         return
-    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
-        file.write(PROFILES)
-        file.flush()
-        os.environ[PROFILES_VARIABLE] = file.name
-        try:
-            yield
-        finally:
-            del os.environ[PROFILES_VARIABLE]
+    os.environ[PROFILES_VARIABLE] = str(PROFILES)
+    try:
+        yield
+    finally:
+        del os.environ[PROFILES_VARIABLE]

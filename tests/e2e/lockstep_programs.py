@@ -69,6 +69,35 @@ class Server(Speaker):
 spin(Server)
 """
 
+LATE_SERVER = """
+class Server(Node):
+    def __init__(self):
+        super().__init__('server')
+        self.calls = 0
+        self.begins = self.create_timer(0.2, self.begin)
+
+    def begin(self):
+        self.begins.cancel()
+        self.create_service(Trigger, 'ask', self.answer)
+
+    def answer(self, request, response):
+        self.calls += 1
+        response.message = f'{self.calls}'
+        return response
+
+spin(Server)
+"""
+
+BUSY_SERVER = """
+class Server(Node):
+    def __init__(self):
+        super().__init__('server')
+        self.create_service(Trigger, 'ask', lambda request, response: response)
+        self.create_timer(0.01, lambda: time.sleep(100.0))
+
+spin(Server)
+"""
+
 ACTION_SERVER = """
 from lockstep_interfaces.action import Count
 class Counter(Speaker):

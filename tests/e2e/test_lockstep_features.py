@@ -55,32 +55,15 @@ def twice(run: Any) -> Any:
     return first
 
 
-def open_lab(workspace: Any, *names: str, serves: Any = None, real: bool = False, **options: Any) -> Any:
+def open_lab(workspace: Any, *names: str, real: bool = False, **options: Any) -> Any:
     """Return a harness, in lockstep unless it is to be real time, with some of the programs; the grader hears /said."""
     from std_msgs.msg import String
-    from std_srvs.srv import Trigger
 
     from autograder.harness import Program, RealTimeHarness, SteppedHarness
 
     listens = {"/said": String, **options.pop("listens", {})}
     kind = RealTimeHarness if real else SteppedHarness
-    harness = kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
-    if serves is not None:
-        harness.serve(Trigger, "/ask", serves)
-    return harness
-
-
-def answering() -> Any:
-    """Return a handler that counts its calls."""
-    from std_srvs.srv import Trigger
-
-    calls: list[Any] = []
-
-    def answer(request: Any) -> Any:
-        calls.append(request)
-        return Trigger.Response(success=True, message=str(len(calls)))
-
-    return answer
+    return kind(workspace, programs=tuple(Program("pkg", name) for name in names), listens=listens, **options)
 
 
 def server(scratch: Path) -> Any:
@@ -121,20 +104,17 @@ def given(scratch: Path) -> Any:
     from autograder.harness import RealTimeHarness, SteppedHarness
 
     workspace = write_workspace(scratch, node=programs.SERVER)
-    arguments = ("--ros-args", "-r", "__node:=driver", "--params-file", "{files}/speed.yaml")
-    files = {"speed.yaml": "driver:\n  ros__parameters:\n    speed: 0.25\n"}
+    arguments = ("--ros-args", "-r", "__node:=driver", "-p", "speed:=0.25")
     found = []
     for kind in (SteppedHarness, RealTimeHarness):
-        with kind(workspace, "pkg", "node", arguments=arguments, files=files) as harness:
+        with kind(workspace, "pkg", "node", arguments=arguments) as harness:
             got = harness.call(GetParameters, "/driver/get_parameters", GetParameters.Request(names=["speed"]))
             found.append([harness.nodes(), got.values[0].double_value])
-    return found, [path.name for path in workspace.root.iterdir()]
+    return found
 
 
-def test_a_program_reads_the_files_that_the_grader_gives_it_and_none_are_left() -> None:
-    found, left = in_cell(given)
-    assert found == [[["/driver"], 0.25]] * 2
-    assert left == ["install"]
+def test_a_program_gets_its_arguments_in_lockstep_and_in_real_time() -> None:
+    assert in_cell(given) == [[["/driver"], 0.25]] * 2
 
 
 def goals(scratch: Path, program: str) -> Any:
@@ -180,12 +160,12 @@ def test_an_action_gives_feedback_and_a_result_in_ros_time(name: str) -> None:
 
 
 def clients(scratch: Path) -> Any:
-    workspace = write_workspace(scratch)
+    workspace = write_workspace(scratch, server=programs.SERVER)
 
     def run(name: str) -> Any:
-        with open_lab(workspace, "node", serves=answering()) as harness:
+        with open_lab(workspace, "node", "server") as harness:
             harness.run(1.6)
-            return said(harness)
+            return [[seconds, text] for seconds, text in said(harness) if not text.startswith("server")]
 
     found = {}
     for name, text in programs.CLIENTS.items():
@@ -206,15 +186,11 @@ def test_a_client_gets_its_answers_at_once_however_it_waits_for_them() -> None:
 
 
 def late(scratch: Path) -> Any:
-    from std_srvs.srv import Trigger
-
-    workspace = write_workspace(scratch, node=programs.PATIENT)
+    workspace = write_workspace(scratch, node=programs.PATIENT, server=programs.LATE_SERVER)
 
     def run() -> Any:
-        with open_lab(workspace, "node") as harness:
-            harness.run(0.2)
-            harness.serve(Trigger, "/ask", answering())
-            harness.run(0.2)
+        with open_lab(workspace, "node", "server") as harness:
+            harness.run(0.4)
             return said(harness)
 
     return twice(run)
@@ -230,10 +206,10 @@ def test_a_service_that_comes_later_is_there_from_the_next_step_on() -> None:
 
 
 def unanswered(scratch: Path) -> Any:
-    workspace = write_workspace(scratch, node=programs.GIVES_UP)
+    workspace = write_workspace(scratch, node=programs.GIVES_UP, server=programs.BUSY_SERVER)
 
     def run() -> Any:
-        with open_lab(workspace, "node", serves=lambda request: None) as harness:
+        with open_lab(workspace, "node", "server") as harness:
             harness.run(1.2)
             return said(harness)
 
@@ -368,12 +344,12 @@ def test_clients_of_two_programs_share_a_service_and_a_busy_machine_changes_noth
     assert got == [1, 2, 3, 4, 5, 6]
 
 
-def failing(scratch: Path, texts: dict[str, str], serves: bool) -> list[str]:
+def failing(scratch: Path, texts: dict[str, str]) -> list[str]:
     from autograder.exceptions import StudentError
 
     workspace = write_workspace(scratch, **texts)
     try:
-        with open_lab(workspace, *texts, serves=answering() if serves else None) as harness:
+        with open_lab(workspace, *texts) as harness:
             harness.run(2.0)
     except StudentError as error:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
@@ -383,20 +359,20 @@ def failing(scratch: Path, texts: dict[str, str], serves: bool) -> list[str]:
 @pytest.mark.parametrize("name", programs.DEADLOCKS)
 def test_a_deadlock_is_told_at_once_and_why(name: str) -> None:
     text, words = programs.DEADLOCKS[name]
-    kind, sentence = in_cell(failing, {"node": text}, True)
+    kind, sentence = in_cell(failing, {"node": text, "server": programs.SERVER})
     assert kind == "stuck"
     assert words in sentence
 
 
 def test_programs_that_answer_each_other_for_ever_are_stopped() -> None:
-    kind, sentence = in_cell(failing, pong("int(m.data)", "10"), False)
+    kind, sentence = in_cell(failing, pong("int(m.data)", "10"))
     assert kind == "stuck"
     assert "would go on for ever" in sentence
 
 
 def test_of_several_programs_the_one_that_crashes_is_named() -> None:
     texts = {"server": programs.SERVER, "broken": "raise ValueError('no lidar')"}
-    kind, sentence = in_cell(failing, texts, False)
+    kind, sentence = in_cell(failing, texts)
     assert kind == "crashed_at_import"
     assert sentence.startswith("broken: Your module could not be imported: ValueError: no lidar")
 
