@@ -13,9 +13,7 @@ from __future__ import annotations
 import json
 import math
 import os
-import selectors
 import sys
-import time
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -130,21 +128,17 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     spec = workspace.sandbox(CALLS)
     spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(CALLER)))
     order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
-    read_fd, write_fd = os.pipe()
-    order_read, order_write = os.pipe()
-    command = [sys.executable, str(CALLER), str(order_read), str(write_fd)]
-    try:
-        process = launch(command, spec, pass_fds=(write_fd, order_read), profile="tests")
-    finally:
-        os.close(write_fd)
-        os.close(order_read)
-    with process:
-        _write(order_write, order)
-        text = _read(read_fd, time.monotonic() + CALLS.wall_seconds)
-        process.wait(CALLS.wall_seconds)
-        answer = _parse(text)
-        if answer is None:
-            raise StudentError(diagnose_ending(process))
+    with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
+        given.write(order.encode())
+        given.seek(0)
+        descriptors = given.fileno(), taken.fileno()
+        command = [sys.executable, str(CALLER), *map(str, descriptors)]
+        with launch(command, spec, pass_fds=descriptors, profile="tests") as process:
+            process.wait(CALLS.wall_seconds + 10)
+            taken.seek(0)
+            answer = _parse(taken.read(MAX_ANSWER + 1))
+            if answer is None:
+                raise StudentError(diagnose_ending(process))
     if "failed" in answer:
         raise StudentError(_not_imported(module, answer["failed"]))
     outcomes = answer.get("outcomes")
@@ -181,30 +175,6 @@ def same(one: Any, other: Any) -> bool:
 
 def _plain(step: Step) -> dict[str, Any]:
     return {**asdict(step), "kwargs": dict(step.kwargs)}
-
-
-def _write(fd: int, text: str) -> None:
-    """Write a text and close the pipe; a process that has ended reads none of it."""
-    with os.fdopen(fd, "w", encoding="utf-8") as stream:
-        try:
-            stream.write(text)
-            stream.flush()
-        except BrokenPipeError:
-            return
-
-
-def _read(fd: int, deadline: float) -> bytes:
-    """Read to the end of the stream, to the deadline or to `MAX_ANSWER`."""
-    data = bytearray()
-    with selectors.DefaultSelector() as selector:
-        selector.register(fd, selectors.EVENT_READ)
-        while len(data) <= MAX_ANSWER and selector.select(max(0.0, deadline - time.monotonic())):
-            chunk = os.read(fd, 65536)
-            if not chunk:
-                break
-            data += chunk
-    os.close(fd)
-    return bytes(data)
 
 
 def _parse(text: bytes) -> dict[str, Any] | None:

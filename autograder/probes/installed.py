@@ -5,7 +5,6 @@ Only plain files are read. No link is followed out of the install space, and not
 
 from __future__ import annotations
 
-import configparser
 import os
 import stat
 from collections.abc import Mapping
@@ -33,7 +32,6 @@ class Installed:
         marker: whether the ament index knows the package.
         shared: paths below share/PACKAGE, without what colcon itself puts there.
         recorded: what setup.py itself installed, below the prefix; colcon puts a marker and package.xml beside it.
-        scripts: the console scripts, each name with its `module:function`.
         extras: the requirements of each extra, such as `test`.
         metadata: headers such as Version, License, Maintainer-email.
     """
@@ -46,7 +44,6 @@ class Installed:
     marker: bool
     shared: tuple[str, ...]
     recorded: frozenset[str]
-    scripts: Mapping[str, str]
     extras: Mapping[str, tuple[str, ...]]
     metadata: Mapping[str, str]
 
@@ -78,7 +75,6 @@ def look(install: Path, package: str) -> Installed:
         marker=read_plain(prefix / INDEX / package, MAX_BYTES) is not None,
         shared=tuple(name for name in _files(share) if not _of_colcon(name)),
         recorded=_recorded(install, package),
-        scripts=_scripts(_joined(own, "entry_points.txt")),
         extras=_extras(_joined(own, "requires.txt")),
         metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
     )
@@ -131,16 +127,6 @@ def _module(file: str) -> str | None:
 
 def _of_colcon(name: str) -> bool:
     return name.startswith("hook/") or (name.startswith("package.") and name != "package.xml")
-
-
-def _scripts(text: str) -> dict[str, str]:
-    parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
-    parser.optionxform = str  # type: ignore[assignment, method-assign]
-    try:
-        parser.read_string(text)
-        return dict(parser["console_scripts"]) if "console_scripts" in parser else {}
-    except configparser.Error:
-        return {}
 
 
 def _extras(text: str) -> dict[str, tuple[str, ...]]:

@@ -14,6 +14,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
 from autograder.lockstep.tracebacks import with_source_paths
+from autograder.probes.parameters import Value, same
 from autograder.workspace import Workspace
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
@@ -152,7 +153,7 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
     raise CheckFailed(" ".join(filter(None, parts)))
 
 
-def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, object]) -> None:
+def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Value]) -> None:
     """Fail the check unless a node has these parameters; numbers are compared to nine digits, types exactly.
 
     Args:
@@ -170,7 +171,7 @@ def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, ob
         )
     for name, value in wanted.items():
         given = found[name]
-        expect(_same(given, value), f"{node} has {name} = {given!r}, instead of {value!r}.")
+        expect(same(given, value), f"{node} has {name} = {given!r}, instead of {value!r}.")
 
 
 def expect_clean_stop(harness: LaunchHarness) -> None:
@@ -280,12 +281,6 @@ def _with_line(argument: Argument, line: str) -> Argument:
         argument = replace(argument, choices=tuple(_QUOTED.findall(match["choices"])))
     said = "" if words == "no description given" else f"{argument.description} {words}".strip()
     return replace(argument, description=said)
-
-
-def _same(given: object, wanted: object) -> bool:
-    if isinstance(given, float) and isinstance(wanted, float):
-        return abs(given - wanted) <= 1e-9
-    return type(given) is type(wanted) and given == wanted
 
 
 def _base(name: str) -> str:

@@ -1,10 +1,10 @@
 """Runs pytest in the sandbox, reports how it ended, and stays until the trusted side has looked at what is left.
 
-    python pytest_host.py ANSWER_FD GO_FD REVERSED REPORT ARGUMENTS...
+    python pytest_host.py REPORT_FD STATUS_FD GO_FD REVERSED ARGUMENTS...
 
-When pytest has ended, its exit status and its report, a file of JUnit XML, go to ANSWER_FD; the process then waits for
-the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears for their
-claim.
+When pytest has ended, its report of JUnit XML goes to REPORT_FD and its exit status to STATUS_FD; the process then
+waits for the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears
+for their claim.
 
 Where this process was forked with the launch packages, what the tests launch is forked, too. The generator of messages
 is not imported, which a message's module does if it can.
@@ -33,15 +33,15 @@ class Reversed:
 
 def main() -> None:
     """Run pytest with the arguments of the command line."""
-    answer, go, backwards = (int(argument) for argument in sys.argv[1:4])
-    report = Path(sys.argv[4])
+    answer, told, go, backwards = (int(argument) for argument in sys.argv[1:5])
+    report = Path(os.environ["HOME"]) / "report.xml"
     arguments, sys.argv = [*sys.argv[5:], f"--junitxml={report}"], ["pytest"]
     status = int(pytest.main(arguments, plugins=[Reversed()] if backwards else []))
     gc.collect()  # what nothing refers to any more is not left behind
     sys.stdout.flush()
-    text = report.read_bytes() if report.is_file() else b""
     with os.fdopen(answer, "wb") as stream:
-        stream.write(b"%d %d\n%b" % (status, len(text), text))
+        stream.write(report.read_bytes() if report.is_file() else b"")
+    os.write(told, b"%d\n" % status)
     os.read(go, 1)
 
 

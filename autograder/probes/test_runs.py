@@ -5,27 +5,27 @@
 
 Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
 "fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
-version it has before it: every run gets a sandbox of its own with no network but its own loopback, the same paths,
-times and environment, and nothing that it can write to but a /tmp that ends with it. It sees its version and nothing of
-the others, the suites or earlier runs. `versions` says how versions are kept alike, and what remains. Only a run that
-is sniffed shares the grader's loopback, which no other program uses. The run can notice that, so it has to get a right
-version.
+version it has before it: every run gets a sandbox of its own with no network but its own loopback, a path drawn at
+random, the same times and environment, and nothing that it can write to but a /tmp that ends with it. It sees its
+version and nothing of the others, the suites or earlier runs. `versions` says how versions are kept alike, and what
+remains. Only a run that is sniffed shares the grader's loopback, which no other program uses. The run can notice that,
+so it has to get a right version.
 """
 
 from __future__ import annotations
 
 import errno
 import os
-import queue
-import selectors
-import shutil
+import re
+import select
 import sys
 from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
@@ -47,7 +47,6 @@ HOST = Path(__file__).with_name("pytest_host.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
 JOBS = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
 HOME = Path("/tmp")  # the sandbox's own
-HEADER = 32  # bytes of an answer's first line, at most
 
 
 def take(workspace: Workspace, package: str) -> Source:
@@ -87,42 +86,18 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jo
     memory = Memory(workspace.memory)
     recalled = [memory.recall(source, wanted) for wanted in wanted_runs]
     new_runs = [wanted for wanted, report in zip(wanted_runs, recalled, strict=True) if report is None]
-    made = _carry_out(workspace, source, new_runs, jobs)
+    with ThreadPoolExecutor(jobs) as pool:
+        once = partial(_run, workspace, source)
+        made = list(pool.map(once, new_runs))
+        stopped = [place for place, report in enumerate(made) if report.ending is Ending.WALL_TIME]
+        files = Counter(new_runs[place].files for place in stopped)
+        again = [place for place in stopped if files[new_runs[place].files] == 1]
+        for place, report in zip(again, pool.map(once, [new_runs[place] for place in again]), strict=True):
+            made[place] = report
     for wanted, report in zip(new_runs, made, strict=True):
         memory.keep(source, wanted, report)
     new = iter(made)
     return [report or next(new) for report in recalled]
-
-
-def _carry_out(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jobs: int) -> list[Report]:
-    free: queue.SimpleQueue[int] = queue.SimpleQueue()
-    for lane in range(jobs):
-        free.put(lane)
-
-    def carry_out(wanted: TestRun) -> Report:
-        lane = free.get()
-        try:
-            return _run(places[lane], source, wanted, lane)
-        except OSError as error:
-            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
-                raise
-            sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
-            raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
-        finally:
-            free.put(lane)
-
-    with ExitStack() as claims, ThreadPoolExecutor(jobs) as pool:
-        places = [workspace] * jobs
-        if current_tier() is not Tier.BUBBLEWRAP:  # its runs are in one network
-            domains = [claims.enter_context(Domain()) for _ in range(jobs)]
-            places = [replace(workspace, domain=domain.number) for domain in domains]
-        reports = list(pool.map(carry_out, wanted_runs))
-        stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]
-        files = Counter(wanted_runs[place].files for place in stopped)
-        again = [place for place in stopped if files[wanted_runs[place].files] == 1]
-        for place, report in zip(again, pool.map(carry_out, [wanted_runs[place] for place in again]), strict=True):
-            reports[place] = report
-        return reports
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
@@ -140,9 +115,21 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, 
     return replace(plain, mounts=mounts, environment=environment, network=network)
 
 
-def _run(workspace: Workspace, source: Source, wanted: TestRun, lane: int) -> Report:
-    place = workspace.root.with_name(f"{workspace.root.name}-tests") / f"lane{lane}"
-    shutil.rmtree(place, ignore_errors=True)
+def _run(workspace: Workspace, source: Source, wanted: TestRun) -> Report:
+    try:
+        with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as place:
+            if current_tier() is Tier.BUBBLEWRAP:
+                return _run_in(Path(place), workspace, source, wanted)
+            with Domain() as domain:  # its runs are in one network
+                return _run_in(Path(place), replace(workspace, domain=domain.number), source, wanted)
+    except OSError as error:
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+            raise
+        sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
+        raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
+
+
+def _run_in(place: Path, workspace: Workspace, source: Source, wanted: TestRun) -> Report:
     if wanted.version is not None:
         there = replace(workspace, root=place / "ws")
         folder = write_version(wanted.version, source.package, source.tests, there.root)
@@ -186,60 +173,39 @@ def _launches(source: Source, wanted: TestRun) -> bool:
 
 
 def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) -> Report:
-    answer_read, answer_write = os.pipe()
+    status_read, status_write = os.pipe()
     go_read, go_write = os.pipe()
-    report = Path(spec.environment["HOME"]) / "report.xml"
-    command = [sys.executable, str(HOST), str(answer_write), str(go_read), str(int(wanted.backwards)), str(report)]
-    try:
-        process = launch(
-            [*command, *arguments],
-            spec,
-            pass_fds=(answer_write, go_read),
-            profile="launch" if launches else "tests",
-        )
-    finally:
-        os.close(answer_write)
-        os.close(go_read)
-    with process:
-        status, text = _answer(answer_read, process)
-        left = open_sockets(process.innermost()) if status is not None else 0
-        os.close(go_write)
-        process.wait(spec.limits.wall_seconds)
-        ending = process.ending
-    claims = None if status is None else junit.parse(text)
+    with os.fdopen(os.memfd_create("report"), "w+b") as report:
+        theirs = (report.fileno(), status_write, go_read)
+        command = [sys.executable, str(HOST), *map(str, theirs), str(int(wanted.backwards)), *arguments]
+        try:
+            process = launch(command, spec, pass_fds=theirs, profile="launch" if launches else "tests")
+        finally:
+            os.close(status_write)
+            os.close(go_read)
+        with process:
+            status = _status(status_read, process)
+            left = open_sockets(process.innermost()) if status is not None else 0
+            os.close(go_write)
+            process.wait(spec.limits.wall_seconds)
+            ending = process.ending
+        report.seek(0)
+        claims = None if status is None else junit.parse(report.read(junit.MAX_BYTES + 1))
     if claims is None:
         return Report(ending, None, Claims(), left, process.output)
     return Report(ending, status, claims, left, process.output)
 
 
-def _answer(descriptor: int, process: Process) -> tuple[int | None, bytes]:
-    """Return pytest's exit status and its report, as the run sends them; no status if the answer is not complete."""
-    data = bytearray()
+def _status(descriptor: int, process: Process) -> int | None:
+    """Return pytest's exit status once the run says that its report is there; None if it ends without."""
     try:
-        with selectors.DefaultSelector() as selector:
-            selector.register(descriptor, selectors.EVENT_READ)
-            while len(data) <= HEADER + junit.MAX_BYTES:
-                if selector.select(0.1):
-                    chunk = os.read(descriptor, 65536)
-                    if not chunk:
-                        break
-                    data += chunk
-                elif process.ending is not None:
-                    break
-                if (whole := _whole(bytes(data))) is not None:
-                    return whole
-        return None, b""
+        while not select.select([descriptor], [], [], 0.1)[0]:
+            if process.ending is not None:
+                return None
+        said = os.read(descriptor, 64)
+        return int(said) if re.fullmatch(rb"\d{1,9}\n", said) else None
     finally:
         os.close(descriptor)
-
-
-def _whole(data: bytes) -> tuple[int, bytes] | None:
-    """Return status and report once the whole answer is there; its first line says how long the report is."""
-    header, newline, text = data.partition(b"\n")
-    words = header.split()
-    if not newline or len(words) != 2 or not all(word.isdigit() for word in words) or len(header) > HEADER:
-        return None
-    return (int(words[0]), text) if len(text) == int(words[1]) else None
 
 
 def open_sockets(pid: int) -> int:

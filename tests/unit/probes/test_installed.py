@@ -50,7 +50,6 @@ def test_everything_that_a_package_has_is_seen(install: Path) -> None:
     assert found.marker
     assert found.shared == ("package.xml", "config/lamp.yaml")
     assert found.recorded == {"share/lamp/package.xml"}
-    assert found.scripts == {"lamp": "lamp.nodes.lamp:main"}
     assert found.extras == {"test": ("pytest",), "doc": ("sphinx",)}
     assert (found.metadata["Version"], found.metadata["License"]) == ("0.1.0", "MIT")
     assert found.read("config/lamp.yaml") == b"a: 1\n"
@@ -91,8 +90,3 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
 def test_a_file_too_large_is_not_read(install: Path) -> None:
     (install / "lamp/share/lamp/config/lamp.yaml").write_bytes(b"#" * (installed.MAX_BYTES + 1))
     assert installed.look(install, "lamp").read("config/lamp.yaml") is None
-
-
-def test_metadata_that_cannot_be_read_is_none(install: Path) -> None:
-    (install / "lamp" / EGG / "entry_points.txt").write_text("[console_scripts\nlamp")
-    assert installed.look(install, "lamp").scripts == {}
