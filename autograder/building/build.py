@@ -52,10 +52,11 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     started = time.monotonic()
     found, _ = find_packages(workspace.root / "src")
     bundle = interface_bundle(found, wanted)
-    log = install_bundle(bundle, workspace) if bundle else ""
+    logs = [install_bundle(bundle, workspace)] if bundle else []
     if set(wanted) - set(bundle):
-        log = colcon_build(workspace, "--packages-up-to", *wanted, *(["--packages-skip", *bundle] if bundle else []))
-    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)), log)
+        skipped = ["--packages-skip", *bundle] if bundle else []
+        logs.append(colcon_build(workspace, "--packages-up-to", *wanted, *skipped))
+    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)), "\n".join(filter(None, logs)))
 
 
 def _missing(source: Path, name: str, found: dict[str, Path]) -> str:

@@ -9,10 +9,8 @@ from dataclasses import dataclass
 
 from autograder.building.build import build, require_packages
 from autograder.building.colcon import require_contained
-from autograder.building.interface_bundle import interface_bundle
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
-from autograder.packages import find_packages
 from autograder.result import Build
 from autograder.unwritten import explain
 from autograder.workspace import Workspace
@@ -51,14 +49,13 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
         StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.
     """
     source = workspace.root / "src"
-    if not may_fail:
-        try:
-            require_packages(source, packages)
-            return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
-        except StudentError as error:
+    try:
+        require_packages(source, packages, whole=not may_fail)
+        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+    except StudentError as error:
+        if not may_fail:
             raise StudentError(explain(error.diagnosis, source, *packages)) from None
-    if together := _at_once(workspace, packages):
-        return Observed(together, dict.fromkeys(packages, OK))
+    subprocess.run(["rm", "-rf", "--", workspace.root / "build", workspace.install], check=True)
     builds: list[Build] = []
     diagnoses: dict[str, Diagnosis] = {}
     for name in packages:
@@ -74,18 +71,3 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     log = "\n".join(filter(None, (each.log for each in builds)))
     seconds = round(math.fsum(each.seconds for each in builds), 2)
     return Observed(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
-
-
-def _at_once(workspace: Workspace, packages: tuple[str, ...]) -> Build | None:
-    """Build several packages by one run of colcon, most of whose cost is its own; None if that is no gain or fails.
-
-    It is no gain for interfaces: they come from a cache, and colcon has one package less to build.
-    """
-    found, _ = find_packages(workspace.root / "src")
-    if len(packages) == 1 or not found.keys() >= set(packages) or interface_bundle(found, packages):
-        return None
-    try:
-        return build(workspace, packages)
-    except StudentError:
-        subprocess.run(["rm", "-rf", "--", workspace.root / "build", workspace.install], check=True)
-        return None

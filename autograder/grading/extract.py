@@ -150,7 +150,6 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
             Mount(folder, writable=True),
             Mount(workspace.scratch, writable=True),
         ),
-        hidden=layout.check_folders(),
         environment=environment,
         limits=KERNEL,
     )

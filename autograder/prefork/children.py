@@ -22,8 +22,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -41,8 +40,8 @@ _PLAIN: dict[str, Any] = {"preexec_fn": None, "close_fds": True, "shell": False,
 _PLAIN |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
 
-def opener(own: Sequence[str]) -> Callable[[], None]:
-    """Return a function for a forked program: from its call on, what the program starts is forked.
+def fork_children(own: Sequence[str]) -> None:
+    """Let what this program starts be forked from now on.
 
     It is to be called while the program has one thread, and has read nothing of the student's. It does not return in
     the processes of what the program starts.
@@ -50,10 +49,6 @@ def opener(own: Sequence[str]) -> Callable[[], None]:
     Args:
         own: first words of the names of packages that the program has, and what it starts does not.
     """
-    return partial(_fork_children, own)
-
-
-def _fork_children(own: Sequence[str]) -> None:
     before = getattr(subprocess.Popen, "_execute_child", None)
     if before is None or list(inspect.signature(before).parameters)[: len(_PARAMETERS)] != _PARAMETERS:
         return

@@ -17,9 +17,11 @@ import socket
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 
-from autograder.prefork import children, confinement
+from autograder.prefork import confinement
+from autograder.prefork.children import fork_children
 from autograder.prefork.emulation import Program, become, forget
 from autograder.prefork.profiles import PROFILES
 from autograder.prefork.protocol import MAX_BYTES, MAX_FDS, Request
@@ -40,7 +42,7 @@ def main() -> Program:
     base = {path: Path(path).exists() for path in (*before, *added)}
     request = serve(requests)
     forget(("autograder",))
-    namespace = {"fork_children": children.opener(profile.own)} if profile.forks else {}
+    namespace = {"fork_children": partial(fork_children, profile.own)} if profile.forks else {}
     return become(request.command, {**request.environment, "PWD": request.workdir}, base, **namespace)
 
 

@@ -77,7 +77,7 @@ def sandbox(command: list[str], spec: Sandbox) -> list[str]:
     mounts = (*(Mount(folder) for folder in python_mounts()), *spec.mounts)
     for mount in mounts:
         arguments += ["--bind" if mount.writable else "--ro-bind", str(mount.path), str(mount.path)]
-    for folder in dict.fromkeys((*spec.hidden, *_PRIVATE)):
+    for folder in _PRIVATE:
         if folder.is_dir() and any(folder.is_relative_to(mount.path) for mount in mounts):
             arguments += ["--tmpfs", str(folder), "--remount-ro", str(folder)]
     # The root and /dev are file systems in memory, too, without a size.

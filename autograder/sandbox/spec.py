@@ -33,8 +33,7 @@ class Sandbox:
     """One sandbox: what is seen, what may be used, with which environment.
 
     Attributes:
-        mounts: beyond the read-only system and the Python that runs the grader.
-        hidden: folders inside a mount that are covered by an empty one; suites and solutions always are.
+        mounts: beyond the read-only system and the grader's Python; suites and solutions in them are covered.
         workdir: the working folder; it must lie in a mount.
         environment: all environment variables that the code gets, nothing is inherited.
         network: True shares the cell's loopback (to meet the grader over DDS), False has none at all.
@@ -43,7 +42,6 @@ class Sandbox:
 
     workdir: Path
     mounts: tuple[Mount, ...] = ()
-    hidden: tuple[Path, ...] = ()
     environment: Mapping[str, str] = field(default_factory=dict)
     network: bool = False
     limits: Limits = NODE

@@ -70,10 +70,10 @@ def test_of_two_packages_that_are_there_the_one_that_fails_does_not_harm_the_oth
 
 
 def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) -> None:
-    workspace.install.mkdir()
-    (workspace.install / "bad").symlink_to("/etc")
+    leaves = "import os\nos.makedirs('../../install', exist_ok=True)\nos.symlink('/etc', '../../install/stray')\n"
+    (workspace.root / "src/bad/setup.py").write_text(f"{leaves}raise SystemExit('broken')\n")
     with pytest.raises(StudentError, match="leads out of the install space"):
-        build_workspace(workspace, ("missing",), may_fail=True)
+        build_workspace(workspace, ("bad",), may_fail=True)
 
 
 def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:

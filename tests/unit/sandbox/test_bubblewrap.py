@@ -60,12 +60,6 @@ def test_suites_and_solutions_are_covered_wherever_a_mount_would_show_them(tmp_p
         assert str(secret) in _pairs(options, "--remount-ro")
 
 
-def test_a_hidden_folder_is_covered_after_it_was_mounted(tmp_path: Path) -> None:
-    (tmp_path / "secret").mkdir()
-    options = _options(_sandbox(Sandbox(tmp_path, mounts=(Mount(tmp_path),), hidden=(tmp_path / "secret",))))
-    assert options.index(str(tmp_path)) < options.index(str(tmp_path / "secret"))
-
-
 def test_only_mounts_that_say_so_are_writable(tmp_path: Path) -> None:
     spec = Sandbox(tmp_path, mounts=(Mount(tmp_path / "in"), Mount(tmp_path / "out", writable=True)))
     options = _options(_sandbox(spec))
