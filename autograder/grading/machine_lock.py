@@ -11,36 +11,25 @@ class MachineLock:
     """Who wants the machine exclusively waits until all others are done; whoever comes meanwhile waits as well."""
 
     def __init__(self) -> None:
+        self._turn = threading.Lock()  # of those who come; one who waits for the machine alone holds it
         self._changed = threading.Condition()
-        self._sharing, self._waiting, self._exclusive = 0, 0, False
+        self._sharing = 0
 
     @contextmanager
     def shared(self) -> Iterator[None]:
         """Use the machine while others may use it."""
-        with self._changed:
-            self._changed.wait_for(lambda: not (self._exclusive or self._waiting))
+        with self._turn, self._changed:
             self._sharing += 1
         try:
             yield
         finally:
             with self._changed:
                 self._sharing -= 1
-                self._changed.notify_all()
+                self._changed.notify()
 
     @contextmanager
     def exclusive(self) -> Iterator[None]:
         """Use the machine while no other does."""
-        with self._changed:
-            self._waiting += 1
-            try:
-                self._changed.wait_for(lambda: not (self._exclusive or self._sharing))
-                self._exclusive = True
-            finally:
-                self._waiting -= 1
-                self._changed.notify_all()
-        try:
+        with self._turn, self._changed:
+            self._changed.wait_for(lambda: self._sharing == 0)
             yield
-        finally:
-            with self._changed:
-                self._exclusive = False
-                self._changed.notify_all()

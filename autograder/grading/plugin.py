@@ -1,15 +1,7 @@
 """The pytest plug-in of a grading run: turns a suite's tests into check results, and nothing else into anything.
 
-The checks of every chapter, visible and hidden, have its fixtures:
-
-    workspace   the student's workspace, built
-    builds      what became of each package that the suite wants; for suites that say BUILD_MAY_FAIL
-    seed        the number from which every hidden input is drawn; for fixtures that several checks share
-    draw        random numbers for one check
-    gallery     keeps pictures of one check for the feedback
-
-A chapter's own fixtures stand in its conftest.py, or in the one module that uses them. A harness for several checks
-is kept by `autograder.harness.Shared`.
+The checks of every chapter, visible and hidden, have its fixtures. A chapter's own stand in its conftest.py, or in the
+one module that uses them. A harness for several checks is kept by `autograder.harness.Shared`.
 """
 
 from __future__ import annotations

@@ -48,7 +48,6 @@ class AutoHarness:
     tick_ns: int
     now_ns: int
     seconds: float
-    process: Process
     processes: tuple[Process, ...]
     running: frozenset[str]
     output: str

@@ -150,11 +150,6 @@ class Harness(ABC):
         self._domain.close()
 
     @property
-    def process(self) -> Process:
-        """The first of the sandboxed programs."""
-        return self.processes[0]
-
-    @property
     def output(self) -> str:
         """What the programs have printed and logged so far."""
         return "".join(process.output for process in self.processes)

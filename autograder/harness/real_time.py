@@ -83,7 +83,8 @@ class RealTimeHarness(Harness):
         """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""
         for process in self.processes:
             process.signal(number)
-        return self.process.returncode if self.process.wait(seconds) else None
+        first = self.processes[0]
+        return first.returncode if first.wait(seconds) else None
 
     def _arrival_seconds(self, arrived_ns: int) -> float:
         # It may have waited here while the grader was busy with another harness.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -72,7 +71,7 @@ class SteppedHarness(Harness):
         self.notes: dict[str, str] = {}
         self._delivery_seconds_left = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
-            stepper = Stepper(self._sandbox, path, python=sys.executable, arguments=program.arguments)
+            stepper = Stepper(self._sandbox, path, program.arguments)
             self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
         for stepped in self._stepped:
             with suppress(_OptionalProgramLost), self._attributing(stepped):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import selectors
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -59,14 +60,21 @@ class Stepper:
     Args:
         spec: the sandbox, which shows the program and the host.
         executable: the program's path.
-        python: the interpreter's path.
         arguments: the program's.
     """
 
-    def __init__(self, spec: Sandbox, executable: Path, *, python: str, arguments: tuple[str, ...] = ()) -> None:
+    def __init__(self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = ()) -> None:
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
-        command = [python, str(HOST), str(their_read), str(their_write), str(START_NS), str(executable), *arguments]
+        command = [
+            sys.executable,
+            str(HOST),
+            str(their_read),
+            str(their_write),
+            str(START_NS),
+            str(executable),
+            *arguments,
+        ]
         try:
             self.process: Process = launch(command, spec, pass_fds=(their_read, their_write), profile="lockstep")
         finally:

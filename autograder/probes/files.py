@@ -6,6 +6,7 @@ import ast
 import os
 import stat
 import warnings
+from collections.abc import Collection
 from pathlib import Path
 
 
@@ -21,6 +22,25 @@ def read_plain(path: Path, limit: int) -> bytes | None:
     with os.fdopen(descriptor, "rb") as stream:
         data = stream.read(limit + 1)
     return data if len(data) <= limit else None
+
+
+def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), ending: str = "") -> list[Path]:
+    """Return the plain files below a folder, relative to it, in order; no link is followed, the folder itself neither.
+
+    Args:
+        folder: where to look.
+        most: how many are returned.
+        left_out: names of folders that are passed over.
+        ending: how their names end.
+    """
+    found: list[Path] = []
+    for where, folders, names in os.walk(folder) if not folder.is_symlink() else ():
+        folders[:] = sorted(name for name in folders if name not in left_out)
+        paths = [Path(where, name) for name in sorted(names) if name.endswith(ending)]
+        found += [path.relative_to(folder) for path in paths if stat.S_ISREG(path.lstat().st_mode)]
+        if len(found) >= most:
+            break
+    return found[:most]
 
 
 def parse_python(source: str | bytes) -> ast.Module | None:

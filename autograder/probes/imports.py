@@ -7,13 +7,12 @@ works on its author's machine and nowhere else. Files that are too large, too ma
 from __future__ import annotations
 
 import ast
-import os
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.probes.files import parse_python, read_plain
+from autograder.probes.files import parse_python, plain_files, read_plain
 from autograder.probes.manifest import Manifest
 
 MAX_FILES = 300
@@ -71,8 +70,8 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
     """
     own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     found: dict[str, list[str]] = {}
-    for path in _sources(package):
-        where = path.relative_to(package)
+    for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, ending=".py"):
+        path = package / where
         top = where.parts[0]
         if str(where) == SET_UP or (within and top not in within) or top in without:
             continue
@@ -118,20 +117,6 @@ def say(imports: Collection[Import]) -> str:
 
 def _called(one: Import) -> str:
     return f" ({one.keys[0]})" if one.keys[0] != one.module else ""
-
-
-def _sources(package: Path) -> Iterator[Path]:
-    count = 0
-    for folder, folders, files in os.walk(package):
-        folders[:] = sorted(name for name in folders if name not in LEFT_OUT)
-        for name in sorted(files):
-            path = Path(folder) / name
-            if not name.endswith(".py") or path.is_symlink() or not path.is_file():
-                continue
-            count += 1
-            if count > MAX_FILES:
-                return
-            yield path
 
 
 def _text(path: Path) -> str:

@@ -6,13 +6,12 @@ Only plain files are read. No link is followed out of the install space, and not
 from __future__ import annotations
 
 import os
-import stat
 from collections.abc import Mapping
 from dataclasses import dataclass
 from email.parser import HeaderParser
 from pathlib import Path
 
-from autograder.probes.files import read_plain
+from autograder.probes.files import plain_files, read_plain
 
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024
@@ -81,19 +80,7 @@ def look(install: Path, package: str) -> Installed:
 
 
 def _files(folder: Path) -> tuple[str, ...]:
-    """Return the plain files below a folder, relative to it, in order."""
-    found: list[str] = []
-    if folder.is_symlink():
-        return ()
-    for where, folders, names in os.walk(folder):
-        folders.sort()
-        for name in sorted(names):
-            path = Path(where) / name
-            if stat.S_ISREG(path.lstat().st_mode):
-                found.append(str(path.relative_to(folder)))
-            if len(found) >= MAX_FILES:
-                return tuple(found)
-    return tuple(found)
+    return tuple(map(str, plain_files(folder, MAX_FILES)))
 
 
 def _read_below(folder: Path, name: Path) -> bytes | None:

@@ -45,20 +45,8 @@ def cell(command: list[str], *, scratch: Path, size: int) -> list[str]:
         size: of it, in bytes.
     """
     return [
-        "bwrap",
-        "--die-with-parent",
-        "--unshare-user",
-        "--unshare-net",
-        "--unshare-ipc",
-        "--dev-bind",
-        "/",
-        "/",
-        "--size",
-        str(size),
-        "--tmpfs",
-        str(scratch),
-        "--",
-        *command,
+        *("bwrap", "--die-with-parent", "--unshare-user", "--unshare-net", "--unshare-ipc"),
+        *("--dev-bind", "/", "/", "--size", str(size), "--tmpfs", str(scratch), "--", *command),
     ]
 
 

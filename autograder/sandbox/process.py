@@ -10,6 +10,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from enum import Enum
 from pathlib import Path
 
@@ -132,10 +133,8 @@ class Process:
     def signal(self, number: signal.Signals) -> None:
         """Send a signal to the student's own process. Does nothing once it has ended."""
         if not self._ended.is_set():
-            try:
+            with suppress(ProcessLookupError):
                 os.kill(self.innermost(), number)
-            except ProcessLookupError:
-                return
 
     def kill(self) -> None:
         """End the whole tree now."""
@@ -158,14 +157,10 @@ class Process:
         pids = self._measure().pids
         # A parent that is dead leaves children that are found no more, so children first, unless they die with it.
         for pid in pids if self._contained else reversed(pids):
-            try:
+            with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                continue
-        try:
+        with suppress(ProcessLookupError, PermissionError):
             os.killpg(self._popen.pid, signal.SIGKILL)
-        except (ProcessLookupError, PermissionError):
-            return
 
     def _watch(self) -> None:
         assert self._popen.stdout is not None
@@ -178,7 +173,8 @@ class Process:
                     if selector.select(_TICK):
                         open_stream = self._read()
                 else:
-                    self._wait_for_exit(_TICK)
+                    with suppress(subprocess.TimeoutExpired):
+                        self._popen.wait(_TICK)
                 now = time.monotonic()
                 if now - self._started > self._limits.wall_seconds:
                     self._end(Ending.WALL_TIME)
@@ -199,12 +195,6 @@ class Process:
         self._ended.set()
         if self._at_end is not None:
             self._at_end()
-
-    def _wait_for_exit(self, timeout: float) -> None:
-        try:
-            self._popen.wait(timeout)
-        except subprocess.TimeoutExpired:
-            return
 
     def _read(self) -> bool:
         """Take in what is in the pipe, all that it can hold; return whether more may come."""

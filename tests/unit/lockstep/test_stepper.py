@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -31,7 +30,7 @@ def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
             program = tmp_path / "forger.py"
             program.write_text(START + code)
             monkeypatch.setattr(stepper, "HOST", program)
-            return stack.enter_context(Stepper(Sandbox(tmp_path), tmp_path / "node", python=sys.executable))
+            return stack.enter_context(Stepper(Sandbox(tmp_path), tmp_path / "node"))
 
         yield open_stepper
 
@@ -138,7 +137,7 @@ def test_a_line_without_an_end_is_not_collected_for_ever(host: Open) -> None:
 
 def test_nothing_is_left_when_the_block_ends(host: Open, tmp_path: Path) -> None:
     first = host("signal.pause()")
-    with Stepper(Sandbox(tmp_path), tmp_path / "node", python=sys.executable) as program:
+    with Stepper(Sandbox(tmp_path), tmp_path / "node") as program:
         assert program.process.ending is None
     assert program.process.ending is Ending.KILLED
     assert first.process.ending is None

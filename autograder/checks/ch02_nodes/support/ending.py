@@ -37,7 +37,7 @@ def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str]
     with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, listens={"/cmd_vel": Twist}) as harness:
         # A node may be seen while its __init__ still runs; a command shows that it spins.
         harness.until(
-            lambda: bool(harness.messages("/cmd_vel")) or harness.process.cpu_seconds() > COMPUTING, START_SECONDS
+            lambda: bool(harness.messages("/cmd_vel")) or harness.processes[0].cpu_seconds() > COMPUTING, START_SECONDS
         )
         expect(bool(harness.messages("/cmd_vel")), "Started as ros2 run does, it published no command.")
         harness.run(QUIET)
