@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.node import Node
 
@@ -70,10 +70,12 @@ class AutoHarness:
         self._entered: Harness | None = None
         self.time = LOCKSTEP
 
-    def __getattr__(self, name: str) -> Any:
-        if self._entered is None:
-            raise RuntimeError(f"{type(self).__name__} is used before it is entered: write `with ... as harness`")
-        return getattr(self._entered, name)
+    if not TYPE_CHECKING:  # for the type checker it has what is named above, and nothing else
+
+        def __getattr__(self, name: str) -> Any:
+            if self._entered is None:
+                raise RuntimeError(f"{type(self).__name__} is used before it is entered: write `with ... as harness`")
+            return getattr(self._entered, name)
 
     def __enter__(self: AnyAuto) -> AnyAuto:
         stepped = self._make(SteppedHarness)

@@ -18,8 +18,8 @@ check = group("graph")
 @hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
     """The executable robot_controller starts and its node spins."""
-    if robot.process.ending is not None:
-        raise StudentError(diagnose_ending(robot.process))
+    if robot.processes[0].ending is not None:
+        raise StudentError(diagnose_ending(robot.processes[0]))
 
 
 @check(points=1, holds="node-name", depends=("starts",))
