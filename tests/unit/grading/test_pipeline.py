@@ -29,7 +29,7 @@ class Worker:
         self.left, self.alone = list(results), list[bool]()
 
     def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
-        self.alone.append(pipeline._machine._exclusive)
+        self.alone.append(pipeline._machine._turn.locked())
         result = self.left.pop(0)
         if result is None:
             return FAILED
