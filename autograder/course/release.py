@@ -23,6 +23,7 @@ COPIED = (
     "autograder",
     "assets/worlds",
     "chapters/ros2-commands.md",
+    "chapters/pytest.ini",
     "pyproject.toml",
     "requirements.lock",
     "LICENSE",

@@ -87,6 +87,18 @@ def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
     assert "verify" not in listed.stdout
 
 
+def test_a_students_pytest_has_none_of_the_options_of_the_courses_own_tests(bundle: Path) -> None:
+    """The students' lock has no pytest-timeout, and a warning in a student's test is no error."""
+    folder = bundle / "chapters" / "06_testing" / "ws"
+    test = folder / "test_warns.py"
+    test.write_text("import warnings\n\n\ndef test_warns():\n    warnings.warn('an old way', DeprecationWarning)\n")
+    pytest_here = [sys.executable, "-m", "pytest", "-p", "no:timeout", "-p", "no:cacheprovider", test.name]
+    done = subprocess.run(pytest_here, cwd=folder, text=True, capture_output=True)
+    test.unlink()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 passed, 1 warning" in done.stdout
+
+
 def test_a_folder_that_exists_is_not_written_to(tmp_path: Path) -> None:
     result = run("--out", str(tmp_path))
     assert "exists already: name a folder that does not exist yet" in str(result.exception)
