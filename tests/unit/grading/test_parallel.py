@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -58,3 +60,24 @@ def test_a_failure_of_what_is_done_comes_out() -> None:
     with pytest.raises(ValueError, match="item"):
         map_parallel(do, MANY, jobs=1, on_done=lambda result: None)
     assert begun[0] == 0
+
+
+def test_threads_that_check_the_first_results_at_the_same_time_do_not_meet_a_module_half_imported() -> None:
+    """Unless jsonschema is imported before, this fails in two of three runs: its modules import each other."""
+    program = """
+import importlib, sys, threading
+from autograder.grading.parallel import map_parallel
+
+sys.setswitchinterval(1e-6)
+together = threading.Barrier(4)
+
+
+def imported(name):
+    together.wait()
+    return importlib.import_module(name)
+
+
+map_parallel(imported, ["jsonschema.exceptions", "jsonschema.validators"] * 2, jobs=4, on_done=lambda module: None)
+"""
+    for _ in range(3):
+        subprocess.run([sys.executable, "-c", program], check=True)
