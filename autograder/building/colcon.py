@@ -21,6 +21,12 @@ HOST = Path(__file__).with_name("colcon_host.py")
 LOG_LINES = 40
 
 
+def colcon_command(workspace: Workspace, verb: str, *words: str) -> list[str]:
+    """Return the command line of `colcon VERB WORDS...` in a sandbox, on the packages in `src`."""
+    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), verb]
+    return [*command, "--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *words]
+
+
 def colcon_build(workspace: Workspace, *choice: str) -> str:
     """Run `colcon build` on a workspace, without a network; return the end of its output.
 
@@ -31,8 +37,6 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
     """
-    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "build"]
-    command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-", *choice]
     environment = workspace.environment()
     faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
     environment |= {
@@ -52,7 +56,7 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
         environment=environment,
         limits=BUILD,
     )
-    with launch(command, spec, profile="colcon") as process:
+    with launch(colcon_command(workspace, "build", *choice), spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode
     if ending is not Ending.EXITED or status != 0:

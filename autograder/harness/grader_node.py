@@ -16,7 +16,7 @@ from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from autograder.lockstep.lockstep_host import channels
 from autograder.ros.discovery import announcing_often
@@ -244,7 +244,6 @@ def offered_qos(peers: list[Any]) -> QoSProfile:
     """Return a publisher's profile that is compatible with every subscription, whatever it requests."""
     durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
     return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
         depth=DEPTH,
         reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
@@ -256,7 +255,6 @@ def requested_qos(peers: list[Any]) -> QoSProfile:
     reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
     durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
     return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
         depth=DEPTH,
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import ExitStack
-from types import TracebackType
+from contextlib import AbstractContextManager, ExitStack
 from typing import Any, Generic, Protocol, TypeVar
 
 from autograder.sandbox import Process
 
 
-class Programs(Protocol):
+class Programs(AbstractContextManager[Any], Protocol):
     """Programs in a harness, or in something built on one. They run inside its `with` block."""
 
     @property
     def processes(self) -> tuple[Process, ...]:
         """The sandboxed programs."""
 
-    def __enter__(self) -> Any: ...
-
-    def __exit__(self, *ending: Any) -> Any: ...
-
 
 P = TypeVar("P", bound=Programs)
 
 
-class Shared(Generic[P]):
+class Shared(ExitStack, Generic[P]):
     """Keeps one harness for several checks, and replaces it once one of its programs has ended.
 
     It is a context manager: the end of the block ends the programs.
@@ -36,17 +31,9 @@ class Shared(Generic[P]):
     """
 
     def __init__(self, make: Callable[[], P], usable: Callable[[P], bool] = lambda _: True) -> None:
+        super().__init__()
         self._make, self._usable = make, usable
-        self._stack = ExitStack()
         self._present: P | None = None
-
-    def __enter__(self) -> Shared[P]:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def get(self) -> P:
         """Return a harness whose programs run. Raises what making and entering one raises."""
@@ -54,11 +41,11 @@ class Shared(Generic[P]):
         if present is None or any(process.ending for process in present.processes) or not self._usable(present):
             self.close()
             present = self._make()
-            self._stack.enter_context(present)
+            self.enter_context(present)
             self._present = present
         return present
 
     def close(self) -> None:
         """End the present harness; the next check gets a new one."""
         self._present = None
-        self._stack.close()
+        super().close()

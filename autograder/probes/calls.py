@@ -92,15 +92,8 @@ def call(name: str, *args: Any, on: int | None = None, module: str | None = None
 
 
 def make(name: str, *args: Any, module: str | None = None, **kwargs: Any) -> Step:
-    """Return the step that makes an object for later steps.
-
-    Args:
-        name: of the class.
-        args: positional arguments, JSON or `made(N)`.
-        module: another module that has the class; None for the student's.
-        kwargs: keyword arguments.
-    """
-    return Step(name, args, tuple(kwargs.items()), module=module, keep=True)
+    """Return the step that calls a class and keeps the object for later steps; the arguments are those of `call`."""
+    return replace(call(name, *args, module=module, **kwargs), keep=True)
 
 
 def made(number: int) -> dict[str, int]:

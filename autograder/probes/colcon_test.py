@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
-from autograder.building.colcon import HOST
+from autograder.building.colcon import HOST, colcon_command
 from autograder.probes import junit
 from autograder.probes.installed import Installed
 from autograder.probes.junit import Claims
@@ -61,9 +60,7 @@ def _report(workspace: Workspace, package: str) -> Path:
 
 
 def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
-    command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), "test"]
-    command += ["--base-paths", "src", "--event-handlers", "console_cohesion+", "desktop_notification-"]
-    command += ["--packages-select", package, "--return-code-on-test-failure", *arguments]
+    choice = ("--packages-select", package, "--return-code-on-test-failure", *arguments)
     plain = sandboxed(workspace, HOST, limits=BUILD)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
@@ -74,7 +71,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     report = _report(workspace, package)
     if _inside(report, workspace.root):
         report.unlink(missing_ok=True)
-    with launch(command, spec, profile="colcon") as process:
+    with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
     claims = junit.read(report) if _inside(report, workspace.root) else None
