@@ -81,7 +81,7 @@ def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: 
         out=out,
         isolation=tier,
         scope=Scope(only=needed, recordings=recordings),
-    ).result
+    )
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         click.echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
     return Stored(graded, out)

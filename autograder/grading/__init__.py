@@ -6,6 +6,6 @@
 phases and runs students' code only in sandboxes. The proof's many submissions share a few workers (`lanes.py`).
 """
 
-from autograder.grading.pipeline import DEFAULT_SEED, Graded, grade_submission
+from autograder.grading.pipeline import DEFAULT_SEED, grade_submission
 
-__all__ = ["DEFAULT_SEED", "Graded", "grade_submission"]
+__all__ = ["DEFAULT_SEED", "grade_submission"]

@@ -10,9 +10,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from autograder.checks import suites
 from autograder.exceptions import UsageError
@@ -24,9 +22,6 @@ from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
 from autograder.sandbox.process import Ending
 
-if TYPE_CHECKING:
-    from nbformat import NotebookNode
-
 RESULT = "result.json"
 NOTEBOOK = "notebook.ipynb"
 TRIES = 2
@@ -36,14 +31,6 @@ DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to gra
 _machine = MachineLock()
 
 RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
-
-
-@dataclass(frozen=True)
-class Graded:
-    """A submission's result, and its notebook as it ran in the sandboxed kernel (None without one)."""
-
-    result: Result
-    notebook: NotebookNode | None
 
 
 def in_own_cell(job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
@@ -61,7 +48,7 @@ def grade_submission(
     isolation: Tier = Tier.BUBBLEWRAP,
     scope: Scope = ALL,
     run_job: RunJob = in_own_cell,
-) -> Graded:
+) -> Result:
     """Grade one submission.
 
     Args:
@@ -90,22 +77,22 @@ def grade_submission(
     def job_in(scratch: Path) -> Job:
         return Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, scope)
 
-    def grade() -> Graded | None:
+    def grade() -> Result | None:
         return _grade(lambda: run_job(job_in, isolation), out)
 
     with _machine.shared():
-        graded = grade()
-    if graded is not None and graded.result.in_doubt:
+        result = grade()
+    if result is not None and result.in_doubt:
         with _machine.exclusive():
-            graded = grade()
-    if graded is None:
-        graded = Graded(not_graded(suite, student, seed, isolation, FAILED), None)
-        write_json(out / RESULT, graded.result.to_json())
-    return graded
+            result = grade()
+    if result is None:
+        result = not_graded(suite, student, seed, isolation, FAILED)
+        write_json(out / RESULT, result.to_json())
+    return result
 
 
-def _grade(run: Callable[[], CellReport], out: Path) -> Graded | None:
-    """Return a worker's result and the notebook; None if it failed twice, and then `out` has its log."""
+def _grade(run: Callable[[], CellReport], out: Path) -> Result | None:
+    """Return a worker's result; None if it failed twice, and then `out` has its log."""
     out.mkdir(parents=True, exist_ok=True)
     for stale in (RESULT, NOTEBOOK, LOG):
         (out / stale).unlink(missing_ok=True)
@@ -113,8 +100,7 @@ def _grade(run: Callable[[], CellReport], out: Path) -> Graded | None:
     for _ in range(TRIES):
         report = run()
         if report.returncode == 0 and (out / RESULT).is_file():
-            result = from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
-            return Graded(result, _notebook(out / NOTEBOOK))
+            return from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
     # Never part of the result: its traceback may quote a hidden check, and results become feedback.
     (out / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
     return None
@@ -122,11 +108,3 @@ def _grade(run: Callable[[], CellReport], out: Path) -> Graded | None:
 
 def _worker(job: Job) -> list[str]:
     return [sys.executable, "-m", "autograder.grading.worker", job.to_json()]
-
-
-def _notebook(path: Path) -> NotebookNode | None:
-    if not path.is_file():
-        return None
-    import nbformat  # slow to import, and a source tree has no notebook
-
-    return nbformat.read(path, as_version=4)

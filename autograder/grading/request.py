@@ -52,7 +52,7 @@ class Request:
 
     def grade(self) -> Result:
         """Grade the submission on this machine."""
-        graded = grade_submission(
+        return grade_submission(
             self.path,
             self.assignment,
             student=self.student,
@@ -60,4 +60,3 @@ class Request:
             out=self.out,
             isolation=self.isolation,
         )
-        return graded.result

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime, timezone
 
 from autograder.checks import Outcome
@@ -26,8 +27,9 @@ def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str)
     sentence = (
         f"{why} This is no zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
     )
-    diagnosis = Diagnosis(Kind.NOT_GRADED, sentence)
-    return _without_checks(suite, student, seed, isolation, diagnosis, "not graded", Status.NOT_GRADED)
+    result = refused(suite, student, seed, isolation, Diagnosis(Kind.NOT_GRADED, sentence))
+    checks = tuple(replace(check, message="not graded") for check in result.checks)
+    return replace(result, status=Status.NOT_GRADED, checks=checks, build=None, phases={})
 
 
 def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis) -> Result:
@@ -41,12 +43,6 @@ def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: D
         diagnosis: why it was refused.
     """
     message = f"not checked: {diagnosis.sentence}"
-    return _without_checks(suite, student, seed, isolation, diagnosis, message, Status.GRADED)
-
-
-def _without_checks(
-    suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis, message: str, status: Status
-) -> Result:
     return Result(
         assignment=suite.assignment,
         student=student,
@@ -58,8 +54,7 @@ def _without_checks(
         max_score=suite.max_score,
         started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
         seconds=0.0,
-        status=status,
         diagnosis=diagnosis,
-        build=Build(False, 0.0, log=diagnosis.detail) if status is Status.GRADED else None,
-        phases={"intake": 0.0} if status is Status.GRADED else {},
+        build=Build(False, 0.0, log=diagnosis.detail),
+        phases={"intake": 0.0},
     )

@@ -43,7 +43,7 @@ def prove(
                 isolation=lanes.tier,
                 scope=case.scope,
                 run_job=lanes,
-            ).result
+            )
         return Claim(case.assignment, case.kind, case.name, result, case.verify(result), case.reason)
 
     claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)

@@ -26,8 +26,8 @@ def figures() -> dict[str, float]:
 
 def _grade(folder: Path, name: str) -> None:
     graded = grade_submission(folder / "reference", ASSIGNMENT, student=name, seed=2026, out=folder / name)
-    if graded.result.score != graded.result.max_score:
-        raise RuntimeError(f"the reference has {graded.result.score:g} of {graded.result.max_score:g} points")
+    if graded.score != graded.max_score:
+        raise RuntimeError(f"the reference has {graded.score:g} of {graded.max_score:g} points")
 
 
 def _spent() -> float:

@@ -44,7 +44,7 @@ def grade(folder: Path, at_once: int, number: int) -> Grading:
     """Grade the reference in `folder`."""
     began = time.monotonic()
     out = folder / str(number)
-    result = grade_submission(folder / "reference", ASSIGNMENT, student="reference", seed=SEED, out=out).result
+    result = grade_submission(folder / "reference", ASSIGNMENT, student="reference", seed=SEED, out=out)
     traces = {artifact.name: artifact.sha256[:16] for artifact in result.artifacts}
     lost = tuple(f"{check.id}: {check.message}" for check in result.checks if check.outcome is not Outcome.PASSED)
     return Grading(100.0 * result.score / result.max_score, lost, traces, time.monotonic() - began, at_once)

@@ -13,11 +13,13 @@ import pytest
 
 from autograder import feedback, layout
 from autograder.checks import suites
-from autograder.grading import Graded, grade_submission
+from autograder.grading import grade_submission
 from autograder.grading.job import Scope
+from autograder.grading.pipeline import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
 from autograder.proof.attack_payloads import CANARY
 from autograder.proof.attacks import ASSIGNMENT, Attack, all_checks, attacks
+from autograder.result import Result
 from autograder.sandbox import cgroup
 
 ATTACKS = attacks(ASSIGNMENT)
@@ -43,7 +45,7 @@ def _everything_written(out: Path) -> str:
     return "\n".join(texts)
 
 
-def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Graded:
+def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Result:
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
@@ -59,8 +61,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     checks = all_checks() - (DRIVES - attack.loses)
-    graded = _grade(attack, checks, tmp_path)
-    result = graded.result
+    result = _grade(attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 
     feedback.write(result, tmp_path / "out")
@@ -69,9 +70,10 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
     assert not {line for line in _hidden_text() if line in written}
 
-    if graded.notebook is not None:
+    if (tmp_path / "out" / NOTEBOOK).is_file():
+        notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)
         source = nbformat.read(layout.source_notebook(ASSIGNMENT), as_version=4)
-        graded_cells = [cell for cell in graded.notebook.cells if grade_id(cell)]
+        graded_cells = [cell for cell in notebook.cells if grade_id(cell)]
         wanted = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
         assert sorted(map(grade_id, graded_cells)) == sorted(wanted)
         for cell in graded_cells:

@@ -61,7 +61,7 @@ def together(layouts: tuple[Entry, ...], tmp_path_factory: pytest.TempPathFactor
 
 
 def _grade(path: Path, out: Path) -> Result:
-    return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out).result
+    return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out)
 
 
 def _without_times(result: Result) -> dict[str, Any]:
@@ -288,5 +288,5 @@ def test_the_weaker_tier_is_named_in_the_result(reference: Path, tmp_path: Path)
     graded = grade_submission(
         tmp_path / "alice", ASSIGNMENT, student="a", seed=1, out=tmp_path / "out", isolation=Tier.PROCESS
     )
-    assert graded.result.isolation == "process"
-    assert graded.result.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
+    assert graded.isolation == "process"
+    assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE

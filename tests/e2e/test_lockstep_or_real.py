@@ -33,7 +33,7 @@ THREADED = """thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=
 def grade(folder: Path, assignment: str = "02_nodes", checks: tuple[str, ...] = CHECKS) -> Result:
     """Grade a source tree by a few of its assignment's checks."""
     out = folder / "out"
-    return grade_submission(folder, assignment, student="s", seed=11, out=out, scope=Scope(only=checks)).result
+    return grade_submission(folder, assignment, student="s", seed=11, out=out, scope=Scope(only=checks))
 
 
 def outcomes(result: Result, checks: tuple[str, ...] = CHECKS) -> dict[str, str]:

@@ -44,9 +44,7 @@ def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _grade(path: Path, out: Path, lanes: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
-    return grade_submission(
-        path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=lanes
-    ).result
+    return grade_submission(path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=lanes)
 
 
 def _verdicts(result: Result) -> list[tuple[object, ...]]:

@@ -13,7 +13,7 @@ import pytest
 from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import UsageError
-from autograder.grading import Graded, request
+from autograder.grading import request
 from autograder.grading.batch import Entry, discover, grade_all
 from autograder.result import Result, Status, write_json
 
@@ -90,7 +90,7 @@ class Grader:
         seed: int,
         out: Path,
         isolation: object,
-    ) -> Graded:
+    ) -> Result:
         self._meeting.wait(60)
         self.graded.append(student)
         result = self._make(
@@ -100,7 +100,7 @@ class Grader:
             suite_version=suites.hidden(assignment).version,
         )
         write_json(out / "result.json", result.to_json())
-        return Graded(result, None)
+        return result
 
 
 @pytest.fixture

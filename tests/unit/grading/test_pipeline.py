@@ -47,7 +47,7 @@ def grade(folder: Path, worker: Worker) -> Result:
     """Grade something by a worker."""
     return grade_submission(
         folder, CHAPTER, student="s", seed=1, out=folder / "out", isolation=Tier.PROCESS, run_job=worker
-    ).result
+    )
 
 
 def test_it_is_met_again_alone_and_that_counts(tmp_path: Path, lost: Result) -> None:

@@ -22,7 +22,6 @@ from traitlets.config import PyFileConfigLoader
 
 import autograder.grading.request
 from autograder.checks import Check, Outcome
-from autograder.grading import Graded
 from autograder.grading.pipeline import NOTEBOOK
 from autograder.result import CheckResult, Result
 
@@ -54,6 +53,14 @@ def source_notebook() -> NotebookNode:
             grade("reaction", 4.0),
         ],
     )
+
+
+@dataclass
+class Graded:
+    """What the grader answers, and the notebook that it leaves beside it."""
+
+    result: Result
+    notebook: NotebookNode | None
 
 
 @dataclass
@@ -124,12 +131,12 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
     made = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
 
-    def grade(*args: Any, out: Path, **options: Any) -> Graded:
+    def grade(*args: Any, out: Path, **options: Any) -> Result:
         graded = made.grade(*args, out=out, **options)
         out.mkdir(parents=True, exist_ok=True)
         if graded.notebook is not None:
             nbformat.write(graded.notebook, out / NOTEBOOK)
-        return graded
+        return graded.result
 
     monkeypatch.setattr(autograder.grading.request, "grade_submission", grade)
     return made

@@ -13,7 +13,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
 from autograder.checks import Check, Outcome
 from autograder.exceptions import IsolationError
-from autograder.grading import DEFAULT_SEED, Graded
+from autograder.grading import DEFAULT_SEED
 from autograder.result import Artifact, CheckResult, Status
 
 # nbgrader's own use of SQLAlchemy.
@@ -37,7 +37,7 @@ def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
     )
 
 
-def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Any]) -> None:
     seen: list[tuple[Any, ...]] = []
 
     def grade(
@@ -48,7 +48,7 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
         seed: int,
         out: Path,
         isolation: str,
-    ) -> Graded:
+    ) -> Any:
         seen.append((path, assignment, student, seed, out, isolation))
         return verdict()
 
@@ -61,7 +61,7 @@ def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Graded]
     assert (out / "feedback.html").is_file()
 
 
-def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[..., Graded], tmp_path: Path) -> None:
+def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[..., Any], tmp_path: Path) -> None:
     trace = tmp_path / "executed"
     notebook = course.released
     cell(notebook, "free").source = f"open({str(trace)!r}, 'w')"
@@ -73,7 +73,7 @@ def test_the_submitted_notebook_is_not_executed(course: Any, verdict: Callable[.
 
 
 def test_outputs_of_the_sandboxed_run_are_shown_where_the_source_is_the_same(
-    course: Any, verdict: Callable[..., Graded]
+    course: Any, verdict: Callable[..., Any]
 ) -> None:
     notebook = course.released
     executed = copy.deepcopy(notebook)
@@ -88,7 +88,7 @@ def test_outputs_of_the_sandboxed_run_are_shown_where_the_source_is_the_same(
 
 
 def test_feedback_explains_each_group_and_shows_the_track(
-    course: Any, verdict: Callable[..., Graded], track: Callable[..., Artifact]
+    course: Any, verdict: Callable[..., Any], track: Callable[..., Artifact]
 ) -> None:
     course.grade = lambda *a, out, **k: verdict(artifacts=(track(out, check="turns"),))
     course.submit("alice", course.released)
@@ -101,7 +101,7 @@ def test_feedback_explains_each_group_and_shows_the_track(
 
 
 def test_a_student_that_forged_outputs_and_metadata_earns_nothing_by_it(
-    course: Any, verdict: Callable[..., Graded]
+    course: Any, verdict: Callable[..., Any]
 ) -> None:
     notebook = course.released
     forged = cell(notebook, "g-reaction")
@@ -166,7 +166,7 @@ def old_schema(notebook: NotebookNode) -> None:
     [drop, drop_everything, double, retype, unmark, claim_solution, strange_marks, extra_grade, old_schema],
 )
 def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
-    tamper: Callable[[NotebookNode], None], course: Any, verdict: Callable[..., Graded]
+    tamper: Callable[[NotebookNode], None], course: Any, verdict: Callable[..., Any]
 ) -> None:
     notebook = course.released
     tamper(notebook)
@@ -185,7 +185,7 @@ def test_a_tampered_notebook_neither_gains_points_nor_shrinks_the_maximum(
     ids=["empty", "cut", "binary", "list", "cells", "null"],
 )
 def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
-    data: bytes, course: Any, verdict: Callable[..., Graded]
+    data: bytes, course: Any, verdict: Callable[..., Any]
 ) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("bob", data)
@@ -194,7 +194,7 @@ def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
     assert course.grades("bob") == BOOKED
 
 
-def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict(status=Status.NOT_GRADED, checks=())
     course.submit("carol", course.released)
     done = course.autograde("carol")
@@ -204,14 +204,12 @@ def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callabl
     assert not (course.root / "autograded" / "carol" / "tiny").exists()
 
 
-def test_a_failing_grader_leaves_an_earlier_score_and_asks_for_an_eye(
-    course: Any, verdict: Callable[..., Graded]
-) -> None:
+def test_a_failing_grader_leaves_an_earlier_score_and_asks_for_an_eye(course: Any, verdict: Callable[..., Any]) -> None:
     course.submit("dave", course.released)
     course.grade = lambda *a, **k: verdict()
     assert course.autograde("dave")["success"]
 
-    def fail(*args: Any, **kwargs: Any) -> Graded:
+    def fail(*args: Any, **kwargs: Any) -> Any:
         raise IsolationError("this machine cannot isolate submissions")
 
     course.grade = fail
@@ -225,7 +223,7 @@ def test_a_failing_grader_leaves_an_earlier_score_and_asks_for_an_eye(
 
 
 def test_groups_that_do_not_fit_the_cells_are_refused(
-    course: Any, verdict: Callable[..., Graded], make_check: Callable[..., Check]
+    course: Any, verdict: Callable[..., Any], make_check: Callable[..., Check]
 ) -> None:
     checks = (CheckResult.of(make_check("starts", "It starts.", 3, "graph"), Outcome.PASSED),)
     course.grade = lambda *a, **k: verdict(checks=checks, max_score=3.0)
@@ -237,7 +235,7 @@ def test_groups_that_do_not_fit_the_cells_are_refused(
 
 
 def test_points_that_do_not_fit_the_cell_are_refused(
-    course: Any, verdict: Callable[..., Graded], make_check: Callable[..., Check]
+    course: Any, verdict: Callable[..., Any], make_check: Callable[..., Check]
 ) -> None:
     checks = tuple(
         CheckResult.of(make_check(group, "It works.", 5, group), Outcome.PASSED) for group in ("graph", "reaction")
@@ -249,7 +247,7 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
 
 
-def test_a_result_of_a_weaker_isolation_is_not_booked(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_a_result_of_a_weaker_isolation_is_not_booked(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict(isolation="process")
     course.submit("grace", course.released)
     done = course.autograde("grace")
@@ -258,7 +256,7 @@ def test_a_result_of_a_weaker_isolation_is_not_booked(course: Any, verdict: Call
     assert course.grades("grace")["grade-graph"] == (None, 3.0, True)
 
 
-def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = course.released
     notebook.cells += [
         new_markdown_cell("<script>alert('markdown')</script> [x](javascript:alert('link')) <img src=x onerror=a()>"),

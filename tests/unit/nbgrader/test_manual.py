@@ -13,8 +13,6 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_markdown_cell
 from nbgrader.api import Gradebook
 
-from autograder.grading import Graded
-
 from .conftest import ASSIGNMENT, ROOT, course_in, marked, source_notebook
 
 # nbgrader's own use of SQLAlchemy.
@@ -62,7 +60,7 @@ def test_the_release_holds_neither_the_mark_scheme_nor_the_model_answer(course: 
     assert not [word for word in ("BECAUSE", "MARK SCHEME", "SECRET") if word in text]
 
 
-def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
@@ -70,7 +68,7 @@ def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Ca
 
 
 def test_an_answer_that_nobody_wrote_has_no_points_and_waits_for_nobody(
-    course: Any, verdict: Callable[..., Graded]
+    course: Any, verdict: Callable[..., Any]
 ) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("bob", course.released)
@@ -78,7 +76,7 @@ def test_an_answer_that_nobody_wrote_has_no_points_and_waits_for_nobody(
     assert course.grades("bob") == {**TRUSTED, "explain": (0.0, 2.0, False)}
 
 
-def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict: Callable[..., Graded]) -> None:
+def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
@@ -86,9 +84,7 @@ def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict:
     assert cell(course.autograded("alice"), "explain").source == "Because it is so."
 
 
-def test_points_of_a_person_are_added_and_survive_another_autograding(
-    course: Any, verdict: Callable[..., Graded]
-) -> None:
+def test_points_of_a_person_are_added_and_survive_another_autograding(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
@@ -102,9 +98,7 @@ def test_points_of_a_person_are_added_and_survive_another_autograding(
         assert gradebook.find_grade("explain", ASSIGNMENT, ASSIGNMENT, "alice").manual_score == 1.5
 
 
-def test_an_answer_cell_that_forges_its_marks_is_still_for_a_person(
-    course: Any, verdict: Callable[..., Graded]
-) -> None:
+def test_an_answer_cell_that_forges_its_marks_is_still_for_a_person(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = answered(course, "### BEGIN MARK SCHEME\nAll points.\n### END MARK SCHEME")
     cell(notebook, "explain").metadata.nbgrader.update(points=100, solution=False, locked=True)
     cell(notebook, "question").source = "No marks are taken off."
