@@ -68,7 +68,12 @@ class Actions:
             peers = self._grader_node.publishers_of(feedback)
             self._grader_node.subscribe(feedback, kind.Impl.FeedbackMessage, self._on_feedback, requested_qos(peers))
             self._grader_node.subscribe(status, kind.Impl.GoalStatusMessage, self._on_status, requested_qos([]))
-        return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in _services(kind).items()]
+        services = {
+            "send_goal": kind.Impl.SendGoalService,
+            "cancel_goal": kind.Impl.CancelGoalService,
+            "get_result": kind.Impl.GetResultService,
+        }
+        return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in services.items()]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
         """Send a goal, and ask for its result once it is accepted.
@@ -114,14 +119,6 @@ class Actions:
             goal = self._goals.get(bytes(status.goal_info.goal_id.uuid))
             if goal is not None and goal.result is None:
                 goal.status = status.status
-
-
-def _services(kind: Any) -> dict[str, Any]:
-    return {
-        "send_goal": kind.Impl.SendGoalService,
-        "cancel_goal": kind.Impl.CancelGoalService,
-        "get_result": kind.Impl.GetResultService,
-    }
 
 
 def _goal_id(number: int) -> Any:

@@ -47,10 +47,6 @@ START_TIMEOUT = Timeout(
 STEP_TIMEOUT = Timeout(30.0, 10.0)
 
 
-class _NoAnswer(Exception):
-    """A program did not answer in time; the message says how long the wait was."""
-
-
 class Stepper:
     """One student's program in lockstep; a context manager that leaves no process behind.
 
@@ -137,9 +133,7 @@ class Stepper:
 
     def _expect(self, wanted: str, timeout: Timeout, on_timeout: Kind) -> Any:
         try:
-            event, record = protocol.parse(self._read_line(timeout))
-        except _NoAnswer as missing:
-            raise StudentError(diagnose_no_answer(on_timeout, str(missing), self.process.output)) from None
+            event, record = protocol.parse(self._read_line(timeout, on_timeout))
         except ProtocolError:
             raise StudentError(self._ending()) from None
         if event == "crash":
@@ -153,12 +147,8 @@ class Stepper:
             raise StudentError(self._ending())
         return record
 
-    def _read_line(self, timeout: Timeout) -> bytes:
-        """Return one line, or b'' at the end of the stream.
-
-        Raises:
-            _NoAnswer: the program did not answer in time.
-        """
+    def _read_line(self, timeout: Timeout, on_timeout: Kind) -> bytes:
+        """Return one line, or b'' at the end of the stream."""
         deadline, before = time.monotonic() + timeout.seconds, None
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
@@ -166,11 +156,11 @@ class Stepper:
             left = deadline - time.monotonic()
             if not self._selector.select(max(0.0, min(_TICK, left))):
                 if left <= 0.0:
-                    raise _NoAnswer(f"{timeout.seconds:.0f} s")
+                    raise self._no_answer(on_timeout, f"{timeout.seconds:.0f} s")
                 now = self.process.cpu_seconds()
                 before = now if before is None else before
                 if now - before > timeout.cpu_seconds:
-                    raise _NoAnswer(f"{timeout.cpu_seconds:.0f} s of computing")
+                    raise self._no_answer(on_timeout, f"{timeout.cpu_seconds:.0f} s of computing")
                 continue
             chunk = os.read(self._read_fd, 65536)
             if not chunk:
@@ -179,6 +169,9 @@ class Stepper:
         line, _, rest = bytes(self._buffer).partition(b"\n")
         self._buffer = bytearray(rest)
         return line + b"\n"
+
+    def _no_answer(self, kind: Kind, waited: str) -> StudentError:
+        return StudentError(diagnose_no_answer(kind, waited, self.process.output))
 
     def _ending(self) -> Diagnosis:
         self.process.wait(2.0)

@@ -105,7 +105,7 @@ def expect_argument(arguments: Mapping[str, Argument], name: str, default: str) 
     )
 
 
-def settle(harness: LaunchHarness, wanted: Collection[str], seconds: float = START_SECONDS) -> list[str]:
+def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
     """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
 
     Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
@@ -114,7 +114,6 @@ def settle(harness: LaunchHarness, wanted: Collection[str], seconds: float = STA
     Args:
         harness: of the launch.
         wanted: full names of the nodes; one that should be there twice comes twice.
-        seconds: of real time, at most.
     """
     state: tuple[object, ...] = ()
     since = time.monotonic()
@@ -128,7 +127,7 @@ def settle(harness: LaunchHarness, wanted: Collection[str], seconds: float = STA
             state, since = (nodes, running), time.monotonic()
         return time.monotonic() - since > QUIET_SECONDS
 
-    harness.wait_for(done, seconds)
+    harness.wait_for(done, START_SECONDS)
     require_written(harness.output)
     return harness.nodes()
 

@@ -28,16 +28,7 @@ class CellReport:
 
 
 def run_in_cell(make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = GRADING_CELL) -> CellReport:
-    """Run a trusted command in a new cell and wait for its end.
-
-    Args:
-        make_command: gets the cell's scratch folder, returns the command.
-        tier: how strongly the cell is kept apart.
-        limits: a bound on the whole cell, students' processes included.
-
-    Raises:
-        IsolationError: this machine cannot give the tier.
-    """
+    """Run a trusted command in a new cell and wait for its end; arguments and errors are those of `in_cell`."""
     with in_cell(make_command, tier, limits) as (process, _):
         process.wait(None)
         assert process.ending is not None
