@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.probes.sleeping import MAX_BYTES, sleeps
+from autograder.checks.ch06_testing.support.sleeping import MAX_BYTES, sleeps
 
 SLEEPY = """import time
 from time import sleep
