@@ -28,6 +28,8 @@ _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>[\[(].*[\])])")  # a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
 _CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
+_NOT_READ = re.compile(r"Caught multiple exceptions when trying to load file.*\n - (?P<what>.+)")
+_PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"]+)", line (?P<line>\d+)', re.MULTILINE)
 _STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
 _ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
 _DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
@@ -78,7 +80,7 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
         process.wait(SHOW_SECONDS)
         output, status = process.output, process.returncode
     require_written(output)
-    expect(status == 0, f"`ros2 launch -s {package} {file}` fails: {_last_line(output)}")
+    expect(status == 0, f"`ros2 launch -s {package} {file}` fails: {unreadable(output)}")
     return parse_arguments(output)
 
 
@@ -235,6 +237,19 @@ def trouble(output: str) -> str:
         # An argument that is refused, a package that is not there: `ros2 launch` says so last.
         return _last_line(output) if "error" in _last_line(output).lower() else ""
     return f"{', '.join(died)}{f' ({raised[-1]})' if raised else ''}"
+
+
+def unreadable(output: str) -> str:
+    """Return in a line why `ros2 launch` could not read a launch file, with the place in the student's file.
+
+    Its last line only says that there may be a syntax error.
+    """
+    what = match["what"] if (match := _NOT_READ.search(output)) else _last_line(output)
+    places = _PLACE.findall(with_source_paths(output))
+    if not places or ", line " in what:
+        return what
+    file, line = places[-1]
+    return f"{what} ({file}, line {line})"
 
 
 def require_written(output: str) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
+from difflib import get_close_matches
 from typing import NoReturn
 
 HOW_TO_GET_THE_REAL_ONE = (
@@ -17,11 +19,12 @@ class NotInStandInError(ImportError):
     """
 
 
-def not_covered(name: str, *, standin: str, reason: str = "") -> NotInStandInError:
-    """Return the error for `name`, which the real package has and the stand-in has not."""
+def not_covered(name: str, *, standin: str, reason: str = "", near: str = "") -> NotInStandInError:
+    """Return the error for `name`, which the stand-in has not; `near` is a name that was perhaps meant."""
+    meant = f" (did you mean '{near}'?)" if near else ""
     because = f" {reason}." if reason else ""
     return NotInStandInError(
-        f"'{name}' is not covered: this is the course's stand-in for {standin}, used because the real one is "
+        f"'{name}' is not covered{meant}: this is the course's stand-in for {standin}, used because the real one is "
         f"not installed.{because} To use '{name}', {HOW_TO_GET_THE_REAL_ONE}."
     )
 
@@ -29,13 +32,16 @@ def not_covered(name: str, *, standin: str, reason: str = "") -> NotInStandInErr
 def guard(module: str, reasons: Mapping[str, str] | None = None) -> Callable[[str], NoReturn]:
     """Return a module-level ``__getattr__`` that answers every uncovered name of `module` with that error.
 
-    `reasons` adds a sentence for names that deserve one. Private names stay an AttributeError, because
+    `reasons` adds a sentence for names that deserve one; a name that is nearly one of the module's is taken for a
+    typing error first. Private names stay an AttributeError, because
     Python and its tools ask modules for many of them and expect to be refused that way.
     """
 
     def missing(name: str) -> NoReturn:
         if name.startswith("_"):
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
-        raise not_covered(f"{module}.{name}", standin=module.partition(".")[0], reason=(reasons or {}).get(name, ""))
+        reason = (reasons or {}).get(name, "")
+        near = [] if reason else get_close_matches(name, vars(sys.modules[module]), n=1, cutoff=0.8)
+        raise not_covered(f"{module}.{name}", standin=module.partition(".")[0], reason=reason, near="".join(near))
 
     return missing

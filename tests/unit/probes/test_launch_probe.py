@@ -49,6 +49,28 @@ def test_shown_arguments_are_read_with_description_default_and_choices() -> None
     }
 
 
+NOT_READ = """Traceback (most recent call last):
+  File "/opt/launch/launch_description_sources.py", line 36, in load
+    exec(code)
+  File "/tmp/cell/ws/install/pkg/share/pkg/launch/robot.launch.py", line 28
+    def generate_launch_description()
+                                     ^
+SyntaxError: expected ':'
+
+launch.exceptions.InvalidLaunchFileError: Caught multiple exceptions when trying to load file of format [py]:
+ - SyntaxError: expected ':' (robot.launch.py, line 28)
+ - InvalidFrontendLaunchFileError: The launch file may have a syntax error, or its format is unknown
+"""
+
+
+def test_a_launch_file_that_cannot_be_read_is_told_by_its_error_and_line() -> None:
+    assert launch_probe.unreadable(NOT_READ) == "SyntaxError: expected ':' (robot.launch.py, line 28)"
+    raised = NOT_READ.replace("expected ':' (robot.launch.py, line 28)", "no such thing")
+    assert launch_probe.unreadable(raised) == "SyntaxError: no such thing (ws/src/pkg/launch/robot.launch.py, line 28)"
+    assert launch_probe.unreadable("Package 'pkg' not found\n") == "Package 'pkg' not found"
+    assert launch_probe.unreadable("") == "it says nothing"
+
+
 def test_choices_may_be_a_tuple() -> None:
     shown = SHOWN.replace("['drive', 'park']", "('drive', 'park')")
     assert launch_probe.parse_arguments(shown) == launch_probe.parse_arguments(SHOWN)

@@ -67,6 +67,13 @@ def test_an_uncovered_name_is_named_with_the_way_to_get_it(module: str, name: st
     assert text.endswith(f"To use '{module}.{name}', {ADVICE}.")
 
 
+def test_a_typing_error_is_answered_with_the_name_that_was_meant() -> None:
+    with pytest.raises(
+        NotInStandInError, match=r"^'launch_ros.actions.Nod' is not covered \(did you mean 'Node'\?\): "
+    ):
+        exec("from launch_ros.actions import Nod")
+
+
 def test_private_names_are_refused_the_python_way() -> None:
     assert not hasattr(launch.actions, "__wrapped__")
     with pytest.raises(AttributeError, match=r"module 'launch.actions' has no attribute '_private'"):
