@@ -11,30 +11,48 @@ from collections.abc import Iterator
 
 from autograder.lockstep.tracebacks import with_source_paths
 
+END, LINE = 50_000, 1_000  # characters
 _BEGIN = "Traceback (most recent call last):"
-_FRAME = re.compile(r'  File "(?P<file>[^"]+)", line (?P<line>\d+)')
+_FRAME = re.compile(r'  File "(?P<file>[^"]+)", line \d+')
+_IN_SETUP = re.compile(r'  File "setup.py", line (?P<line>\d+)')
+# rosidl on a line of a .msg, .srv or .action file, in a message of CMake's; and the traceback that it then prints.
+_DEFINITION = re.compile(
+    r"Error processing (?P<text>'.{1,200}') of '(?P<file>\S{1,200})':\n +'(?P<why>(?s:.{1,500}?))'\n *\n"
+)
+_CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # of setuptools: the frames called "<string>" below it are those of setup.py
-_EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:\s*\n)*---\n", re.MULTILINE)
+_EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.MULTILINE)
 # colcon's own error, told again, and its word about what this machine's ROS is made of.
 _OTHERS = re.compile(r"^(?:Command '\[|\[[\d.]+s\] WARNING:colcon\.colcon_ros\.prefix_path\.).*\n?", re.MULTILINE)
 
 
 def readable(log: str) -> str:
     """Return a log without the frames of colcon and setuptools; a traceback that has no other is left out."""
-    lines = iter(with_source_paths(log).splitlines())
+    lines = iter(with_source_paths(_bounded(log)).splitlines())
     kept: list[str] = []
     for line in lines:
         while line == _BEGIN:
             block, line = _own(lines)
             kept += block
         kept.append(line)
-    return _EMPTY_BLOCK.sub("", _OTHERS.sub("", "\n".join(kept) + "\n")).rstrip("\n")
+    text = _CMAKE_TRACEBACK.sub("", _OTHERS.sub("", "\n".join(kept) + "\n"))
+    return _EMPTY_BLOCK.sub("", text).rstrip("\n")
 
 
-def place_in_setup(log: str) -> str:
-    """Return where colcon could not read a setup.py, such as "setup.py, line 8: "; "" where it could."""
-    found = _FRAME.search(text) if 'File "setup.py"' in (text := readable(log)) else None
-    return f"{found['file']}, line {found['line']}: " if found and found["file"] == "setup.py" else ""
+def first_error(log: str) -> str:
+    """Return the first error of a failed build in a line, with the student's file where the log names it; or ""."""
+    if found := _DEFINITION.search(_bounded(log)):
+        return f"{found['file']}, {found['text']}: {' '.join(found['why'].split())}"
+    text = readable(log)
+    errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]
+    place = f"setup.py, line {found['line']}: " if (found := _IN_SETUP.search(text)) else ""
+    return f"{place}{errors[0][:300]}" if errors else ""
+
+
+def _bounded(log: str) -> str:
+    """Return the log's begin and end, and no longer line than `LINE`: students' builds write what they like."""
+    ends = log if len(log) <= 2 * END else f"{log[:END]}\n{log[-END:]}"
+    return "\n".join(line[:LINE] for line in ends.splitlines()) + "\n"
 
 
 def _own(lines: Iterator[str]) -> tuple[list[str], str]:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from autograder.building import cmake_overlay
-from autograder.building.build_log import place_in_setup, readable
+from autograder.building.build_log import first_error, readable
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import tail
@@ -104,6 +104,5 @@ def _build_failure(output: str, ending: Ending | None) -> str:
         )
     # Before that, colcon only looks at what lies in src, and complains of packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]
-    errors = [line.strip() for line in output.splitlines() if "Error" in line or "error:" in line]
-    first = f" The first error: {place_in_setup(output)}{errors[0][:300]}" if errors else ""
-    return f"colcon build failed.{first}"
+    first = first_error(output)
+    return f"colcon build failed. The first error: {first}" if first else "colcon build failed."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.building.build_log import place_in_setup, readable
+from autograder.building.build_log import END, first_error, readable
 
 COLCON = """--- stderr: pkg
 Traceback (most recent call last):
@@ -40,29 +40,76 @@ ImportError: cannot import name 'version'
 """
 
 
+MESSAGE = """CMake Error at /opt/rosidl_adapt_interfaces.cmake:57 (message):
+  returned error code 1:
+
+  Error processing 'strin wrong' of 'pkg/Status':
+  ''strin' is an invalid message name.  It should have
+  the pattern'
+
+  Traceback (most recent call last):
+
+    File "<frozen runpy>", line 198, in _run_module_as_main
+    File "/venv/rosidl_adapter/parser.py", line 206, in __init__
+      raise InvalidResourceName(
+
+  rosidl_adapter.parser.InvalidResourceName: 'strin' is an invalid message
+  name.
+
+Call Stack (most recent call first):
+  CMakeLists.txt:8 (rosidl_generate_interfaces)
+"""
+SHORT = """CMake Error at /opt/rosidl_adapt_interfaces.cmake:57 (message):
+  returned error code 1:
+
+  Error processing 'strin wrong' of 'pkg/Status':
+  ''strin' is an invalid message name.  It should have
+  the pattern'
+
+  rosidl_adapter.parser.InvalidResourceName: 'strin' is an invalid message
+  name.
+
+Call Stack (most recent call first):
+  CMakeLists.txt:8 (rosidl_generate_interfaces)"""
+
+
 @pytest.mark.parametrize(
-    ("log", "shown", "place"),
+    ("log", "shown", "error"),
     [
         (
             SETUP + SYNTAX + COLCON,
             'Starting >>> pkg\nTraceback (most recent call last):\n  File "setup.py", line 8\n    nam=,\n        ^\n'
             "SyntaxError: invalid syntax\nFailed   <<< pkg [0.27s, exited with code 1]",
-            "setup.py, line 8: ",
+            "setup.py, line 8: SyntaxError: invalid syntax",
         ),
         (
             SETUP + RAISED + COLCON,
             'Starting >>> pkg\nTraceback (most recent call last):\n  File "setup.py", line 5, in <module>\n'
             "distutils.errors.DistutilsSetupError: 'packages' must be a list\n"
             "Failed   <<< pkg [0.27s, exited with code 1]",
-            "setup.py, line 5: ",
+            "setup.py, line 5: distutils.errors.DistutilsSetupError: 'packages' must be a list",
         ),
-        (NODE, NODE.replace("/tmp/cell-1/", "").rstrip(), ""),
+        (NODE, NODE.replace("/tmp/cell-1/", "").rstrip(), "ImportError: cannot import name 'version'"),
+        (MESSAGE, SHORT, "pkg/Status, 'strin wrong': 'strin' is an invalid message name. It should have the pattern"),
         (COLCON, "Failed   <<< pkg [0.27s, exited with code 1]", ""),
-        ("--- stderr: pkg\n\n---\nerror: can't copy 'resource/pkg'", "error: can't copy 'resource/pkg'", ""),
-        ("--- stderr: pkg\nerror: no\n---", "--- stderr: pkg\nerror: no\n---", ""),
+        (
+            "--- stderr: pkg\n\n---\nerror: can't copy 'resource/pkg'",
+            "error: can't copy 'resource/pkg'",
+            "error: can't copy 'resource/pkg'",
+        ),
+        ("--- stderr: pkg\nerror: no\n---", "--- stderr: pkg\nerror: no\n---", "error: no"),
         ("Traceback (most recent call last):", "", ""),
     ],
 )
-def test_only_what_the_student_wrote_is_shown(log: str, shown: str, place: str) -> None:
+def test_only_what_the_student_wrote_is_shown(log: str, shown: str, error: str) -> None:
     assert readable(log) == shown
-    assert place_in_setup(log) == place
+    assert first_error(log) == error
+
+
+@pytest.mark.parametrize("part", ["a/", "Error processing '", "\n", "--- stderr: x\n\n", f"{SETUP}{SYNTAX}"])
+def test_of_a_long_log_both_ends_are_read(part: str) -> None:
+    """Each part, a million characters of it, would take minutes where a pattern looks back."""
+    log = f"{SETUP}{SYNTAX}{part * (1_000_000 // len(part))}\nthe end"
+    assert first_error(log) == "setup.py, line 8: SyntaxError: invalid syntax"
+    assert readable(log).endswith("the end")
+    assert len(readable(log)) <= 2 * END + 2
