@@ -29,7 +29,7 @@ _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<p
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 
 
-def shell(command: str, *, seconds: float = 120.0, workspace: str | Path = "ws") -> None:
+def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws") -> None:
     """Run a command to its end and print its output.
 
     A build of packages whose files are still to be written is not run: their names are printed instead.
