@@ -53,6 +53,7 @@ class Harness(ABC):
         offers: topics that the grader publishes, with their types.
         listens: topics that the grader subscribes to, with their types.
         arguments: of the one program.
+        clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
 
     Attributes:
         node: the grader's node; its graph functions show what the student's programs really offer.
@@ -75,7 +76,9 @@ class Harness(ABC):
         offers: Mapping[str, type] | None = None,
         listens: Mapping[str, type] | None = None,
         arguments: tuple[str, ...] = (),
+        clock_rate: float = 1.0,
     ) -> None:
+        self._clock_rate = clock_rate
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
         # Two harnesses may be open at once, with programs of the same names: each has a ROS domain of its own.

@@ -71,7 +71,7 @@ class SteppedHarness(Harness):
         self.notes: dict[str, str] = {}
         self._delivery_seconds_left = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
-            stepper = Stepper(self._sandbox, path, program.arguments)
+            stepper = Stepper(self._sandbox, path, program.arguments, self._clock_rate)
             self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
         for stepped in self._stepped:
             with suppress(_OptionalProgramLost), self._attributing(stepped):

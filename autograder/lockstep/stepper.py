@@ -57,9 +57,12 @@ class Stepper:
         spec: the sandbox, which shows the program and the host.
         executable: the program's path.
         arguments: the program's.
+        clock_rate: seconds that the clocks of its machine count in a second of ROS time.
     """
 
-    def __init__(self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
+    ) -> None:
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
         command = [
@@ -68,6 +71,7 @@ class Stepper:
             str(their_read),
             str(their_write),
             str(START_NS),
+            str(clock_rate),
             str(executable),
             *arguments,
         ]

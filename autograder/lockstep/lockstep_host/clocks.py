@@ -1,8 +1,8 @@
-"""Clocks: every clock that the student's code reads shows ROS time.
+"""Clocks: every clock that the student's code reads depends on ROS time alone.
 
-Python's `time` module shows it as well. Each reading takes 10 µs of ROS time, so a loop that waits for time to pass
-ends. Other code, such as rclpy's or Python's own, reads the machine's clocks. Sleeping, by `time` or by a clock of
-rclpy's, lets ROS time pass.
+The machine's clocks, those of Python's `time` module too, show ROS time unless they are told to run at another rate.
+Each reading of them takes 10 µs, so a loop that waits for time to pass ends. Other code, such as rclpy's or Python's
+own, reads the true ones. Sleeping, by `time` or by a clock of rclpy's, lets ROS time pass.
 """
 
 from __future__ import annotations
@@ -29,12 +29,15 @@ class Clocks:
         ros_time: returns ROS time in nanoseconds.
         sleep: lets as many nanoseconds of ROS time pass; returns False where the machine's time has to pass instead.
         host: the host's own folder, whose code keeps the machine's clocks.
+        rate: seconds that the machine's clocks count in a second of ROS time.
     """
 
-    def __init__(self, ros_time: Callable[[], int], sleep: Callable[[int], bool], host: str) -> None:
+    def __init__(self, ros_time: Callable[[], int], sleep: Callable[[int], bool], host: str, rate: float = 1.0) -> None:
         self._ros_time = ros_time
         self._sleep = sleep
         self._host = host
+        self._rate = rate
+        self._start = ros_time()
         self._last = 0
 
     def install(self) -> None:
@@ -45,14 +48,15 @@ class Clocks:
         machine_sleep = time.sleep
 
         def sleep(seconds: float) -> None:
-            if not self._sleep(round(seconds * 1e9)):
+            if not self._sleep(round(seconds * 1e9 / self._rate)):
                 machine_sleep(seconds)
 
         def sleep_until(clock: Any, until: Time, context: Any = None) -> bool:
             context = context or get_default_context()
             if not context.ok() or until.clock_type != clock.clock_type:
                 return bool(_clock_sleep_until(clock, until, context))  # which raises
-            sleep(max(0, until.nanoseconds - self._shown(clock)) / 1e9)
+            left = max(0, until.nanoseconds - self._shown(clock))
+            sleep(left / 1e9 * (self._rate if clock.clock_type == ClockType.ROS_TIME else 1.0))
             return bool(context.ok())
 
         def sleep_for(clock: Any, duration: Any, context: Any = None) -> bool:
@@ -65,8 +69,9 @@ class Clocks:
         Clock.sleep_for = sleep_for
 
     def read(self) -> int:
-        """Return ROS time in nanoseconds, a little later each time."""
-        self._last = max(self._last + READING, self._ros_time())
+        """Return the time of the machine's clocks in nanoseconds, a little later each time."""
+        now = self._start + round((self._ros_time() - self._start) * self._rate)
+        self._last = max(self._last + READING, now)
         return self._last
 
     def _shown(self, clock: Any) -> int:

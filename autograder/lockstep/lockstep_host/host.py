@@ -46,6 +46,7 @@ class Host:
     Args:
         pipes: to the grader.
         start_ns: the ROS time at which the program starts.
+        clock_rate: seconds that the machine's clocks count in a second of ROS time.
 
     Attributes:
         time: ROS time in nanoseconds.
@@ -53,7 +54,7 @@ class Host:
         wakes: instants at which something wants to go on; None for what waits without a time-out.
     """
 
-    def __init__(self, pipes: Pipes, start_ns: int) -> None:
+    def __init__(self, pipes: Pipes, start_ns: int, clock_rate: float = 1.0) -> None:
         self.pipes = pipes
         self.time = start_ns
         self.phase = "import"
@@ -61,7 +62,7 @@ class Host:
         self.wakes: list[int | None] = []
         self.hooks = Hooks(self.counts, self.note)
         self.blocking = Blocking(self)
-        self.clocks = Clocks(lambda: self.time, self.blocking.sleep, str(Path(__file__).parent))
+        self.clocks = Clocks(lambda: self.time, self.blocking.sleep, str(Path(__file__).parent), clock_rate)
         self._nodes: list[weakref.ref[Any]] = []
         self._clocks: weakref.WeakSet[Any] = weakref.WeakSet()  # time sources
         self._log_clock = ROSClock()  # rclpy throttles logs by the wall clock, which steps leave far behind

@@ -39,6 +39,8 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
     near, far = contract.SAFETY_DISTANCE - margin, contract.SAFETY_DISTANCE + margin
     expect_turn(robot.see(scan(Part(-3.0, 3.0, near))), f"With something {near:.2f} m ahead")
     expect_forward(robot.see(scan(Part(-3.0, 3.0, far))), f"With something {far:.2f} m ahead")
+    limit = contract.SAFETY_DISTANCE  # not nearer than that, and exact in a message's float32
+    expect_forward(robot.see(scan(Part(-3.0, 3.0, limit))), f"With something exactly {limit:g} m ahead")
 
 
 @check(points=3, holds="sector", depends=("forward_when_clear",), doc=contract.LASER_SCAN)

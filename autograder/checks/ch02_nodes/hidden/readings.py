@@ -8,9 +8,11 @@ import random
 from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_stop, expect_turn
-from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
+from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
 
 check = group("readings")
+# range_min, range_max, a reading that counts, one that does not; in metres, and exact in a message's float32.
+OTHER_LIMITS = ((0.5, RANGE_MAX, 0.5, 0.25), (RANGE_MIN, 0.75, 0.75, 0.875))
 REACTS = ("forward_when_clear", "turns_when_blocked")
 
 
@@ -56,6 +58,13 @@ def test_phantoms(robot: Robot, draw: random.Random) -> None:
     expect_forward(
         robot.see(scan(Part(bearing, bearing + 5.0, RANGE_MAX + 1.0))), "With a few readings above range_max"
     )
+    for low, high, counts, phantom in OTHER_LIMITS:
+        lidar = f"from a lidar of {low:g} to {high:g} m"
+        for reading, expect_reaction in ((counts, expect_turn), (phantom, expect_forward)):
+            shown = scan(Part(bearing, bearing + 5.0, reading), fill=math.inf, limits=(low, high))
+            expect_reaction(robot.see(shown), f"With readings of {reading:g} m ahead, {lidar}")
+    far = scan(fill=5.0, limits=(RANGE_MIN, 10.0))
+    expect_forward(robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m")
 
 
 @check(points=2, holds="blind", depends=REACTS)

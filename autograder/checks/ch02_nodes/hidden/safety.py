@@ -15,6 +15,7 @@ from autograder.checks.ch02_nodes.support.robot import (
     expect_stop,
 )
 from autograder.checks.ch02_nodes.support.scans import scan
+from autograder.harness import Workspace
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.time_record import LOCKSTEP
 
@@ -22,6 +23,7 @@ check = group("safety")
 MARGIN = 0.05  # s around the time-out, a tenth of it
 REAL_MARGIN = 0.15  # s, where time is real and messages are late
 FINE = 0.01  # s between two looks at the clock
+SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a robot that must not look at them
 
 
 @check(points=2, holds=("no-scan", "cmd-vel"), depends=("publishes_cmd_vel",))
@@ -35,8 +37,8 @@ def test_stops_before_first_scan(fresh_robot: Robot) -> None:
 @check(points=3, holds=("stale", "ros-time"), depends=("forward_when_clear",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
-def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
-    """It stands still when the newest scan is older than 0.5 s: the lidar has died."""
+def test_stops_when_stale(workspace: Workspace, robot: Robot, draw: random.Random) -> None:
+    """It stands still when the newest scan is older than 0.5 s of ROS time: the lidar has died."""
     distance = draw.uniform(1.5, 3.0)
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
     margin = MARGIN if robot.time == LOCKSTEP else REAL_MARGIN
@@ -49,6 +51,8 @@ def test_stops_when_stale(robot: Robot, draw: random.Random) -> None:
     came = _show_before_command(robot, scan(fill=distance), first + 0.01)
     _run_finely(robot, 2.0)
     expect_stop(robot.messages("/cmd_vel", since=came + first), f"{first:.2f} s after the last scan and later")
+    if robot.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
+        _expect_ros_time(workspace, scan(fill=distance))
 
 
 @check(points=1, holds=("stale", "clear"), depends=("stops_when_stale",))
@@ -58,6 +62,15 @@ def test_recovers(robot: Robot, draw: random.Random) -> None:
     distance = draw.uniform(1.5, 3.0)
     robot.left_alone(2.0)
     expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
+
+
+def _expect_ros_time(workspace: Workspace, shown: LaserScan) -> None:
+    """Fail the check if the age of a scan depends on another clock than that of ROS."""
+    with Robot(workspace, clock_rate=SLOW) as robot:
+        robot.see(shown)
+        robot.run(contract.STALE_AFTER + MARGIN)
+        blind = robot.left_alone(contract.STALE_AFTER)
+        expect_stop(blind, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan")
 
 
 def _show_before_command(robot: Robot, shown: LaserScan, age: float) -> float:

@@ -23,8 +23,8 @@ SETTLED = 0.25  # s: a controller at 10 Hz has answered a scan by then
 class Robot(AutoHarness):
     """A harness in which scans are shown and commands are read."""
 
-    def __init__(self, workspace: Workspace) -> None:
-        super().__init__(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS)
+    def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
+        super().__init__(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS, clock_rate=clock_rate)
 
     def see(self, scan: LaserScan, seconds: float = 1.0) -> list[Stamped]:
         """Show a scan ten times a second; return the commands that came once the controller had time to react."""

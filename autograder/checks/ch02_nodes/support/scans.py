@@ -21,7 +21,12 @@ class Part:
 
 
 def scan(
-    *parts: Part, fill: float = 3.0, beams: int = 360, first_bearing: float = 0.0, last_bearing: float | None = None
+    *parts: Part,
+    fill: float = 3.0,
+    beams: int = 360,
+    first_bearing: float = 0.0,
+    last_bearing: float | None = None,
+    limits: tuple[float, float] = (RANGE_MIN, RANGE_MAX),
 ) -> LaserScan:
     """Return a scan that reads `fill` everywhere but in `parts`; a later part goes over an earlier one.
 
@@ -31,6 +36,7 @@ def scan(
         beams: how many.
         first_bearing: the bearing of beam 0 in degrees.
         last_bearing: the bearing of the last beam; a full turn without a doubled beam when not given.
+        limits: `range_min` and `range_max`, in metres.
     """
     last = first_bearing + 360.0 * (beams - 1) / beams if last_bearing is None else last_bearing
     increment = math.radians(last - first_bearing) / (beams - 1)
@@ -40,7 +46,7 @@ def scan(
     message.angle_min, message.angle_increment = start, increment
     message.angle_max = start + increment * (beams - 1)
     message.scan_time = 0.1
-    message.range_min, message.range_max = RANGE_MIN, RANGE_MAX
+    message.range_min, message.range_max = limits
     bearings = [math.degrees(math.remainder(start + i * increment, math.tau)) for i in range(beams)]
     message.ranges = [_reading(bearing, parts, fill) for bearing in bearings]
     return message
