@@ -39,6 +39,7 @@ class Robot(Node):
         self.planner = self.create_publisher(Twist, 'cmd_vel_raw', 10)
         self.seen = []  # what has come on distance
         self.commands = []  # what has come on cmd_vel
+        self.number = 0.0  # of the newest question
         self.create_subscription(Range, 'distance', self.seen.append, qos_profile_sensor_data)
         self.create_subscription(Twist, 'cmd_vel', self.commands.append, 10)
         self.nodes = [self]
@@ -57,7 +58,7 @@ class Robot(Node):
                    and self.count_publishers('cmd_vel') > 0, seconds)
 
     def until(self, condition, seconds=DEADLINE):
-        """Spin until condition() is true; fail the test when that takes longer than that."""
+        """Spin until condition() is true; fail the test when it takes more than `seconds`."""
         deadline = time.monotonic() + seconds
         while not condition():
             assert time.monotonic() < deadline, f'still not so after {seconds:g} s'
@@ -77,12 +78,15 @@ class Robot(Node):
 
     def ask(self, speed, turn=0.0):
         """Let the planner publish a command; return the answer on cmd_vel."""
+        self.number += 1.0
         wanted = Twist()
         wanted.linear.x, wanted.angular.z = speed, turn
-        count = len(self.commands)
+        wanted.linear.z = self.number  # comes back in the answer; a stop has 0 there
         self.planner.publish(wanted)
-        self.until(lambda: len(self.commands) > count)
-        return self.commands[count]
+        self.until(lambda: self.number in [command.linear.z for command in self.commands])
+        answer = next(command for command in self.commands if command.linear.z == self.number)
+        answer.linear.z = 0.0
+        return answer
 
     def leave(self):
         """End all nodes of the test."""
