@@ -24,7 +24,7 @@ def test_words_cells_and_the_lines_of_answers_are_counted() -> None:
 
 def test_the_promise_has_a_time_to_read_and_a_time_to_write() -> None:
     assert promise(Effort(words=2400, cells=20, lines=50)) == (
-        "40 minutes to read and run, 40 minutes for the exercises"
+        "40 minutes to read and run, 60 minutes for the exercises"
     )
 
 

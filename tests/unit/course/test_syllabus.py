@@ -64,7 +64,7 @@ def test_a_key_that_the_syllabus_does_not_have_is_named() -> None:
 def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
     covered = find_coverage(SYLLABUS, [("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])])
     text = page(SYLLABUS, covered, {"02_nodes": "A | B"}, {"02_nodes": Effort(words=240, cells=10, lines=100)})
-    assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 | 240 | 10 | 100 | 90 minutes |" in text
+    assert "| [02_nodes](02_nodes/02_nodes.ipynb) | A \\| B | 2 | 240 | 10 | 100 | 2 hours |" in text
     assert "| Write nodes | 02_nodes | Write it | `named` |" in text
     assert "| 7 | no | yes | 02_nodes: Write it |" in text
 
