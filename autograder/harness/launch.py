@@ -98,6 +98,7 @@ class LaunchHarness:
         file: its name.
         arguments: launch arguments by name.
         listens: topics that the grader subscribes to from the start, with their types.
+        environment: variables that are set for the launch.
     """
 
     def __init__(
@@ -108,10 +109,14 @@ class LaunchHarness:
         arguments: Mapping[str, str] | None = None,
         *,
         listens: Mapping[str, type] | None = None,
+        environment: Mapping[str, str] | None = None,
     ) -> None:
-        self._make_again = partial(LaunchHarness, workspace, package, file, arguments, listens=listens)
+        self._make_again = partial(
+            LaunchHarness, workspace, package, file, arguments, listens=listens, environment=environment
+        )
         self._domain = Domain(workspace.domain + next(_NUMBERS))
-        self._sandbox = sandbox(replace(workspace, domain=self._domain.number))
+        plain = sandbox(replace(workspace, domain=self._domain.number))
+        self._sandbox = replace(plain, environment={**plain.environment, **(environment or {})})
         words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
         self._words = ("launch", "--noninteractive", package, file, *words)

@@ -36,3 +36,4 @@ def test_inputs_differ_from_the_defaults_that_they_must_win_over() -> None:
         assert inputs.file["report_period"] != 0.5
         assert len({*inputs.names, "robot1", "robot2"}) == 4
         assert inputs.empty < 20.0 < inputs.enough
+        assert inputs.whole_battery > 20

@@ -6,6 +6,7 @@ import math
 import random
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from sensor_msgs.msg import BatteryState
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
@@ -137,10 +138,10 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
 @hint("Compare power_supply_status with BatteryState.POWER_SUPPLY_STATUS_CHARGING.")
 def test_status_charging(reporter: Reporter) -> None:
     """is_charging follows the battery's power_supply_status."""
-    for charging in (True, False):
-        reporter.publish_battery(0.5, charging=charging)
+    for name in ("CHARGING", "DISCHARGING", "FULL", "NOT_CHARGING"):
+        reporter.publish_battery(0.5, status=getattr(BatteryState, f"POWER_SUPPLY_STATUS_{name}"))
         said = reporter.status().is_charging
-        expect(said is charging, f"is_charging is {said} while the battery is {'' if charging else 'dis'}charging.")
+        expect(said is (name == "CHARGING"), f"is_charging is {said} while power_supply_status is {name}.")
 
 
 @check(points=1, holds=("joint-topic", "newest"), depends=NEEDS)

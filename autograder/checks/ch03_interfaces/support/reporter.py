@@ -28,9 +28,8 @@ class Reporter(AutoHarness):
         super().__init__(workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments)
         self.types = types
 
-    def publish_battery(self, percentage: float, *, charging: bool = False) -> None:
+    def publish_battery(self, percentage: float, *, status: int = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING) -> None:
         """Let the battery speak, from 0.0 to 1.0; the message is on its way until time goes on."""
-        status = BatteryState.POWER_SUPPLY_STATUS_CHARGING if charging else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
         self.publish(BATTERY, BatteryState(percentage=percentage, power_supply_status=status))
 
     def publish_joints(self, positions: Sequence[float]) -> None:

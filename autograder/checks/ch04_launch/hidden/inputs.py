@@ -20,6 +20,7 @@ class Inputs:
         number_name: a robot's name that looks like a number.
         names: of two robots.
         enough: a battery that is good enough, in percent, with a fraction.
+        whole_battery: another one, written without a point.
         empty: one that is not.
     """
 
@@ -29,6 +30,7 @@ class Inputs:
     number_name: str
     names: tuple[str, str]
     enough: float
+    whole_battery: int
     empty: float
 
 
@@ -46,6 +48,7 @@ def draw_inputs(draw: random.Random) -> Inputs:
         number_name=str(draw.randint(10, 99)),
         names=(first, second),
         enough=draw.randint(21, 98) + 0.5,
+        whole_battery=draw.randint(21, 98),
         empty=draw.randint(1, 18) + 0.5,
     )
 

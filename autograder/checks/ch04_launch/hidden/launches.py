@@ -15,6 +15,8 @@ from autograder.harness.launch import LaunchHarness
 from autograder.probes.launch_probe import Argument, shown_arguments, with_files
 
 CONFIG = "config/robot.yaml"
+# launch shows standard error in any case, and standard output where it is told to.
+ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
@@ -30,7 +32,7 @@ class Launches:
         self._stack = ExitStack()
         self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
-        self._arguments: dict[str, Argument] = {}
+        self._arguments: dict[str, dict[str, Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
         """Return robot.launch.py as it runs with these arguments."""
@@ -38,8 +40,7 @@ class Launches:
 
     def robot_arguments(self) -> dict[str, Argument]:
         """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
-        self._arguments = self._arguments or shown_arguments(self._workspace, PACKAGE, ROBOT)
-        return self._arguments
+        return self._shown(ROBOT)
 
     def fleet(self, **arguments: object) -> LaunchHarness:
         """Return two_robots.launch.py as it runs with these arguments."""
@@ -57,9 +58,18 @@ class Launches:
         """Return safe_start.launch.py as it runs with these arguments."""
         return self._harness(SAFE, arguments, {})
 
+    def safe_arguments(self) -> dict[str, Argument]:
+        """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
+        return self._shown(SAFE)
+
     def close(self) -> None:
         """End what still runs."""
         self._stack.close()
+
+    def _shown(self, file: str) -> dict[str, Argument]:
+        if file not in self._arguments:
+            self._arguments[file] = shown_arguments(self._workspace, PACKAGE, file)
+        return self._arguments[file]
 
     def _harness(
         self, file: str, arguments: Mapping[str, object], listens: Mapping[str, type], robot: str | None = None
@@ -67,7 +77,8 @@ class Launches:
         key = f"{file} {robot} {sorted(arguments.items())}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
-            harness = LaunchHarness(self._copy(file, robot), PACKAGE, file, words, listens=listens)
+            copy = self._copy(file, robot)
+            harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=ON_STDOUT)
             self._harnesses[key] = self._stack.enter_context(harness)
         return self._harnesses[key]
 

@@ -12,6 +12,7 @@ from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
 check = group("robot")
+SHOWN_SECONDS = 5.0  # real time until a line of a node that runs is shown
 TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
 
@@ -46,12 +47,15 @@ def test_starts(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
 
 
-@check(points=1, holds=("argument-wins", "robot-name", "speed"), depends=("starts",))
+@check(points=1, holds=("argument-wins", "robot-name", "speed", "screen"), depends=("starts",))
 @hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
+@hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
-    """Without arguments, the robot is called robot1 and drives at 0.2 m/s, whatever the parameters file says."""
+    """Without arguments, it is robot1 at 0.2 m/s, whatever the parameters file says, and both nodes are on screen."""
     launch_probe.expect_parameters(launches.robot(), DRIVER, {"speed": contract.SPEED})
     launch_probe.expect_parameters(launches.robot(), REPORTER, {"robot_name": contract.ROBOT_NAME})
+    for node, line in ((DRIVER, "Driving at"), (REPORTER, "Reporting for")):
+        _expect_on_screen(launches.robot(), node, line)
 
 
 @check(points=2, holds=("file", "driver", "reporter"), depends=("starts",), doc=contract.LARGE)
@@ -117,3 +121,9 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
 def test_clean_stop(launches: Launches) -> None:
     """Ctrl-C ends both nodes cleanly and leaves nothing behind."""
     launch_probe.expect_clean_stop(launches.robot())
+
+
+def _expect_on_screen(harness: LaunchHarness, node: str, line: str) -> None:
+    """Fail the check unless a node's standard output is shown, on which these launches make it log."""
+    shown = harness.wait_for(lambda: line in harness.output, SHOWN_SECONDS)
+    expect(shown, f"What {node} prints is not on the screen: it lacks output='screen'.", fraction=0.5)

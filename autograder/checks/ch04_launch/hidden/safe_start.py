@@ -66,13 +66,15 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
 @check(points=1, holds="battery", depends=("order",))
 @hint("80 is an integer for YAML, and the self-test's battery is a float: the self-test dies, as if it had failed.")
 @hint("ParameterValue(LaunchConfiguration('battery'), value_type=float)")
-def test_whole_battery(launches: Launches) -> None:
-    """The default, 80 without a point, is a battery too."""
-    harness = launches.safe()
+def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
+    """A battery without a point is a battery too, and 80 is the default."""
+    harness = launches.safe(battery=inputs.whole_battery)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
-    expect(
-        DRIVER in nodes, f"Without an argument, the driver does not run. {launch_probe.trouble(harness.output)}".strip()
-    )
+    what = f"With battery:={inputs.whole_battery}, the driver does not run."
+    expect(DRIVER in nodes, f"{what} {launch_probe.trouble(harness.output)}".strip())
+    default = launches.safe_arguments()["battery"].default
+    said = "no default" if default is None else f"the default {default!r}"
+    expect(default == "80", f"The argument battery has {said}, instead of '80'.", fraction=0.5)
 
 
 @check(points=2, holds="safe-reporter", depends=("reporter_first",), doc=contract.LAUNCH)
@@ -91,9 +93,9 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
 
 @check(points=1, holds="safe-driver", depends=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
-def test_driver_end(launches: Launches) -> None:
+def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """When the driver ends by itself, with exit status 0, everything ends too."""
-    _expect_end(launches.safe(), signal.SIGINT, "The driver ended with exit status 0")
+    _expect_end(launches.safe(battery=inputs.whole_battery), signal.SIGINT, "The driver ended with exit status 0")
 
 
 def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> None:

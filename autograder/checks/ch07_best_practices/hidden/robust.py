@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
+from typing import Any
 
 from rclpy.qos import DurabilityPolicy
 
@@ -18,6 +19,7 @@ from autograder.probes.parameters import NodeParameters, Value, differences, mis
 
 check = group("robust")
 DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}
+READINGS = 20
 LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors": (1, 1000)}
 
 
@@ -55,6 +57,16 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     got = said[wrong] if wrong < len(said) else "nothing"
     sentence = f"With seed {seed} and failure_probability {probability}, reading {wrong + 1} made it say {got!r}"
     expect(said == wanted, f"{sentence} instead of {wanted[min(wrong, 39)]!r}.", fraction=0.0)
+    never, always = 0.0, 1.0
+    steps = (call("read_sensor", made(0), never), call("read_sensor", made(0), always), call("random", on=0))
+    succeeded, failed, third = calls(workspace, ROBUST, make("Random", seed, module="random"), *steps)[1:]
+    ended = (succeeded.value, failed.raised)
+    said_of = f"With the probabilities 0 and 1, read_sensor returned {ended[0]!r} and raised {ended[1] or 'nothing'}"
+    expect(ended == ("Success", "SensorError"), f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
+    twice_asked = random.Random(seed)
+    wanted_third = [twice_asked.random() for _ in range(3)][2]
+    asked = third.value == wanted_third
+    expect(asked, "In two readings with the probabilities 0 and 1, it did not ask the generator twice.", fraction=0.5)
 
 
 @check(points=1, holds=("seed", "generator"), depends=("once_a_second",), doc=RANDOM)
@@ -92,8 +104,8 @@ def test_errors_throttled(workspace: Workspace) -> None:
 
 @check(points=1, holds="fatal-log", depends=("once_a_second",), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
-def test_fatal_once(workspace: Workspace) -> None:
-    """That it became unstable is logged as fatal, once."""
+def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
+    """That it became unstable is logged as fatal, once in each row of failures."""
     with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
         harness.hear(3)
         early = harness.output.count("[FATAL]")
@@ -101,6 +113,12 @@ def test_fatal_once(workspace: Workspace) -> None:
         fatal = harness.output.count("[FATAL]")
     expect(early == 0, "It logged as fatal what max_errors still allows.")
     expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
+    seed = next(seed for seed in itertools.count(draw.randint(1, 2**30)) if _rows(seed) >= 2)
+    times = _rows(seed)
+    with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
+        harness.hear(READINGS)
+        fatal = harness.output.count("[FATAL]")
+    expect(fatal == times, f"It became unstable {times} times, and logged {fatal} fatal messages.", fraction=0.5)
 
 
 @check(points=1, holds="recovery-log", depends=("counts",))
@@ -122,22 +140,23 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
 @hint("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen.")
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
-    outcomes = calls(
-        workspace,
-        ROBUST,
-        call("init", module="rclpy"),
-        make("object", module="builtins"),  # a generator without random(): a bug
-        make("RobustNode", generator=made(1)),
-        call("timer_callback", on=2),
-        network=True,
-    )
-    built, called = outcomes[2:]
-    expect(not built.raised, f"RobustNode(generator=...) raised {built.raised}: {built.message}")
-    expect(bool(called.raised), "timer_callback with a broken generator raised nothing: the bug was swallowed.")
-    honest = called.raised == "AttributeError"
-    expect(
-        honest, f"timer_callback with a broken generator raised {called.raised} instead of the AttributeError itself."
-    )
+    # A generator without random(); and one whose random() raises the base class of the given SensorError.
+    bugs: dict[str, dict[str, Any]] = {"AttributeError": {"spec": []}, "RuntimeError": {"random.side_effect": made(1)}}
+    for bug, generator in bugs.items():
+        outcomes = calls(
+            workspace,
+            ROBUST,
+            call("init", module="rclpy"),
+            make("RuntimeError", "a bug", module="builtins"),
+            make("Mock", module="unittest.mock", **generator),
+            make("RobustNode", generator=made(2)),
+            call("timer_callback", on=3),
+            network=True,
+        )
+        built, called = outcomes[3:]
+        expect(not built.raised, f"RobustNode(generator=...) raised {built.raised}: {built.message}")
+        expect(bool(called.raised), f"A bug in timer_callback raised {bug}, and it was swallowed.")
+        expect(called.raised == bug, f"A bug in timer_callback raised {called.raised} instead of the {bug} itself.")
 
 
 @check(points=1, holds=("failure-probability", "seed", "max-errors"), depends=("once_a_second",))
@@ -171,3 +190,8 @@ def test_ranges(workspace: Workspace) -> None:
                 raise
             started = False
         expect(not started, f"It started with {name} {impossible}.")
+
+
+def _rows(seed: int) -> int:
+    """Return how often a node with this seed becomes unstable by its second error in a row."""
+    return expected(seed, 0.5, READINGS, 1).count("unstable: 2 in a row")

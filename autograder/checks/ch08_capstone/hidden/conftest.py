@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 
 from autograder.checks.ch08_capstone.hidden.drives import Drives
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
+from autograder.harness import Workspace
+
+SLOW = 0.25  # of ROS time: how fast the machine's clocks run for programs that must not look at them
 
 
 @pytest.fixture
@@ -19,6 +24,14 @@ def seeing(shared_system: SharedSystem) -> System:
 def driving(shared_system: SharedSystem) -> System:
     """The system for a check that needs the processor and the controller."""
     return shared_system.get(PROCESSOR, CONTROLLER)
+
+
+@pytest.fixture(scope="session")
+def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
+    """Keeps the system of a machine whose clocks are slower than ROS time."""
+    shared = SharedSystem(workspace, SLOW)
+    yield shared
+    shared.close()
 
 
 @pytest.fixture(scope="session")

@@ -6,20 +6,35 @@ import math
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.nodes import OPEN
+from autograder.checks.ch08_capstone.hidden.edges import OPEN
 from autograder.checks.ch08_capstone.support import contract
-from autograder.checks.ch08_capstone.support.contract import DEGRADED, FAILED, MONITOR, OK, PARAMETERS, SAID_WITHIN
-from autograder.checks.ch08_capstone.support.system import System, describe_report
+from autograder.checks.ch08_capstone.support.contract import (
+    DEGRADED,
+    FAILED,
+    MONITOR,
+    OK,
+    PARAMETERS,
+    PROGRAMS,
+    SAID_WITHIN,
+)
+from autograder.checks.ch08_capstone.support.system import SharedSystem, System, describe_report
 from autograder.harness import Stamped
 from autograder.probes.pace import is_paced, mean_period
+from autograder.time_record import LOCKSTEP
 
 check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 SILENT = PARAMETERS[MONITOR]["silence_timeout"].default
 MARGIN = 0.1  # s
+STAMPED = 0.2  # s between a report's stamp and its arrival, generous for a machine that is busy
 
 
-@check(points=3, holds=("monitor", "level"), depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@check(
+    points=3,
+    holds=("monitor", "level", "health-header"),
+    depends=("processor", "controller", "monitor"),
+    doc=contract.NODES_DOC,
+)
 @hint("A topic that was never heard is silent, too: start with None for each.")
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 def test_health_levels(system: System) -> None:
@@ -31,14 +46,15 @@ def test_health_levels(system: System) -> None:
     _expect_report(reports[-1:], OK, set(), "With scans for 3 s", fraction=0.25)
     rate = system.harness.rate("/health", began)
     expect(1.6 <= rate <= 2.4, f"It published {rate:.1f} reports a second, instead of 2.", fraction=0.5)
+    _expect_stamped(system, reports[-1])
     blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0)
     _expect_report(blind.reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
 
 
-@check(points=3, holds=("silent", "silent-field", "monitor"), depends=("health_levels",))
+@check(points=3, holds=("silent", "silent-field", "monitor", "health-header"), depends=("health_levels",))
 @hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
 @hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")
-def test_dead_sensor(system: System) -> None:
+def test_dead_sensor(system: System, slow_system: SharedSystem) -> None:
     """Within 2 s of a lidar's death health is FAILED and names what is silent; within 2 s of its return it is OK."""
     system.see(OPEN, 2.0)
     began = system.seconds
@@ -56,6 +72,25 @@ def test_dead_sensor(system: System) -> None:
     system.see(OPEN, SAID_WITHIN)
     back = system.harness.messages("/health")[-1:]
     _expect_report(back, OK, set(), f"{SAID_WITHIN:.0f} s after the lidar came back", fraction=0.75)
+    if system.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
+        _expect_ros_time(slow_system.get(*PROGRAMS))
+
+
+def _expect_ros_time(system: System) -> None:
+    """Fail the check if silence is measured by another clock than that of ROS."""
+    system.see(OPEN, 2.0)
+    reports = system.wait(SAID_WITHIN).reports
+    _expect_report(reports[-1:], FAILED, DEAD, f"{SAID_WITHIN:.0f} s of ROS time after the last scan", fraction=0.5)
+    _expect_stamped(system, reports[-1])
+
+
+def _expect_stamped(system: System, report: Stamped) -> None:
+    """Fail the check unless a report's stamp is the ROS time at which it was made."""
+    stamp = report.message.header.stamp
+    came = system.harness.now_ns / 1e9 - (system.seconds - report.seconds)
+    age = came - (stamp.sec + stamp.nanosec / 1e9)
+    expect(stamp.sec != 0, "The stamp of health is 0: it was never set.", fraction=0.5)
+    expect(abs(age) <= STAMPED, f"By its stamp, a report of health was {age:.1f} s old when it came.", fraction=0.5)
 
 
 def _expect_report(

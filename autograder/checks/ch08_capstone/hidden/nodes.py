@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import random
-from typing import Any
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
+from autograder.checks.ch08_capstone.hidden.edges import OPEN, expect_exact_limits, newest_clearance, said_of_edge
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
@@ -43,7 +42,6 @@ STALE = PARAMETERS[CONTROLLER]["data_timeout"].default
 MARGIN = 0.09  # s around a time-out, a little less than the time between two commands
 REAL_MARGIN = 0.25  # s, where time is real
 EDGE = 0.03  # m around the safety distance, a twentieth of it
-OPEN = scan(fill=math.inf)
 ENDS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
     "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
@@ -150,22 +148,25 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         ("-inf from a few beams", (*hole, -math.inf), -math.inf),
     )
     wrong = []
-    for what, (first, last, reading), wanted in cases:
-        newest = _newest(seeing, scan(Part(-25.0, 25.0, wall), Part(first, last, reading)))
+    for number, (what, (first, last, reading), wanted) in enumerate(cases):
+        aside = (3.0, math.inf)[number % 2]
+        newest = newest_clearance(seeing, scan(Part(-25.0, 25.0, wall), Part(first, last, reading), fill=aside))
         if not (newest.valid and (newest.front == wanted or abs(newest.front - wanted) <= TOLERANCE)):
             wrong.append(f"With {what} at {wall:.2f} m, front was {newest.front:.2f} and valid {newest.valid}.")
     blind = (("ahead", (-35.0, 35.0)), ("on the left", (55.0, 125.0)), ("on the right", (-125.0, -55.0)))
-    for where, (first, last) in blind:
-        newest = _newest(seeing, scan(Part(first, last, draw.choice((math.nan, 0.0)))))
+    phantoms = draw.sample((math.nan, 0.0, RANGE_MAX + 1.0), len(blind))
+    for (where, (first, last)), reading in zip(blind, phantoms, strict=True):
+        newest = newest_clearance(seeing, scan(Part(first, last, reading)))
         if newest.valid:
-            wrong.append(f"With no reading that counts {where}, valid was true.")
+            wrong.append(f"With nothing but {reading:g} {where}, which does not count, valid was true.")
     edges = ((28.0, 1.0), (31.0, 3.0), (-29.0, 1.0), (-32.0, 3.0))  # half_angle is 29.8°
     for first, wanted in edges:
-        front = _newest(seeing, scan(Part(first, first + 1.0, 1.0))).front
+        front = newest_clearance(seeing, scan(Part(first, first + 1.0, 1.0))).front
         if abs(front - wanted) > TOLERANCE:
             wrong.append(f"With something 1.00 m away at {first:.0f}° to {first + 1.0:.0f}°, front was {front:.2f}.")
+    wrong += said_of_edge(seeing)
     if wrong:
-        total = len(cases) + len(blind) + len(edges)
+        total = len(cases) + len(blind) + len(edges) + 1
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 
@@ -205,12 +206,13 @@ def test_turns(driving: System, draw: random.Random) -> None:
             expect_driving(said, situation, SPEED, fraction=0.5)
         else:
             expect_turning(said, situation, "left", TURN, fraction=0.5)
+    expect_exact_limits(driving)
 
 
 @check(points=3, holds=("untrusted", "newest"), depends=("drives",))
 @hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
 @hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
-def test_stops(driving: System) -> None:
+def test_stops(driving: System, slow_system: SharedSystem) -> None:
     """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
     expect_still(driving.first.commands, "Before the first scan")
     driving.see(OPEN)
@@ -228,6 +230,12 @@ def test_stops(driving: System) -> None:
     driving.see(OPEN)
     old = driving.see(OPEN, 1.5, age=1.0).commands
     expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
+    if driving.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
+        slow = slow_system.get(PROCESSOR, CONTROLLER)
+        slow.see(OPEN)
+        slow.wait(STALE + margin)
+        blind = slow.wait(1.0).commands
+        expect_still(blind, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
 
 
 @check(points=2, holds=("enable", "disabled", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
@@ -259,9 +267,3 @@ def _hold_and_release(system: System) -> None:
 def _beside(sign: float, distance: float) -> Part:
     """Return something at the left (1) or the right (-1)."""
     return Part(90.0 * sign - 20.0, 90.0 * sign + 20.0, distance)
-
-
-def _newest(system: System, shown: LaserScan) -> Any:
-    said = system.see(shown, 0.5).clearances
-    expect(bool(said), "No clearance came while scans did.")
-    return said[-1].message

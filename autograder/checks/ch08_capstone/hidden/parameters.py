@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.nodes import OPEN
+from autograder.checks.ch08_capstone.hidden.edges import OPEN
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,

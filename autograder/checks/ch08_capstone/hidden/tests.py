@@ -19,7 +19,6 @@ from autograder.probes.test_reports import Report, TestRun
 check = group("step_6")
 FILE = "test_sectors.py"
 LEAST = 4
-BROKEN = 3  # of the faults, drawn from the seed: each costs a process
 
 
 @dataclass(frozen=True)
@@ -36,13 +35,12 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     if not (source_of(workspace, PACKAGE) / "test" / FILE).is_file():
         raise CheckFailed(f"There is no test/{FILE} in the package {PACKAGE}.")
     draw = random.Random(f"{seed}:sectors")
-    faults = draw.sample(FAULTS, BROKEN)
-    versions = [right(draw), *faulty(faults, draw)]
+    versions = [right(draw), *faulty(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
     source = test_runs.take(workspace, PACKAGE)
     runs = test_runs.run(workspace, source, [TestRun((FILE,), versions[i], first_failure=i > 0) for i in order])
     by_version = dict(zip(order, runs, strict=True))
-    return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(faults, 1)))
+    return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
 
 
 @check(points=2, holds="sector-tests", doc=contract.TESTING_DOC)

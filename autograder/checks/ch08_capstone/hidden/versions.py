@@ -44,7 +44,7 @@ class Fault:
     replace: str
 
 
-FAULTS = (
+FAULTS = (  # those that the notebook names
     Fault(
         "a nan that hides what comes after it",
         "        if math.isnan(reading):\n            continue\n",
@@ -64,16 +64,6 @@ FAULTS = (
         "bearings that are right only for a scan that starts at 0",
         "        angle = scan.angle_min + index * scan.angle_increment\n",
         "        angle = index * scan.angle_increment\n",
-    ),
-    Fault(
-        "-inf, too near to measure, that is left out",
-        "        if math.isnan(reading):\n",
-        "        if math.isnan(reading) or reading == -math.inf:\n",
-    ),
-    Fault(
-        "a blind sector that counts as clear",
-        "    return best\n",
-        "    return math.inf if math.isnan(best) else best\n",
     ),
 )
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +13,7 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch02_nodes.support.robot import describe_command
-from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
+from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PARAMETERS, PROGRAMS, TOLERANCE, name_of
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
 from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
 from autograder.harness.drive import SCAN_SECONDS
@@ -41,19 +42,23 @@ class System:
         workspace: where they are installed.
         types: of the student's messages.
         needed: those without which it is of no use; the others may be missing, or fail.
+        clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
 
     Attributes:
         harness: where they run.
         first: what they said before the first scan.
     """
 
-    def __init__(self, workspace: Workspace, types: Types, needed: Collection[str] = PROGRAMS) -> None:
+    def __init__(
+        self, workspace: Workspace, types: Types, needed: Collection[str] = PROGRAMS, clock_rate: float = 1.0
+    ) -> None:
         there = [name for name in PROGRAMS if name in needed or _is_installed(workspace, name)]
         self.harness = AutoHarness(
             workspace,
             programs=tuple(Program(PACKAGE, name) for name in there),
             offers={"/scan": LaserScan},
             listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
+            clock_rate=clock_rate,
         )
         self.need(needed)
 
@@ -102,6 +107,17 @@ class System:
         """Return the parameters of a program's node."""
         return NodeParameters(self.harness, name_of(program))
 
+    @contextmanager
+    def changed(self, program: str, name: str, value: float) -> Iterator[bool]:
+        """Change a parameter for a while; yield whether the program takes the value."""
+        asked = self.parameters(program)
+        accepted = name in asked.names() and asked.change({name: value}).accepted
+        try:
+            yield accepted
+        finally:
+            if accepted:
+                asked.change({name: PARAMETERS[program][name].default})
+
     def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Received:
         """Show a scan ten times a second; return what is said once there was time to react.
 
@@ -135,10 +151,15 @@ class System:
 
 
 class SharedSystem:
-    """Keeps one system for several checks, and starts it anew once one of its programs has ended."""
+    """Keeps one system for several checks, and starts it anew once one of its programs has ended.
 
-    def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
+    Args:
+        workspace: where the programs are installed.
+        clock_rate: as of `System`.
+    """
+
+    def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
+        self._workspace, self._clock_rate = workspace, clock_rate
         self._needed: tuple[str, ...] = ()
         self._shared = Shared(self._make, lambda system: system.serves(self._needed))
 
@@ -154,7 +175,7 @@ class SharedSystem:
         self._shared.close()
 
     def _make(self) -> System:
-        return System(self._workspace, types(load_messages(self._workspace)), self._needed)
+        return System(self._workspace, types(load_messages(self._workspace)), self._needed, self._clock_rate)
 
 
 def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:

@@ -28,6 +28,7 @@ from autograder.time_record import LOCKSTEP
 from autograder.unwritten import explain
 
 STEP = 0.1  # s between two messages
+NANOSECONDS = 250_000_000  # of each stamp, beside its seconds
 HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
 _TOPICS = {
     THERMOMETER: ({}, {"/temperature": "Temperature"}),
@@ -53,12 +54,15 @@ class Types:
 class NodeHarness(AutoHarness):
     """The harness of one of the three nodes, started with parameters of the check's choice."""
 
-    def __init__(self, workspace: Workspace, types: Types, name: str, **parameters: float) -> None:
+    def __init__(
+        self, workspace: Workspace, types: Types, name: str, *, clock_rate: float = 1.0, **parameters: float
+    ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
         offers, listens = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
         words = [part for key, value in parameters.items() for part in ("-p", f"{key}:={value}")]
+        arguments = ("--ros-args", *words) if words else ()
         super().__init__(
-            workspace, PACKAGE, name, offers=offers, listens=listens, arguments=("--ros-args", *words) if words else ()
+            workspace, PACKAGE, name, offers=offers, listens=listens, arguments=arguments, clock_rate=clock_rate
         )
         self._types, self._name = types, name
         self._out, self._in = next(iter(listens)), next(iter(offers), "")
@@ -68,11 +72,11 @@ class NodeHarness(AutoHarness):
         return self.messages(self._out, since=since)
 
     def send(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
-        """Send temperatures, stamped with the seconds `first`, `first` + 1, ...; return the messages that came."""
+        """Send temperatures, stamped a quarter of a second after `first`, `first` + 1, ...; return what came."""
         began, sent = self.seconds, list(temperatures)
         for second, celsius in enumerate(sent, first):
             message = self._types.temperature(celsius=float(celsius))
-            message.stamp.sec = second
+            message.stamp.sec, message.stamp.nanosec = second, NANOSECONDS
             self.publish(self._in, message)
             self.run(STEP)
         self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))

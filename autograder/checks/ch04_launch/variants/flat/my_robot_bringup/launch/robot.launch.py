@@ -30,9 +30,10 @@ def generate_launch_description():
         subs.PythonExpression(['float(', subs.LaunchConfiguration('speed'), ')']),
         value_type=float)
     description.add_action(launch_ros.actions.Node(
-        package=PACKAGE, executable='driver', parameters=[file, {'speed': speed}]))
+        package=PACKAGE, executable='driver', output='screen',
+        parameters=[file, {'speed': speed}]))
     reporter = launch_ros.actions.Node(
-        package=PACKAGE, executable='reporter', exec_name='reporter',
+        package=PACKAGE, executable='reporter', exec_name='reporter', output='both',
         parameters=[file, {'robot_name': ParameterValue(
             [subs.LaunchConfiguration('robot_name')], value_type=str)}])
     description.add_action(launch.actions.GroupAction(

@@ -29,6 +29,6 @@ def decide(front, left, right, limit, before):
     """Return the next turn."""
     if before is Turn.NONE and front < limit:
         return Turn.RIGHT if right > left else Turn.LEFT
-    if before is not Turn.NONE and front >= limit * 1.2:
+    if before is not Turn.NONE and front >= limit + 0.1:
         return Turn.NONE
     return before
