@@ -16,7 +16,7 @@ from pathlib import Path
 from nbgrader.converters import Autograde
 from nbgrader.preprocessors import Execute
 
-from autograder.course import CODE_STUB
+from autograder.course.forms import CODE_STUB
 
 ROOT = Path(__file__).resolve().parent
 # nbgrader starts `alembic` from PATH, which lacks this environment if it was not activated.

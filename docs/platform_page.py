@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 from packaging.requirements import Requirement
 
-from autograder.course.markdown import table
+from autograder.course.markdown_table import table
 from autograder.layout import ROOT
 from autograder.ros.platform_versions import PACKAGES, PlatformPackage
 from autograder.ros.ros2.exceptions import NotCoveredError

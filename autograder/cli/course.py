@@ -44,7 +44,7 @@ def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
             changed = sync_chapter(chapter, solutions)
             notebook = chapter.read()
             if any(map(is_graded, notebook.cells)) and set_points(
-                chapter.path.name, notebook, suites.hidden(chapter.assignment).checks
+                chapter.path.name, notebook, suites.hidden(chapter.assignment).groups
             ):
                 chapter.write(notebook)
                 changed.append(Finding(chapter.path.name, None, "points"))
@@ -83,8 +83,9 @@ def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
     found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         try:
-            hidden, visible = suites.hidden(chapter.assignment).checks, suites.visible(chapter.assignment).checks
-            found += [*wrong_points(name, notebook, hidden), *broken_contract(name, notebook, (*visible, *hidden))]
+            hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)
+            found += wrong_points(name, notebook, hidden.groups)
+            found += broken_contract(name, notebook, (*visible.checks, *hidden.checks))
         except UsageError as error:
             found.append(Finding(name, None, str(error)))
     return found

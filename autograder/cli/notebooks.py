@@ -13,7 +13,7 @@ from autograder.cli.options import jobs_option, json_option
 from autograder.result import write_json
 
 if TYPE_CHECKING:
-    from autograder.course import Execution
+    from autograder.course.execute import Execution
 
 
 @click.command()
@@ -31,7 +31,9 @@ def notebooks(
     A warning is an error. The report of each notebook lies in .build/notebooks. The forms may be combined: --source
     --solved --released takes all three.
     """
-    from autograder.course import Form, run_notebooks
+    from autograder.course.execute import run_notebook
+    from autograder.course.forms import Form
+    from autograder.grading.parallel import map_parallel
     from autograder.ros import activate
 
     activate()
@@ -39,7 +41,12 @@ def notebooks(
     forms = [form for form, chosen in named.items() if chosen] or [Form.SOURCE]
     names = assignments or tuple(layout.assignments())
     wanted = [(layout.source_notebook(name), form) for form in forms for name in names]
-    runs = run_notebooks(wanted, jobs=jobs, reports=layout.BUILD / "notebooks", on_end=_tell)
+
+    def run(path_and_form: tuple[Path, Form]) -> Execution:
+        path, form = path_and_form
+        return run_notebook(path, form, report=layout.BUILD / "notebooks" / f"{path.stem}-{form.value}.ipynb")
+
+    runs = map_parallel(run, wanted, jobs=jobs, on_done=_tell)
     if json_file is not None:
         write_json(
             json_file,

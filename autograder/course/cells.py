@@ -15,20 +15,25 @@ The metadata of a notebook names the files of the chapter's folder that are copi
 
     {"course": {"given": {"ws/src/my_robot_package/setup.cfg": "my_robot_package/setup.cfg"}}}
 
-Sources are paths in `solutions/`, targets are paths in the chapter's folder.
+Sources are paths in `solutions/`, targets are paths in the chapter's folder. `metadata.schema.json` beside this module
+has all that the metadata may hold.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from jsonschema import Draft202012Validator, ValidationError
 from nbformat import NotebookNode
 
 from autograder.course.exceptions import CourseError
 from autograder.course.solution_markers import mark_functions, mark_lines, strip_licence
+
+_METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8")))
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ class Origin:
     source: PurePosixPath
     target: PurePosixPath
     hide: tuple[str, ...]
-    cut: tuple[tuple[str, str], ...] = ()
+    cut: tuple[tuple[str, str], ...]
 
     def expected_text(self, solutions: Path) -> str:
         """Return the source that the cell must have.
@@ -64,52 +69,23 @@ class Origin:
 
 
 def origin(cell: NotebookNode) -> Origin | None:
-    """Return the reference file that a code cell copies, or None if it copies none.
-
-    Raises:
-        CourseError: the cell's metadata has not the form that this module's docstring shows.
-    """
+    """Return the reference file that a code cell copies, or None if it copies none."""
     course = metadata(cell)
     if "source" not in course:
         return None
-    hide = course.get("hide", [])
-    if not isinstance(hide, list) or not all(isinstance(name, str) for name in hide):
-        raise CourseError(f'"hide" must be a list of function names, not {hide!r}')
-    cut = course.get("cut", [])
-    if not isinstance(cut, list) or not all(_is_pair(pair) for pair in cut):
-        raise CourseError(f'"cut" must be a list of pairs of lines, not {cut!r}')
-    if hide and cut:
-        raise CourseError('a cell hides functions by "hide" or lines by "cut", not both')
-    pairs = tuple((str(before), str(after)) for before, after in cut)
-    return Origin(relative_path(course["source"]), relative_path(course.get("target")), tuple(hide), pairs)
-
-
-def _is_pair(value: object) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(isinstance(line, str) for line in value)
+    cut = tuple((before, after) for before, after in course.get("cut", ()))
+    return Origin(PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut)
 
 
 def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
-    """Return the chapter's files that are copies of reference files, as target to source.
-
-    Raises:
-        CourseError: the notebook's metadata has not the form that this module's docstring shows.
-    """
+    """Return the chapter's files that are copies of reference files, as target to source."""
     pairs = metadata(notebook).get("given", {})
-    if not isinstance(pairs, Mapping):
-        raise CourseError(f"\"given\" must map the chapter's files to the reference's, not be {pairs!r}")
-    return {relative_path(target): relative_path(source) for target, source in pairs.items()}
+    return {PurePosixPath(target): PurePosixPath(source) for target, source in pairs.items()}
 
 
 def group(cell: NotebookNode) -> str | None:
-    """Return the group of checks that a grade cell stands for, or None.
-
-    Raises:
-        CourseError: the group is not a string.
-    """
-    found = metadata(cell).get("group")
-    if found is not None and not isinstance(found, str):
-        raise CourseError(f'"group" must name a group of checks, not be {found!r}')
-    return found
+    """Return the group of checks that a grade cell stands for, or None."""
+    return metadata(cell).get("group")
 
 
 def is_graded(cell: NotebookNode) -> bool:
@@ -131,26 +107,15 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     """Return the `course` part of a cell's or a notebook's metadata.
 
     Raises:
-        CourseError: it is not a mapping.
+        CourseError: it breaks the schema. The message names the place in it.
     """
-    course = node.metadata.get("course", {})
-    if not isinstance(course, Mapping):
-        raise CourseError(f'the metadata\'s "course" must be a mapping, not {course!r}')
+    course: Mapping[str, Any] = node.metadata.get("course", {})
+    try:
+        _METADATA.validate(course)
+    except ValidationError as error:
+        place = error.json_path.replace("$", "course", 1)
+        raise CourseError(f"the metadata {place} are wrong: {error.message}") from error
     return course
-
-
-def relative_path(path: object) -> PurePosixPath:
-    """Return a relative path that stays inside its folder.
-
-    Raises:
-        CourseError: `path` is not a string, is empty or absolute, or leaves the folder.
-    """
-    if not isinstance(path, str) or not path:
-        raise CourseError(f'"source" and "target" must be paths, not {path!r}')
-    pure = PurePosixPath(path)
-    if pure.is_absolute() or ".." in pure.parts:
-        raise CourseError(f"{path!r} must stay inside its folder")
-    return pure
 
 
 def read_solution(solutions: Path, source: PurePosixPath) -> str:

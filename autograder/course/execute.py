@@ -8,12 +8,12 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
@@ -22,7 +22,7 @@ from nbformat.v4 import new_code_cell
 from autograder import layout
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter, write_notebook
+from autograder.course.sync import Chapter
 from autograder.ros.domains import Domain
 
 # Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
@@ -60,58 +60,20 @@ class Execution:
         return self.failure is None
 
 
-def run_notebooks(
-    wanted: Sequence[tuple[Path, Form]],
-    *,
-    jobs: int,
-    reports: Path,
-    on_end: Callable[[Execution], None] = lambda execution: None,
-) -> list[Execution]:
-    """Execute notebooks, several at once, each in a ROS domain of its own.
-
-    Args:
-        wanted: each one's path and form.
-        jobs: how many run at once.
-        reports: the folder that gets the executed notebooks, `ID-FORM.ipynb`.
-        on_end: called for each as it ends, in any order.
-
-    Raises:
-        CourseError: as `run_notebook` does.
-    """
-
-    def run(index: int) -> Execution:
-        path, form = wanted[index]
-        report = reports / f"{path.stem}-{form.value}.ipynb"
-        with Domain() as domain:
-            return run_notebook(path, form, report=report, domain=domain.number)
-
-    with ThreadPoolExecutor(jobs) as pool:
-        runs = [pool.submit(run, index) for index in range(len(wanted))]
-        try:
-            for ended in as_completed(runs):
-                on_end(ended.result())
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return [each.result() for each in runs]
-
-
 def run_notebook(
     path: Path,
     form: Form = Form.SOURCE,
     *,
     timeout: float = 120.0,
     report: Path | None = None,
-    domain: int | None = None,
 ) -> Execution:
-    """Execute a notebook in the given form; the chapter's folder is left as it is.
+    """Execute a notebook in the given form and a ROS domain of its own; the chapter's folder is left as it is.
 
     Args:
         path: the notebook, `chapters/ID/ID.ipynb`.
         form: `source`, `solved` or `released`.
         timeout: seconds that one cell may take.
         report: where to keep the executed notebook.
-        domain: its `ROS_DOMAIN_ID`; when not given, this process's, or else one that the kernel chooses.
 
     Raises:
         CourseError: the notebook is missing or is not one.
@@ -121,13 +83,12 @@ def run_notebook(
         raise CourseError(f"{path.name}: a chapter's notebook has its folder's name, {chapter.path.name}")
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
-    with working_copy(chapter.folder) as folder:
-        own = {} if domain is None else {"ROS_DOMAIN_ID": str(domain)}
-        failure = execute(notebook, folder, timeout, {**os.environ, **own})
+    with working_copy(chapter.folder) as folder, Domain() as domain:
+        failure = execute(notebook, folder, timeout, domain.number)
     seconds = time.monotonic() - started
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
-        write_notebook(report, notebook)
+        nbformat.write(notebook, report)
     return Execution(chapter.assignment, form, notebook, seconds, failure)
 
 
@@ -140,14 +101,14 @@ def working_copy(folder: Path) -> Iterator[Path]:
         yield copy
 
 
-def execute(notebook: NotebookNode, folder: Path, timeout: float, environment: dict[str, str]) -> str | None:
+def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -> str | None:
     """Execute a notebook in place, in a kernel of its own; return what went wrong, or None.
 
     Args:
         notebook: gets the outputs.
         folder: where the kernel runs.
         timeout: seconds that one cell may take.
-        environment: variables of the kernel.
+        domain: the `ROS_DOMAIN_ID` of the kernel.
     """
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
@@ -157,21 +118,13 @@ def execute(notebook: NotebookNode, folder: Path, timeout: float, environment: d
     manager.transport = "ipc"
     manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
     notebook.cells.insert(0, new_code_cell(STRICT))
+    begun: list[str] = []
+    client.on_cell_start = lambda cell, cell_index: begun.append(cell.id)
     try:
         # A loop that is closed at its end; nbclient's own call leaves one in each thread.
-        asyncio.run(client.async_execute(env=environment))
+        asyncio.run(client.async_execute(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}))
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
-        return f"cell {_failed(notebook)}: {_COLOUR.sub('', str(error))}"
+        return f"cell {begun[-1]!r}: {_COLOUR.sub('', str(error))}"
     finally:
         del notebook.cells[0]
     return None
-
-
-def _failed(notebook: NotebookNode) -> str:
-    """Return the id of the first code cell that did not end well."""
-    for cell in notebook.cells:
-        if cell.cell_type != "code" or not cell.source.strip():
-            continue
-        if cell.execution_count is None or any(output.output_type == "error" for output in cell.outputs):
-            return repr(cell.id)
-    return "(unknown)"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 
 import nbformat
@@ -28,10 +27,6 @@ def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
         name: file name of the notebook, for the findings.
         notebook: the notebook as it would be committed.
     """
-    # This comes before the validation, which replaces repeated ids.
-    repeated = [cell_id for cell_id, count in Counter(cell.get("id") for cell in notebook.cells).items() if count > 1]
-    if repeated:
-        return [Finding(name, cell_id, "more than one cell has this id") for cell_id in repeated]
     try:
         nbformat.validate(notebook)
     except nbformat.ValidationError as error:

@@ -5,43 +5,33 @@ The suite has no points for the cells that a person grades.
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 from nbformat import NotebookNode
 
-from autograder.checks import Check
 from autograder.course.cells import group, is_graded, is_manually_graded
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 
 
-def points_by_group(checks: Sequence[Check]) -> dict[str, float]:
-    """Return the sum of the checks' points by group, in the suite's order."""
-    points: defaultdict[str, float] = defaultdict(float)
-    for check in checks:
-        points[check.group] += check.points
-    return dict(points)
-
-
-def wrong_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
+def wrong_points(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> list[Finding]:
     """Return the grade cells whose points or group differ from the suite's, and the groups without a cell.
 
     Args:
         name: the notebook's file name, for the findings.
         notebook: the notebook to compare.
-        checks: the hidden checks of its suite.
+        points: the points of each group of its hidden suite.
     """
-    return [finding for finding, _ in _wrong(name, notebook, points_by_group(checks))]
+    return [finding for finding, _ in _wrong(name, notebook, points)]
 
 
-def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bool:
+def set_points(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> bool:
     """Set the points of each grade cell to the sum of its group, in place.
 
     Args:
         name: the notebook's file name, for the errors.
         notebook: the notebook to change.
-        checks: the hidden checks of its suite.
+        points: the points of each group of its hidden suite.
 
     Returns:
         Whether the points of a cell changed.
@@ -49,7 +39,6 @@ def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bo
     Raises:
         CourseError: a cell names no group of the suite, two name one group, or a group has no cell.
     """
-    points = points_by_group(checks)
     wrong = _wrong(name, notebook, points)
     for finding, cell in wrong:
         if cell is None:
@@ -60,7 +49,7 @@ def set_points(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> bo
     return bool(wrong)
 
 
-def _wrong(name: str, notebook: NotebookNode, points: dict[str, float]) -> list[tuple[Finding, NotebookNode | None]]:
+def _wrong(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> list[tuple[Finding, NotebookNode | None]]:
     """Return findings. A finding has its cell if setting the points of that cell is the remedy, and None otherwise."""
     wrong: list[tuple[Finding, NotebookNode | None]] = []
     seen: set[str] = set()

@@ -33,27 +33,18 @@ def mark_functions(text: str, hide: Sequence[str]) -> str:
         CourseError: the source does not parse or already has markers; a function is missing or occurs twice, has no
             docstring or no body on lines of its own; or two of the functions overlap.
     """
-    if BEGIN in text or END in text:
-        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
     try:
         functions = list(_functions(ast.parse(text)))
     except SyntaxError as error:
         raise CourseError(f"the source does not parse: {error}") from error
-    regions: list[tuple[int, int, int]] = []
+    regions = []
     for name in hide:
         found = [function for qualified, function in functions if qualified == name]
         if len(found) != 1:
             known = ", ".join(sorted({qualified for qualified, _ in functions})) or "none"
             raise CourseError(f"function {name!r} occurs {len(found)} times in the source; its functions: {known}")
         regions.append(_region(name, found[0]))
-    regions.sort()
-    if any(before[1] >= after[0] for before, after in pairwise(regions)):
-        raise CourseError(f"functions inside each other cannot both be hidden: {', '.join(hide)}")
-    lines = text.splitlines()
-    for first, last, indent in reversed(regions):
-        lines[last:last] = [" " * indent + END]
-        lines[first - 1 : first - 1] = [" " * indent + BEGIN]
-    return "\n".join(lines) + "\n"
+    return _marked(text, regions)
 
 
 def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
@@ -68,21 +59,14 @@ def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
         CourseError: the text already has markers, a line is missing or occurs twice, or a region is empty or overlaps
             another one.
     """
-    if BEGIN in text or END in text:
-        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
     lines = text.splitlines()
-    regions = sorted(
-        (_line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))) for before, after in cuts
-    )
-    if any(first >= end for first, end in regions):
-        raise CourseError(f"there is nothing to hide between these lines: {cuts!r}")
-    if any(one[1] > other[0] for one, other in pairwise(regions)):
-        raise CourseError(f"regions inside each other cannot both be hidden: {cuts!r}")
-    for first, end in reversed(regions):
-        indent = lines[first][: len(lines[first]) - len(lines[first].lstrip())]
-        lines[end:end] = [indent + END]
-        lines[first:first] = [indent + BEGIN]
-    return "\n".join(lines) + "\n"
+    regions = []
+    for before, after in cuts:
+        first, end = _line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))
+        if first >= end:
+            raise CourseError(f"there is nothing to hide between the lines {before!r} and {after!r}")
+        regions.append((first, end, len(lines[first]) - len(lines[first].lstrip())))
+    return _marked(text, regions)
 
 
 def strip_markers(text: str) -> str:
@@ -109,6 +93,20 @@ def strip_licence(text: str) -> str:
     return "".join(lines[body:]).lstrip("\n")
 
 
+def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
+    """Return text with markers around regions: the indices of the first line and behind the last, the indentation."""
+    if BEGIN in text or END in text:
+        raise CourseError("the source holds solution markers: remove them, they belong in notebooks only")
+    regions.sort()
+    if any(before[1] > after[0] for before, after in pairwise(regions)):
+        raise CourseError("parts inside each other cannot both be hidden")
+    lines = text.splitlines()
+    for first, end, indent in reversed(regions):
+        lines[end:end] = [" " * indent + END]
+        lines[first:first] = [" " * indent + BEGIN]
+    return "\n".join(lines) + "\n"
+
+
 def _line_index(lines: Sequence[str], wanted: str, default: int) -> int:
     """Return the index of the line `wanted`, or the default for an empty string."""
     if not wanted:
@@ -131,17 +129,13 @@ def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]
 
 
 def _region(name: str, function: Function) -> tuple[int, int, int]:
-    """Return the first and last line of a function's body after its docstring (from 1), and its indentation."""
+    """Return the region of a function's body after its docstring, for `_marked`."""
     if ast.get_docstring(function, clean=False) is None:
         raise CourseError(f"function {name!r} has no docstring: write one, students see it in place of the body")
     # The region starts right after the docstring: a comment above the first statement may hold a part of the answer.
-    first = _end(function.body[0]) + 1
-    last = max(_end(statement) for statement in function.body)
-    if last < first:
+    first, end = function.body[0].end_lineno, function.body[-1].end_lineno
+    assert first is not None, "ast.parse sets it"
+    assert end is not None, "ast.parse sets it"
+    if first >= end:
         raise CourseError(f"function {name!r} has nothing to hide on lines of its own after its docstring")
-    return first, last, function.body[0].col_offset
-
-
-def _end(node: ast.stmt) -> int:
-    assert node.end_lineno is not None, "ast.parse sets it on every statement"
-    return node.end_lineno
+    return first, end, function.body[0].col_offset

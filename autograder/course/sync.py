@@ -60,12 +60,7 @@ class Chapter:
 
     def write(self, notebook: NotebookNode) -> None:
         """Write the notebook."""
-        write_notebook(self.path, notebook)
-
-
-def write_notebook(path: Path, notebook: NotebookNode) -> None:
-    """Write a notebook as nbformat does, indented and with a final newline."""
-    path.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
+        nbformat.write(notebook, self.path)
 
 
 def chapters(root: Path = CHAPTERS) -> list[Chapter]:

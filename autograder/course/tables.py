@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from autograder.checks import suites
 from autograder.course.findings import Finding
-from autograder.course.markdown import table
+from autograder.course.markdown_table import table
 from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters

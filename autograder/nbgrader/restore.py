@@ -9,7 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 from nbgrader.preprocessors import NbGraderPreprocessor
 
-from autograder.course import Form, in_form
+from autograder.course.forms import Form, in_form
 from autograder.feedback.text import clean
 from autograder.grading import submitted_notebook
 

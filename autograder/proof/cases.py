@@ -97,7 +97,8 @@ def write_release(assignment: str, folder: Path) -> None:
     """Write the assignment's folder as students get it."""
     import nbformat
 
-    from autograder.course import Chapter, Form, in_form
+    from autograder.course.forms import Form, in_form
+    from autograder.course.sync import Chapter
 
     chapter = Chapter(layout.chapter(assignment))
     shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)

@@ -11,7 +11,8 @@ import yaml
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course import Chapter, is_solution, origin
+from autograder.course.cells import is_solution, origin
+from autograder.course.sync import Chapter
 from autograder.proof.operators import changes
 
 SAMPLE_SIZE = 20  # mutants of an assignment; a larger sample finds hardly more, and takes longer to grade

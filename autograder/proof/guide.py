@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from autograder import layout
 from autograder.checks import Check, suites
 from autograder.checks.contract import Sentence, contract
-from autograder.course.markdown import table
+from autograder.course.markdown_table import table
 from autograder.proof.mutants import Mutant, mutants
 
 PAGE = layout.ROOT / "docs" / "checks.md"

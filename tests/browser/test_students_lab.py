@@ -10,8 +10,8 @@ import pytest
 from nbformat.v4 import new_code_cell
 from playwright.sync_api import Page, expect
 
-from autograder.course import Form, chapters, in_form
-from autograder.course.sync import write_notebook
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import chapters
 from autograder.notebook.writefile import REPLACED
 from tests.browser.jupyter import PATIENCE, Lab, lab
 
@@ -46,7 +46,7 @@ def chapter(lab: Lab, request: pytest.FixtureRequest) -> Path:
     released = in_form(FIRST.read(), Form.RELEASED)
     written = [cell for cell in released.cells if cell.source.startswith("%%writefile")]
     released.cells = [new_code_cell("from autograder.notebook import ros\n\nros()"), *written]
-    write_notebook(folder / FIRST.path.name, released)
+    nbformat.write(released, folder / FIRST.path.name)
     return folder
 
 
@@ -83,7 +83,7 @@ def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, la
     edit_in_the_editor(page, chapter)
     notebook = nbformat.read(chapter / FIRST.path.name, as_version=4)
     notebook.cells[-1].source = CELL
-    write_notebook(chapter / FIRST.path.name, notebook)
+    nbformat.write(notebook, chapter / FIRST.path.name)
     told = run_all(page, lab, chapter)
     copy = Path("ws", REPLACED, Path(FILE).relative_to("ws")).with_suffix(".py.1")
     assert (chapter / FILE).read_text() == CELL.partition("\n")[2]

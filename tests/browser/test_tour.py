@@ -14,12 +14,14 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import nbformat
 import pytest
 from PIL import Image
 from playwright.sync_api import Page
 
-from autograder.course import Chapter, Form, chapters, in_form, is_solution
-from autograder.course.sync import write_notebook
+from autograder.course.cells import is_solution
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter, chapters
 from tests.browser.jupyter import Lab, lab
 
 __all__ = ["lab"]
@@ -115,7 +117,7 @@ def is_blank(picture: str) -> bool:
 def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screenshots: Path, chapter: Chapter) -> None:
     name = chapter.assignment
     shutil.copytree(chapter.folder, lab.folder / name, ignore=shutil.ignore_patterns("build", "install", "log"))
-    write_notebook(lab.folder / name / chapter.path.name, in_form(chapter.read(), Form.RELEASED))
+    nbformat.write(in_form(chapter.read(), Form.RELEASED), lab.folder / name / chapter.path.name)
 
     lab.show(page, f"{name}/{chapter.path.name}")
     solved = [cell for cell in in_form(chapter.read(), Form.SOLVED).cells if is_solution(cell)]

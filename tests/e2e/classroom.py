@@ -16,7 +16,9 @@ from nbgrader.api import Gradebook
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course import Chapter, Form, in_form, is_solution
+from autograder.course.cells import is_solution
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter
 
 Grades = dict[str, tuple[float, float, bool]]
 

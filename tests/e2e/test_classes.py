@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
-from autograder.course import Chapter
+from autograder.course.sync import Chapter
 from autograder.export import load
 from autograder.layout import chapter
 from autograder.proof.cases import cases

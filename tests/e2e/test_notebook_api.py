@@ -5,12 +5,13 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import nbformat
 import pytest
 from nbformat.v4 import new_code_cell
 from nbgrader.validator import Validator
 
-from autograder.course import Form, chapters, in_form
-from autograder.course.sync import write_notebook
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import chapters
 from autograder.layout import SOLUTIONS
 from autograder.notebook import CheckReport, DriveReport, Notice, check, drive, ros
 from autograder.notebook.driving import FAULTS
@@ -116,7 +117,7 @@ def test_nbgraders_validate_praises_no_unsolved_notebook(tmp_path: Path) -> None
     released = in_form(chapter.read(), Form.RELEASED)
     graded = [cell for cell in released.cells if cell.metadata.get("nbgrader", {}).get("grade")]
     released.cells = [new_code_cell("from autograder.notebook import grade"), *graded]
-    write_notebook(tmp_path / chapter.path.name, released)
+    nbformat.write(released, tmp_path / chapter.path.name)
     found = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.path.name))
     assert graded
     assert [cell["source"] for cell in found["failed"]] == [cell.source for cell in graded]

@@ -13,7 +13,8 @@ from click.testing import CliRunner, Result
 
 from autograder import layout
 from autograder.cli import group
-from autograder.course import Form, chapters, in_form
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import chapters
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,10 @@ import pytest
 import yaml
 from _pytest.mark import ParameterSet
 
-from autograder.course import Chapter, Form, chapters, in_form, run_notebook
+from autograder.course.execute import run_notebook
+from autograder.course.forms import Form, in_form
 from autograder.course.notebook_rules import images_without_alt
+from autograder.course.sync import Chapter, chapters
 from autograder.layout import ROOT
 from tests.drawn import drawn, unless
 from tests.notebooks.outputs import said

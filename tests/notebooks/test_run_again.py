@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import copy
-import os
 import re
 from pathlib import Path
 
+import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.course import Chapter, Form, chapters, in_form
 from autograder.course.execute import execute, working_copy
-from autograder.course.sync import write_notebook
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter, chapters
 from autograder.ros.domains import Domain
 from tests.notebooks.outputs import said
 
@@ -45,10 +45,9 @@ def test_a_notebook_that_is_run_again_shows_the_same(chapter: Chapter, tmp_path:
     notebook = in_form(chapter.read(), Form.SOURCE)
     one_kernel, new_kernel = twice(notebook), copy.deepcopy(notebook)
     with working_copy(chapter.folder) as folder, Domain() as domain:
-        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
         for name, executed in (("one_kernel", one_kernel), ("new_kernel", new_kernel)):
-            failure = execute(executed, folder, 400, environment)
-            write_notebook(tmp_path / f"{name}.ipynb", executed)
+            failure = execute(executed, folder, 400, domain.number)
+            nbformat.write(executed, tmp_path / f"{name}.ipynb")
             assert failure is None, failure
     count = len(notebook.cells)
     first = {cell.id: shown(cell) for cell in one_kernel.cells[:count]}

@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 from nbformat.v4 import new_code_cell
 
-from autograder.course import Chapter, Form, chapters, in_form
 from autograder.course.execute import execute, working_copy
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter, chapters
 from autograder.ros.domains import Domain
 from tests.notebooks.outputs import said
 
@@ -67,7 +68,7 @@ def test_all_nodes_are_found_and_both_robots_drive_a_circle(busy: None, folder: 
     cells = {cell.id: cell for cell in notebook.cells}
     notebook.cells = [*(cells[name] for name in CELLS), new_code_cell(TURNS)]
     with Domain() as domain:
-        failure = execute(notebook, folder, 400, {**os.environ, "ROS_DOMAIN_ID": str(domain.number)})
+        failure = execute(notebook, folder, 400, domain.number)
     assert failure is None, failure
     told = said(notebook.cells[-2:])
     lines = told.splitlines()

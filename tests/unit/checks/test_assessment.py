@@ -12,8 +12,9 @@ from autograder.checks import CheckFailed, suites
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter, parse
-from autograder.course import Chapter, Form, in_form
+from autograder.course.forms import Form, in_form
 from autograder.course.syllabus import Syllabus
+from autograder.course.sync import Chapter
 from autograder.harness import Workspace
 from autograder.ros import find
 

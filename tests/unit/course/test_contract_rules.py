@@ -9,8 +9,8 @@ from nbformat import NotebookNode
 
 from autograder.checks import Check, Visibility, suites
 from autograder.checks.contract import contract, sentences
-from autograder.course import chapters
 from autograder.course.contract_rules import broken_contract
+from autograder.course.sync import chapters
 
 from .notebooks import code, notebook, prose, solution
 

@@ -8,8 +8,9 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder.course import CourseError, Form, in_form
 from autograder.course.cells import origin
+from autograder.course.exceptions import CourseError
+from autograder.course.forms import Form, in_form
 from autograder.course.solution_markers import mark_lines, strip_markers
 
 MANIFEST = """<package>
@@ -79,10 +80,10 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(tmp_
 @pytest.mark.parametrize(
     ("course", "words"),
     [
-        ({"cut": "a"}, "must be a list of pairs of lines, not 'a'"),
-        ({"cut": [["a"]]}, "must be a list of pairs of lines"),
-        ({"cut": [["a", 1]]}, "must be a list of pairs of lines"),
-        ({"cut": [["a", "b"]], "hide": ["main"]}, "not both"),
+        ({"cut": "a"}, r"course\.cut are wrong: 'a' is not of type 'array'"),
+        ({"cut": [["a"]]}, r"course\.cut\[0\] are wrong: \['a'\] is too short"),
+        ({"cut": [["a", 1]]}, r"course\.cut\[0\]\[1\] are wrong"),
+        ({"cut": [["a", "b"]], "hide": ["main"]}, "should not be valid under .*'hide', 'cut'"),
     ],
 )
 def test_metadata_that_cuts_nonsense_is_an_error(course: dict[str, object], words: str) -> None:

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.course import CourseError, Execution, Form, in_form, run_notebook, run_notebooks
+from autograder.course.exceptions import CourseError
+from autograder.course.execute import run_notebook
+from autograder.course.forms import Form, in_form
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
@@ -76,28 +78,6 @@ def test_an_error_and_a_warning_both_fail_and_name_their_cell(tmp_path: Path, so
     assert result.failure is not None
     assert result.failure.startswith("cell 'bad'")
     assert message in result.failure
-
-
-@pytest.mark.slow
-def test_several_notebooks_run_at_once_each_in_a_domain_of_its_own(tmp_path: Path) -> None:
-    # Each waits until the other one has come: one after the other, both would fail.
-    meet = """import os, time
-from pathlib import Path
-Path('{place}', os.environ['ROS_DOMAIN_ID']).touch()
-end = time.monotonic() + 60
-while len(list(Path('{place}').iterdir())) < 2 and time.monotonic() < end:
-    time.sleep(0.01)
-assert len(list(Path('{place}').iterdir())) == 2"""
-    place = tmp_path / "place"
-    place.mkdir()
-    made = chapter(tmp_path, notebook(code(meet.format(place=place), "meet")))
-    ended: list[Execution] = []
-    wanted = [(made.path, Form.SOURCE), (made.path, Form.SOLVED)]
-    runs = run_notebooks(wanted, jobs=2, reports=tmp_path / "reports", on_end=ended.append)
-    assert [run.failure for run in runs] == [None, None]
-    assert [run.form for run in runs] == [Form.SOURCE, Form.SOLVED]
-    assert {run.form for run in ended} == set(Form) - {Form.RELEASED}
-    assert len(list((tmp_path / "reports").iterdir())) == 2
 
 
 def test_a_notebook_of_another_name_is_refused(tmp_path: Path) -> None:

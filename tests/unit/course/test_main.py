@@ -24,7 +24,7 @@ CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, ()
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS))
+    monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS, groups={"graph": 2.0}))
     monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
     (tmp_path / "solutions").mkdir()
     (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')

@@ -49,12 +49,6 @@ def old_schema() -> NotebookNode:
     return notebook(prose("# T", "t"), code("", "g", nbgrader={**grade("g", 1), "schema_version": 2}))
 
 
-def twice_the_id() -> NotebookNode:
-    made = notebook(prose("# T", "same"), prose("text", "other"))
-    made.cells[1].id = "same"
-    return made
-
-
 def half_a_cell() -> NotebookNode:
     made = notebook(code("", "half"))
     del made.cells[0]["source"]
@@ -80,7 +74,6 @@ def old_format() -> NotebookNode:
         (executed(), "cell 'run': has outputs"),
         (executed(), "cell 'run': has an execution count"),
         (old_schema(), "cell 'g': its nbgrader metadata must say schema_version 3"),
-        (twice_the_id(), "cell 'same': more than one cell has this id"),
         (other_kernel(), "kernelspec must be python3"),
         (old_format(), "is nbformat 4.4; the course uses 4.5"),
         (notebook(prose("text", "t")), "has no title"),
@@ -98,7 +91,7 @@ def old_format() -> NotebookNode:
         ),
         (
             notebook(prose("# T", "t"), code("", "g", nbgrader=grade("g", 1), course={"group": 3})),
-            '"group" must name a group of checks, not be 3',
+            "cell 'g': the metadata course.group are wrong: 3 is not of type 'string'",
         ),
         (
             notebook(prose("# T", "t"), code("# BEGIN SOLUTION", "s")),

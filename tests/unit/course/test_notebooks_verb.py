@@ -44,6 +44,30 @@ def test_the_forms_that_are_named_run_and_the_failed_one_is_told_by_its_cell(cou
     assert reports == {"01_small-solved.ipynb", "01_small-released.ipynb"}
 
 
+def test_several_notebooks_run_at_once_each_in_a_domain_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "place"
+    place.mkdir()
+    # Each waits until the other one has come: one after the other, both would fail.
+    meet = f"""import os, time
+from pathlib import Path
+Path('{place}', os.environ['ROS_DOMAIN_ID']).touch()
+end = time.monotonic() + 60
+while len(list(Path('{place}').iterdir())) < 2 and time.monotonic() < end:
+    time.sleep(0.01)
+assert len(list(Path('{place}').iterdir())) == 2"""
+    made = chapter(tmp_path, notebook(code(meet, "meet")))
+    monkeypatch.setattr(layout, "CHAPTERS", made.folder.parent)
+    monkeypatch.setattr(layout, "BUILD", tmp_path / "build")
+    said = _run("--source", "--solved", "-j", "2")
+    assert said.exit_code == 0, said.output
+    assert sorted(line.partition(": ")[0] for line in said.output.splitlines()) == [
+        "01_small (solved)",
+        "01_small (source)",
+    ]
+
+
 def test_without_a_form_the_source_runs(course: Path) -> None:
     said = _run("01_small")
     assert said.exit_code == 0, said.output

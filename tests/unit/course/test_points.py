@@ -5,17 +5,12 @@ from __future__ import annotations
 import pytest
 from nbformat import NotebookNode
 
-from autograder.checks import Check, Visibility
-from autograder.course import CourseError, set_points, wrong_points
+from autograder.course.exceptions import CourseError
+from autograder.course.points import set_points, wrong_points
 
 from .notebooks import code, grade, manual, notebook, prose
 
-
-def one(check_id: str, group: str, points: float) -> Check:
-    return Check(check_id, f"{check_id}.", points, group, Visibility.HIDDEN, (), None, ())
-
-
-CHECKS = (one("turns", "reaction", 2.0), one("drives", "reaction", 1.5), one("named", "graph", 1.0))
+POINTS = {"reaction": 3.5, "graph": 1.0}
 
 
 def graded(**groups: float) -> NotebookNode:
@@ -24,24 +19,24 @@ def graded(**groups: float) -> NotebookNode:
     )
 
 
-def test_each_cell_gets_the_sum_of_its_groups_checks() -> None:
+def test_each_cell_gets_the_points_of_its_group() -> None:
     made = graded(reaction=0, graph=0)
-    assert set_points("n.ipynb", made, CHECKS)
+    assert set_points("n.ipynb", made, POINTS)
     assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0]
-    assert wrong_points("n.ipynb", made, CHECKS) == []
-    assert not set_points("n.ipynb", made, CHECKS)
+    assert wrong_points("n.ipynb", made, POINTS) == []
+    assert not set_points("n.ipynb", made, POINTS)
 
 
 def test_points_that_a_person_gives_are_no_business_of_the_suites() -> None:
     made = graded(reaction=0, graph=1)
     made.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
-    assert set_points("n.ipynb", made, CHECKS)
+    assert set_points("n.ipynb", made, POINTS)
     assert [cell.metadata.nbgrader.points for cell in made.cells] == [3.5, 1.0, 6]
-    assert wrong_points("n.ipynb", made, CHECKS) == []
+    assert wrong_points("n.ipynb", made, POINTS) == []
 
 
 def test_wrong_points_are_named() -> None:
-    (found,) = wrong_points("n.ipynb", graded(reaction=3, graph=1), CHECKS)
+    (found,) = wrong_points("n.ipynb", graded(reaction=3, graph=1), POINTS)
     assert str(found) == "n.ipynb, cell 'reaction': has 3 points, but the checks of 'reaction' have 3.5"
 
 
@@ -62,4 +57,4 @@ def test_wrong_points_are_named() -> None:
 )
 def test_a_suite_and_a_notebook_that_do_not_fit_are_an_error(made: NotebookNode, message: str) -> None:
     with pytest.raises(CourseError, match=message):
-        set_points("n.ipynb", made, CHECKS)
+        set_points("n.ipynb", made, POINTS)

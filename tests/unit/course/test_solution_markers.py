@@ -6,8 +6,9 @@ import ast
 
 import pytest
 
-from autograder.course import CODE_STUB, CourseError, mark_functions, strip_licence
-from autograder.course.solution_markers import strip_markers
+from autograder.course.exceptions import CourseError
+from autograder.course.forms import CODE_STUB
+from autograder.course.solution_markers import mark_functions, strip_licence, strip_markers
 
 MODULE = '''"""A module."""
 

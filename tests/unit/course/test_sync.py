@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from autograder.course import Chapter, CourseError, chapters, find_outdated, sync_chapter
+from autograder.course.exceptions import CourseError
+from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 
 from .notebooks import chapter, code, notebook, prose, solution
 
@@ -80,10 +81,12 @@ def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> Non
     ("course", "message"),
     [
         ({"source": "pkg/gone.py"}, "the reference has no file pkg/gone.py"),
-        ({"source": "../secret"}, "must stay inside its folder"),
-        ({"target": "/etc/passwd"}, "must stay inside its folder"),
-        ({"target": None}, "must be paths, not None"),
-        ({"hide": "main"}, '"hide" must be a list of function names'),
+        ({"source": "../secret"}, "the metadata course.source are wrong: '../secret' does not match"),
+        ({"source": "pkg/../../secret"}, "the metadata course.source are wrong"),
+        ({"target": "/etc/passwd"}, "the metadata course.target are wrong"),
+        ({"target": None}, "the metadata course.target are wrong: None is not of type 'string'"),
+        ({"hide": "main"}, "the metadata course.hide are wrong: 'main' is not of type 'array'"),
+        ({"hied": ["main"]}, "('hied' was unexpected)"),
         ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
     ],
 )
@@ -102,13 +105,13 @@ def test_metadata_that_copying_cannot_mend_is_an_error_and_writes_nothing(
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
     (found,) = find_outdated(made, solutions)
-    assert '"given" must map' in found.message
+    assert "course.given are wrong: ['pkg/setup.cfg'] is not of type 'object'" in found.message
 
 
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
     (found,) = find_outdated(made, solutions)
-    assert 'metadata\'s "course" must be a mapping' in found.message
+    assert "the metadata course are wrong: 'pkg/node.py' is not of type 'object'" in found.message
 
 
 def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
