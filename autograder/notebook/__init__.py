@@ -16,13 +16,13 @@ import os
 from IPython.core.getipython import get_ipython
 
 from autograder.notebook import writefile
-from autograder.notebook.checking import CheckReport, check
+from autograder.notebook.checking import check
 from autograder.notebook.comparing import side_by_side
-from autograder.notebook.driving import DriveReport, drive
-from autograder.notebook.graph import Graph, graph
-from autograder.notebook.notices import NotGraded, Notice
-from autograder.notebook.scoring import ScoreTable, score
-from autograder.notebook.simulator_session import SimulatorSession, simulator
+from autograder.notebook.driving import drive
+from autograder.notebook.graph import graph
+from autograder.notebook.notices import NotGraded
+from autograder.notebook.scoring import score
+from autograder.notebook.simulator_session import simulator
 from autograder.notebook.sourcing import source
 from autograder.ros import activate
 from autograder.ros.domains import Domain
@@ -30,12 +30,6 @@ from autograder.ros.environment import LOGS_TO_STDOUT
 from sim.grading import grading
 
 __all__ = [
-    "CheckReport",
-    "DriveReport",
-    "Graph",
-    "Notice",
-    "ScoreTable",
-    "SimulatorSession",
     "check",
     "drive",
     "grade",

@@ -102,19 +102,16 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         trouble = None
         if diagnosis["kind"] != "ok":
             trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
-        found: dict[str, Any] = {result["id"]: result for result in answer.get("checks", [])}
-    lines = []
-    for declared in answer["declared"]:
-        result = found.get(declared["id"], {"outcome": "not_checked", "message": "", "hints": []})
-        outcome = Outcome(result["outcome"])
-        hints = tuple(result["hints"]) if outcome is Outcome.FAILED else ()
-        lines.append(Line(declared["title"], outcome, result["message"], hints, declared["doc"]))
-    return CheckReport(assignment, tuple(lines), trouble, _later(assignment))
-
-
-def _later(assignment: str) -> tuple[str, ...]:
+        lines = tuple(_line(result) for result in answer["checks"])
     path = layout.judged_later(assignment)
-    return tuple(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else ()
+    later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else ()
+    return CheckReport(assignment, lines, trouble, tuple(later))
+
+
+def _line(result: dict[str, Any]) -> Line:
+    outcome = Outcome(result["outcome"])
+    hints = tuple(result["hints"]) if outcome is Outcome.FAILED else ()
+    return Line(result["title"], outcome, result["message"], hints, result["doc"])
 
 
 def _row(line: Line) -> str:

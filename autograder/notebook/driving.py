@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +17,6 @@ from autograder.notebook.worker_client import RECORDING, send
 from sim import (
     DeadSector,
     Faults,
-    Pose,
     Recording,
     RobotSpec,
     Simulation,
@@ -98,10 +97,9 @@ def drive(
     seconds: float = 30.0,
     *,
     faults: str | Faults | None = None,
-    start: Pose | None = None,
     seed: int = 0,
     name: str | None = None,
-    parameters: Parameters | Sequence[Parameters] = (),
+    parameters: Parameters | None = None,
     workspace: str | Path = "ws",
 ) -> DriveReport | Notice:
     """Build the workspace, let a program steer the robot, and show the track.
@@ -116,11 +114,9 @@ def drive(
         seconds: of ROS time.
         faults: what is wrong with the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or
             a `sim.Faults`.
-        start: where the robot starts; the world's own start pose by default.
         seed: of the simulator's noise.
         name: what the node is called, instead of the name in its code.
-        parameters: values by name, or the path of a parameter file, or several of these; later ones win, as they do in
-            a launch file.
+        parameters: values by name, or the path of a parameter file.
         workspace: the colcon workspace.
 
     Returns:
@@ -131,7 +127,7 @@ def drive(
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
-    robot = RobotSpec(radius=RADIUS, faults=_faults(faults), start=start)
+    robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
     world = world if isinstance(world, World) else load_world(layout.world(world))
     simulation = Simulation(world, (robot,), seed=seed)
     with send(
@@ -141,8 +137,8 @@ def drive(
         executable=executable,
         simulation=to_json(simulation),
         seconds=float(seconds),
-        name=name,
-        parameters=_parameter_files(parameters, name),
+        options=["-r", f"__node:={name}"] if name else [],
+        parameter_file="" if parameters is None else _parameter_file(parameters),
     ) as (answer, folder):
         diagnosis = answer["diagnosis"]
         if diagnosis["kind"] != Kind.OK.value:
@@ -161,22 +157,14 @@ def _faults(faults: str | Faults | None) -> Faults:
     return FAULTS[faults]
 
 
-def _parameter_files(parameters: Parameters | Sequence[Parameters], name: str | None) -> list[str]:
-    """Return the texts of parameter files with these values.
-
-    A value given by hand is the node's own where its name is known: it wins over `/**` in a file.
-    """
-    several = [parameters] if isinstance(parameters, (Mapping, str, Path)) else parameters
-    return [_parameter_file(entry, name or "/**") for entry in several]
-
-
-def _parameter_file(entry: Parameters, key: str) -> str:
-    if isinstance(entry, Mapping):
+def _parameter_file(parameters: Parameters) -> str:
+    """Return the text of a parameter file with these values."""
+    if isinstance(parameters, Mapping):
         try:
-            return yaml.safe_dump({key: {"ros__parameters": dict(entry)}})
+            return yaml.safe_dump({"/**": {"ros__parameters": dict(parameters)}})
         except yaml.representer.RepresenterError as error:
             kind = type(error.args[-1]).__name__
             raise UsageError(f"a parameter is a bool, int, float, str or a list of these, not a {kind}") from None
-    if not Path(entry).is_file():
-        raise UsageError(f"there is no parameter file {entry}: give its path from the notebook's folder")
-    return Path(entry).read_text()
+    if not Path(parameters).is_file():
+        raise UsageError(f"there is no parameter file {parameters}: give its path from the notebook's folder")
+    return Path(parameters).read_text()

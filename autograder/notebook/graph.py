@@ -71,13 +71,12 @@ class Graph:
         )
 
 
-def graph(seconds: float = 10.0, hidden: tuple[str, ...] = QUIET) -> Graph | Notice:
+def graph(seconds: float = 10.0) -> Graph | Notice:
     """Draw the nodes that run now, and the topics between them.
 
     Args:
         seconds: how long to look at most. The picture is drawn as soon as there is a node and the graph has
             not changed for a second.
-        hidden: topics that are left out.
 
     Raises:
         ModuleNotFoundError: ROS is not on; call `ros()` first.
@@ -93,26 +92,26 @@ def graph(seconds: float = 10.0, hidden: tuple[str, ...] = QUIET) -> Graph | Not
         rclpy.init(context=context)
     try:
         looker = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
-        return _settled(looker, seconds, hidden)
+        return _settled(looker, seconds)
     finally:
         rclpy.try_shutdown(context=context)
 
 
-def _settled(looker: Any, seconds: float, hidden: tuple[str, ...]) -> Graph:
+def _settled(looker: Any, seconds: float) -> Graph:
     """Look until the graph has stayed the same for a while, or the time is over."""
     end = time.monotonic() + seconds
-    seen, since = _look(looker, hidden), time.monotonic()
+    seen, since = _look(looker), time.monotonic()
     while time.monotonic() < min(end, since + SETTLED):
         time.sleep(0.05)
-        now = _look(looker, hidden)
+        now = _look(looker)
         if now != seen or not now.nodes:
             seen, since = now, time.monotonic()
     return seen
 
 
-def _look(looker: Any, hidden: tuple[str, ...]) -> Graph:
+def _look(looker: Any) -> Graph:
     """Return the graph as it is now, without hidden nodes, whose names begin with an underscore."""
-    topics = {name: kinds[0] for name, kinds in looker.get_topic_names_and_types() if name not in hidden}
+    topics = {name: kinds[0] for name, kinds in looker.get_topic_names_and_types() if name not in QUIET}
     published = {(_name(end), topic) for topic in topics for end in looker.get_publishers_info_by_topic(topic)}
     subscribed = {(topic, _name(end)) for topic in topics for end in looker.get_subscriptions_info_by_topic(topic)}
     nodes = {f"{space.rstrip('/')}/{name}" for name, space in looker.get_node_names_and_namespaces()}

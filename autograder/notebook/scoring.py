@@ -15,7 +15,7 @@ from autograder.notebook.notices import Notice
 from autograder.result import write_json
 from sim import Recording
 
-FILE = "scores.json"
+FILE = Path("scores.json")  # nobody else reads it
 COLUMNS = ("", "run", "goal", "driven", "nearest thing")
 
 
@@ -78,13 +78,12 @@ class ScoreTable:
         return [(place, *score.cells) for place, score in zip(places, self.scores, strict=True)]
 
 
-def score(drive: DriveReport | Notice, run: str = "", file: str | Path = FILE) -> ScoreTable | Notice:
+def score(drive: DriveReport | Notice, run: str = "") -> ScoreTable | Notice:
     """Add a drive to the table of one's own drives in that world, and show the table.
 
     Args:
         drive: what `drive(...)` returned, in a world with a goal.
         run: a name for the run; "run 3" and so on by default.
-        file: where the scores are kept; nobody else reads it.
 
     Returns:
         The table, or the notice that came instead of a drive.
@@ -94,10 +93,10 @@ def score(drive: DriveReport | Notice, run: str = "", file: str | Path = FILE) -
     """
     if isinstance(drive, Notice):
         return drive
-    kept = _read(Path(file))
+    kept = _read()
     newest = score_of(drive.recording, run or f"run {len(kept) + 1}")
     kept.append(newest)
-    write_json(Path(file), [asdict(each) for each in kept])
+    write_json(FILE, [asdict(each) for each in kept])
     return ScoreTable(
         tuple(sorted((each for each in kept if each.world == newest.world), key=lambda s: s.rank)), newest
     )
@@ -128,10 +127,10 @@ def score_of(recording: Recording, run: str) -> Score:
     )
 
 
-def _read(file: Path) -> list[Score]:
-    if not file.exists():
+def _read() -> list[Score]:
+    if not FILE.exists():
         return []
     try:
-        return [Score(**entry) for entry in json.loads(file.read_text(encoding="utf-8"))]
+        return [Score(**entry) for entry in json.loads(FILE.read_text(encoding="utf-8"))]
     except (ValueError, TypeError) as error:
-        raise UsageError(f"{file}: holds no scores ({error}); remove the file to begin a new table") from None
+        raise UsageError(f"{FILE}: holds no scores ({error}); remove the file to begin a new table") from None

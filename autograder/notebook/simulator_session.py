@@ -15,9 +15,9 @@ from autograder.notebook.driving import RADIUS
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import running
 from sim.grading import grading
+from sim.recording import Recording, load_recording
 
 if TYPE_CHECKING:
-    from sim import Recording
     from sim.view import Player
 
 READY_SECONDS = 180.0  # real time: the first simulation on a machine compiles the engine, on a busy one for a minute
@@ -63,22 +63,11 @@ def simulator(
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "run.npz"
-        parameters = {
-            "world": path,
-            "speed": float(speed),
-            "robots": list(robots),
-            "radius": RADIUS,
-            "recording": recording,
-        }
+        parameters = {"world": path, "speed": float(speed), "robots": list(robots), "radius": RADIUS}
+        parameters["recording"] = recording
         settings = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
         node = [sys.executable, "-m", "sim.bridge", "--ros-args", *settings]
         command = shlex.join([sys.executable, "-m", "autograder", "ros", *node])
         with running(command, until="robot(s)", seconds=READY_SECONDS, workspace=folder):
             yield session
-        session.recording = _load(recording)
-
-
-def _load(path: Path) -> Recording | None:
-    from sim.recording import load_recording
-
-    return load_recording(path) if path.exists() else None
+        session.recording = load_recording(recording) if recording.exists() else None

@@ -7,7 +7,6 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,27 +17,6 @@ from autograder.sandbox.limits import NOTEBOOK_CELL
 
 ANSWER = "answer.json"
 RECORDING = "recording.npz"
-
-
-@dataclass(frozen=True)
-class Request:
-    """What a notebook asks a worker: to drive a robot, or to run visible checks, with a workspace's packages.
-
-    Attributes:
-        verb: `drive` or `check`.
-        source: the workspace's `src` folder.
-        out: where the answer goes.
-        arguments: what the verb needs.
-    """
-
-    verb: str
-    source: Path
-    out: Path
-    arguments: dict[str, Any]
-
-    def to_json(self, scratch: Path) -> str:
-        """Return the request as JSON, with the scratch folder that the worker may use."""
-        return json.dumps({**asdict(self), "scratch": scratch}, default=str)
 
 
 @contextmanager
@@ -58,12 +36,13 @@ def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[st
     if not source.is_dir():
         raise UsageError(f"there is no folder {source}: run this from the assignment's folder, where ws/src is")
     with tempfile.TemporaryDirectory(prefix="request-") as folder:
-        request = Request(verb, source.resolve(), Path(folder), arguments)
-        report = run_in_cell(
-            lambda scratch: [sys.executable, "-m", "autograder.notebook.check_worker", request.to_json(scratch)],
-            best_tier(),
-            NOTEBOOK_CELL,
-        )
+
+        def command(scratch: Path) -> list[str]:
+            request = {"verb": verb, "source": source.resolve(), "out": folder, "scratch": scratch}
+            request["arguments"] = arguments
+            return [sys.executable, "-m", "autograder.notebook.check_worker", json.dumps(request, default=str)]
+
+        report = run_in_cell(command, best_tier(), NOTEBOOK_CELL)
         answer = Path(folder) / ANSWER
         if report.returncode != 0 or not answer.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")

@@ -13,8 +13,10 @@ from nbgrader.validator import Validator
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import chapters
 from autograder.layout import SOLUTIONS
-from autograder.notebook import CheckReport, DriveReport, Notice, check, drive, ros
-from autograder.notebook.driving import FAULTS
+from autograder.notebook import check, drive, ros
+from autograder.notebook.checking import CheckReport
+from autograder.notebook.driving import FAULTS, DriveReport
+from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import shell
 from autograder.proof.mutants import mutants, write_mutant, write_reference
 

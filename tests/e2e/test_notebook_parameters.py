@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.notebook import DriveReport, Notice, drive, side_by_side
+from autograder.notebook import drive, side_by_side
+from autograder.notebook.driving import DriveReport
+from autograder.notebook.notices import Notice
 from autograder.proof.mutants import write_reference
 
 PROGRAM = ("my_robot_package", "configured_node")
@@ -44,12 +46,12 @@ def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
     assert "1.5 m: " in picture.alt
 
 
-def test_a_file_serves_a_robot_by_its_name_and_a_later_value_wins(right: Path) -> None:
+def test_a_file_serves_a_robot_by_its_name(right: Path) -> None:
     fleet = right / "src/my_robot_package/config/fleet_params.yaml"
-    porter = drive(*PROGRAM, seconds=20, name="porter", parameters=[fleet, {"safety_distance": 1.3}], workspace=right)
+    porter = drive(*PROGRAM, seconds=20, name="porter", parameters=fleet, workspace=right)
     assert isinstance(porter, DriveReport)
     assert "Porter is ready" in porter.output
-    assert stop(porter) == pytest.approx(1.3, abs=0.02)
+    assert stop(porter) == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_start_that_the_node_refuses_is_a_calm_sentence_even_side_by_side(right: Path) -> None:

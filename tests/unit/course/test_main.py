@@ -12,10 +12,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 from autograder import layout
-from autograder.checks import Check, Visibility, suites
+from autograder.checks import Check, Outcome, Visibility, suites
 from autograder.cli import course as command
 from autograder.course import judged_later
-from autograder.notebook import CheckReport, checking
+from autograder.notebook import checking
+from autograder.notebook.checking import CheckReport
+from autograder.result import CheckResult
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 
@@ -84,9 +86,8 @@ def test_a_student_whose_checks_have_all_passed_reads_what_is_judged_after_handi
 ) -> None:
     shown = {check.title for check in suites.visible(assignment).checks}
     judged = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
-    declared = [dataclasses.asdict(check) for check in suites.visible(assignment).checks]
-    passed = [{"id": each["id"], "outcome": "passed", "message": "", "hints": []} for each in declared]
-    answer = {"diagnosis": {"kind": "ok"}, "declared": declared, "checks": passed}
+    passed = [dataclasses.asdict(CheckResult.of(each, Outcome.PASSED)) for each in suites.visible(assignment).checks]
+    answer = {"diagnosis": {"kind": "ok"}, "checks": passed}
     monkeypatch.setattr(checking, "send", lambda *_, **__: nullcontext((answer, None)))
     report = checking.check(assignment)
     assert isinstance(report, CheckReport)

@@ -11,7 +11,9 @@ from rclpy.context import Context
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook import Graph, Notice, graph
+from autograder.notebook import graph
+from autograder.notebook.graph import Graph
+from autograder.notebook.notices import Notice
 
 
 @pytest.mark.slow

@@ -10,8 +10,9 @@ from nbgrader.utils import determine_grade
 
 from autograder.checks import Outcome
 from autograder.exceptions import UsageError
-from autograder.notebook import CheckReport, Notice, check, drive, grade
-from autograder.notebook.checking import Line
+from autograder.notebook import check, drive, grade
+from autograder.notebook.checking import CheckReport, Line
+from autograder.notebook.notices import Notice
 from sim.grading import GRADING_VARIABLE
 
 GRADED = {"grade": True, "solution": False, "locked": True, "grade_id": "g", "schema_version": 3}

@@ -7,13 +7,20 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.notebook import DriveReport, Notice, score
-from autograder.notebook.scoring import Score, ScoreTable, score_of
+from autograder.notebook import score
+from autograder.notebook.driving import DriveReport
+from autograder.notebook.notices import Notice
+from autograder.notebook.scoring import FILE, Score, ScoreTable, score_of
 from sim import Command, Goal, Pose, RobotSpec, Simulation, World, box, run
 
 ROOM = World.from_segments(
     box(6.0, 2.0).tolist(), name="a room", starts=[Pose(-2.0, 0.0, 0.0)], goals=[Goal(1.0, 0.0, 0.5)]
 )
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
 def drive(speed: float, world: World = ROOM) -> DriveReport:
@@ -30,10 +37,9 @@ def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
     assert (slow.arrived, slow.left) == (None, pytest.approx(2.5 - slow.metres, abs=0.02))
 
 
-def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first(tmp_path: Path) -> None:
-    file = tmp_path / "scores.json"
+def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first() -> None:
     for speed, name in ((0.1, "slow"), (0.3, ""), (0.5, "fast")):
-        table = score(drive(speed), name, file)
+        table = score(drive(speed), name)
     assert isinstance(table, ScoreTable)
     assert [each.run for each in table.scores] == ["fast", "run 2", "slow"]
     assert repr(table).splitlines()[1].startswith("1. ← this run  fast   after")
@@ -48,11 +54,11 @@ def test_arriving_counts_more_than_touching_nothing_and_that_more_than_the_time(
     assert ranks == sorted(ranks)
 
 
-def test_what_is_no_drive_or_has_no_goal_or_no_scores_is_told(tmp_path: Path) -> None:
+def test_what_is_no_drive_or_has_no_goal_or_no_scores_is_told() -> None:
     notice = Notice("It did not start.")
-    assert score(notice, file=tmp_path / "scores.json") is notice
+    assert score(notice) is notice
     with pytest.raises(UsageError, match="the world 'an empty hall' has no goal: drive in another one, such as 'maze'"):
-        score(drive(0.1, World.from_segments(box(4.0, 4.0).tolist(), name="an empty hall")), file=tmp_path / "s.json")
-    (tmp_path / "scores.json").write_text('[{"world": 3}]')
+        score(drive(0.1, World.from_segments(box(4.0, 4.0).tolist(), name="an empty hall")))
+    FILE.write_text('[{"world": 3}]')
     with pytest.raises(UsageError, match=r"scores\.json: holds no scores .*; remove the file to begin a new table"):
-        score(drive(0.1), file=tmp_path / "scores.json")
+        score(drive(0.1))

@@ -14,7 +14,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from autograder.exceptions import UsageError
-from autograder.notebook import Notice, simulator
+from autograder.notebook import simulator
+from autograder.notebook.notices import Notice
 from autograder.notebook.simulator_session import SimulatorSession
 from sim import Recording
 from sim.grading import GRADING_VARIABLE

@@ -11,7 +11,8 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.interfaces import build
-from autograder.notebook import Notice, source
+from autograder.notebook import source
+from autograder.notebook.notices import Notice
 from sim.grading import GRADING_VARIABLE
 
 # A process of its own, as a kernel is: what it imports and sets would stay in this one.
