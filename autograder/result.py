@@ -174,6 +174,12 @@ class Result:
         """Return the checks that count for one locked grade cell."""
         return tuple(check for check in self.checks if check.group == name)
 
+    def only(self, check: str) -> Result:
+        """Return the result with one check alone."""
+        (kept,) = (each for each in self.checks if each.id == check)
+        artifacts = tuple(artifact for artifact in self.artifacts if artifact.check == check)
+        return dataclasses.replace(self, checks=(kept,), max_score=kept.max_points, artifacts=artifacts)
+
     def to_json(self) -> dict[str, Any]:
         """Return the JSON form."""
         plain = {"schema": SCHEMA, **dataclasses.asdict(self), "score": self.score}

@@ -77,6 +77,14 @@ class Suite:
             points[check.group] = points.get(check.group, 0.0) + check.points
         return points
 
+    def with_dependencies(self, *wanted: str) -> tuple[str, ...]:
+        """Return the ids of checks and of all that they depend on, in the order of the suite."""
+        needed = set(wanted)
+        for check in reversed(self.checks):  # what a check depends on stands before it
+            if check.id in needed:
+                needed.update(check.depends)
+        return tuple(check.id for check in self.checks if check.id in needed)
+
 
 @cache
 def hidden(assignment: str) -> Suite:

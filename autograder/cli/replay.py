@@ -6,14 +6,13 @@ import os
 import shutil
 import tempfile
 import webbrowser
-from collections.abc import Iterator, Sequence
-from dataclasses import replace as with_fields
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
 from autograder import feedback
-from autograder.checks import Check, suites
+from autograder.checks import suites
 from autograder.cli.options import isolation_option
 from autograder.exceptions import UsageError
 from autograder.export.stored import Stored, load
@@ -55,7 +54,8 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
         if submission is not None:
             found = _grade_again(found.result, check, submission, Path(scratch), Tier(isolation), mcap)
-        page = feedback.write(_only(found.result, check), folder, artifacts=found.folder)
+        result = found.result.only(check) if found.result.status is Status.GRADED else found.result
+        page = feedback.write(result, folder, artifacts=found.folder)
         click.echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):
             click.echo(f"Its messages: {bag}")
@@ -72,7 +72,7 @@ def _one(path: Path) -> Stored:
 
 def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Stored:
     """Grade a check, and what it depends on, once more with the seed of its result."""
-    needed = _with_dependencies(suites.hidden(result.assignment).checks, check)
+    needed = suites.hidden(result.assignment).with_dependencies(check)
     graded = grade_submission(
         submission,
         result.assignment,
@@ -85,24 +85,6 @@ def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: 
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
         click.echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
     return Stored(graded, out)
-
-
-def _with_dependencies(checks: Sequence[Check], wanted: str) -> tuple[str, ...]:
-    """Return the ids of a check and of all that it depends on, which stands earlier, in the order of the suite."""
-    needed = {wanted}
-    for check in reversed(checks):
-        if check.id in needed:
-            needed.update(check.depends)
-    return tuple(check.id for check in checks if check.id in needed)
-
-
-def _only(result: Result, check: str) -> Result:
-    """Return a result with one check alone; if the submission could not be graded, as it is."""
-    if result.status is not Status.GRADED:
-        return result
-    (kept,) = (each for each in result.checks if each.id == check)
-    artifacts = tuple(artifact for artifact in result.artifacts if artifact.check == check)
-    return with_fields(result, checks=(kept,), max_score=kept.max_points, artifacts=artifacts)
 
 
 def _bags(recordings: Path, out: Path) -> Iterator[Path]:

@@ -13,8 +13,11 @@ from autograder.checks import suites
 from autograder.checks.contract import counts
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
-from autograder.proof import CaseKind, Claim, cases, holds, prove, summary
+from autograder.proof.cases import cases
+from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.lanes import Lanes
+from autograder.proof.prove import prove
+from autograder.proof.summary import holds, summary
 from autograder.result import write_json
 from autograder.sandbox import Tier
 

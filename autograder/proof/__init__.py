@@ -4,10 +4,3 @@ The reference has every point of its assignment, and the untouched release has n
 every point. A named mutant loses the checks that it names and no other. A generated mutant loses at least one check. An
 attack gains no point.
 """
-
-from autograder.proof.cases import Case, cases
-from autograder.proof.claims import CaseKind, Claim
-from autograder.proof.prove import prove
-from autograder.proof.summary import holds, summary
-
-__all__ = ["Case", "CaseKind", "Claim", "cases", "holds", "prove", "summary"]

@@ -71,7 +71,8 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
 
     Where a mutant fails a check by itself, and not merely for want of one that it depends on, such a one is taken.
     """
-    depends = {check.id: frozenset(check.depends) for check in suites.hidden(assignment).checks}
+    suite = suites.hidden(assignment)
+    depends = {check.id: frozenset(check.depends) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
     lost = {m.id: set(m.loses) for m in candidates}
@@ -84,13 +85,7 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
                 break
             chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
             uncovered -= covers[best.id]
-    return [(m, tuple(sorted(_with_needed(chosen[m.id], depends)))) for m in candidates if m.id in chosen]
-
-
-def _with_needed(names: set[str], depends: dict[str, frozenset[str]]) -> set[str]:
-    """Return checks and all that they depend on."""
-    needed = names.union(*(depends[name] for name in names))
-    return needed if needed == names else _with_needed(needed, depends)
+    return [(m, suite.with_dependencies(*chosen[m.id])) for m in candidates if m.id in chosen]
 
 
 def write_release(assignment: str, folder: Path) -> None:

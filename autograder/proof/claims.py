@@ -1,6 +1,7 @@
 """Compares the result of a submission of the proof with the result that it must have.
 
-Each `verify_` function returns the differences in words, and an empty string if there are none.
+Each `verify_` function gets the result of a submission that was graded. It returns the differences in words, and an
+empty string if there are none.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class Claim:
 
 def verify_full_marks(result: Result) -> str:
     """Return why a right answer has not every point."""
-    if not is_graded(result) or result.diagnosis.kind is not Kind.OK:
+    if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
     missing = lost_checks(result)
     return f"loses {', '.join(sorted(missing))}" if missing else ""
@@ -61,8 +62,6 @@ def verify_full_marks(result: Result) -> str:
 
 def verify_zero(result: Result) -> str:
     """Return why an untouched release does not have 0 points."""
-    if not is_graded(result):
-        return result.diagnosis.sentence
     return "" if result.score == 0 else f"it scores {result.score:g}"
 
 
@@ -75,8 +74,6 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
         only: the ids of the checks that were run; every check if there are none. The diagnosis is compared only if
             every check was run, because any of them may have made it.
     """
-    if not is_graded(result):
-        return result.diagnosis.sentence
     missing, named = lost_checks(result), mutant.loses
     if only:
         missing, named = missing & only, named & only
@@ -89,8 +86,6 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
 
 def verify_killed(result: Result) -> str:
     """Return that a generated mutant survived, if it passed every check."""
-    if not is_graded(result):
-        return result.diagnosis.sentence
     return "" if lost_checks(result) else "survives: no check sees the difference"
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
-from autograder.proof.claims import Claim
+from autograder.proof.claims import Claim, is_graded
 from autograder.proof.lanes import Lanes
 
 SUBMISSION = "submission"
@@ -44,7 +44,8 @@ def prove(
                 scope=case.scope,
                 run_job=lanes,
             )
-        return Claim(case.assignment, case.kind, case.name, result, case.verify(result), case.reason)
+        mismatch = case.verify(result) if is_graded(result) else result.diagnosis.sentence
+        return Claim(case.assignment, case.kind, case.name, result, mismatch, case.reason)
 
     claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}

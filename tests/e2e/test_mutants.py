@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
-from autograder.proof import Case, CaseKind, cases, prove
+from autograder.proof.cases import Case, cases
+from autograder.proof.claims import CaseKind
 from autograder.proof.lanes import Lanes
+from autograder.proof.prove import prove
 from autograder.sandbox import Tier
 from tests.drawn import drawn, unless
 

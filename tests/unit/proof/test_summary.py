@@ -8,10 +8,11 @@ import pytest
 
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import OK
-from autograder.proof import CaseKind, Claim, cases, holds, summary
-from autograder.proof.claims import verify_full_marks, verify_killed, verify_mutant, verify_zero
+from autograder.proof.cases import cases
+from autograder.proof.claims import CaseKind, Claim, verify_full_marks, verify_killed, verify_mutant, verify_zero
 from autograder.proof.generated import generated_mutants
 from autograder.proof.mutants import mutants
+from autograder.proof.summary import holds, summary
 from autograder.result import CheckResult, Result
 
 ASSIGNMENT = "02_nodes"
