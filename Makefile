@@ -25,7 +25,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes bench cluster verify real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster verify real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -90,6 +90,11 @@ tour:           ## solve each chapter's release in JupyterLab, keep screenshots 
 classes:        ## a class of five hands in each chapter, graded through nbgrader and without
 	@$(BOOTSTRAP) --dev
 	$(PYTEST) tests/e2e/test_classes.py $(PYTEST_ARGS)
+
+docs:           ## build the site in .build/site/html, with the notebooks' outputs, and look at it in a browser
+	@$(BOOTSTRAP) --dev --browser
+	@$(BIN)/autograder notebooks --released
+	$(BIN)/python -m pytest tests/browser/test_site.py $(PYTEST_ARGS)
 
 bench:          ## measure simulator, grader and builds, write .build/bench.json
 	@$(BOOTSTRAP) --dev

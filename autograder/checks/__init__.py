@@ -1,4 +1,4 @@
-"""The checks: what a check is, and one package a chapter with the checks that judge it.
+"""The checks: what a check is, and one package a chapter with the checks that judge it. A chapter has::
 
     chNN_name/
         conftest.py    the fixtures of this chapter

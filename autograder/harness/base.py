@@ -35,10 +35,10 @@ AnyHarness = TypeVar("AnyHarness", bound="Harness")
 class Harness(ABC):
     """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
-    Name what the grader publishes and listens to, then enter:
+    Name what the grader publishes and listens to, then enter::
 
-        with SteppedHarness(workspace, "my_robot_package", "robot_controller",
-                         offers={"/scan": LaserScan}, listens={"/cmd_vel": Twist}) as harness:
+        offers, listens = {"/scan": LaserScan}, {"/cmd_vel": Twist}
+        with SteppedHarness(workspace, PACKAGE, EXECUTABLE, offers=offers, listens=listens) as harness:
             harness.publish("/scan", scan)
             harness.run(0.1)
             harness.messages("/cmd_vel")

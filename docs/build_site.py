@@ -1,0 +1,103 @@
+"""Builds the site from the pages in `docs`. `make docs` executes the notebooks before, and looks at the site after it.
+
+Some pages are made here: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
+run on the start page, and the table of the proof.
+"""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import yaml
+
+from autograder import layout
+from autograder.checks import suites
+from autograder.course.execute import Form
+from autograder.course.forms import in_form
+from autograder.course.markdown import table
+from autograder.course.sync import Chapter, chapters, write_notebook
+from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
+from sim.export import to_html
+
+DOCS = layout.ROOT / "docs"
+SITE = layout.BUILD / "site"
+SOURCE, HTML = SITE / "source", SITE / "html"
+# For instructors alone: it says what each hidden check looks for.
+KEPT_BACK = ("checks.md", "cluster", "*.py", "__pycache__")
+# Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
+AHEAD, ROOM = math.radians(50.0), 0.6
+FROM_ELSEWHERE = ("CHANGELOG.md", "SECURITY.md", "chapters/ros2-commands.md")
+
+
+def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
+    """Write the sources of the site and run Sphinx, for which a warning is an error. The site lies in `HTML`.
+
+    Args:
+        screenshots: folder with the pictures that the guides show.
+    """
+    shutil.rmtree(SITE, ignore_errors=True)
+    shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*KEPT_BACK))
+    shutil.copy(DOCS / "conf.py", SOURCE)
+    for path in map(layout.ROOT.joinpath, FROM_ELSEWHERE):
+        text = path.read_text(encoding="utf-8").replace("](docs/", "](")
+        (SOURCE / path.name).write_text(text, encoding="utf-8")
+    shutil.copytree(screenshots, SOURCE / "screenshots")
+    (SOURCE / "chapters").mkdir()
+    for chapter in chapters():
+        write_chapter(chapter, SOURCE / "chapters")
+    (SOURCE / "proof.md").write_text(proof_table(), encoding="utf-8")
+    write_run(SOURCE / "_extra" / "run.html")
+    sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
+    return subprocess.run([*sphinx, str(SOURCE), str(HTML)], capture_output=True, text=True, check=False)
+
+
+def write_chapter(chapter: Chapter, folder: Path) -> None:
+    """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since."""
+    notebook = in_form(chapter.read(), Form.RELEASED)
+    report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
+    if report.is_file():
+        executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
+        if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
+            notebook = executed
+    write_notebook(folder / chapter.path.name, notebook)
+    if (chapter.folder / "figures").is_dir():
+        shutil.copytree(chapter.folder / "figures", folder / "figures", dirs_exist_ok=True)
+
+
+def proof_table() -> str:
+    """Return how much proves each suite, as a Markdown table."""
+    rows = []
+    for name in suites.graded():
+        suite = suites.hidden(name)
+        mutants = yaml.safe_load((suite.folder / "mutants.yaml").read_text(encoding="utf-8"))["mutants"]
+        variants = [path for path in (suite.folder / "variants").glob("*") if path.is_dir()]
+        rows.append((name, f"{suite.max_score:g}", *map(str, (len(suite.checks), len(mutants), len(variants)))))
+    return "\n".join(table(("chapter", "points", "hidden checks", "named mutants", "right variants"), rows))
+
+
+def write_run(path: Path) -> None:
+    """Write the page that plays the run of the start page: a robot wanders in the lab by its lidar."""
+    path.parent.mkdir(parents=True)
+    simulation = Simulation(load_world(layout.WORLDS / "lab.yaml"), (RobotSpec(),))
+    to_html(run(simulation, wander, seconds=40.0), path)
+
+
+def wander(state: State, scans: dict[str, Scan | None]) -> Command:
+    """Drive where there is room ahead, and turn to the side where there is more."""
+    (scan,) = scans.values()
+    assert scan is not None, "the robot has a lidar"
+    bearings = (
+        np.remainder(scan.angle_min + np.arange(len(scan.ranges)) * scan.angle_increment + np.pi, math.tau) - np.pi
+    )
+    left, right = (
+        np.min(scan.ranges, where=(side * bearings > 0) & (abs(bearings) < AHEAD), initial=math.inf) for side in (1, -1)
+    )
+    if min(left, right) > ROOM:
+        return Command(linear=0.3)
+    return Command(angular=0.8 if left >= right else -0.8)

@@ -1,0 +1,123 @@
+"""The site: it builds without a warning, and its pages can be read on a phone, in the dark, by keyboard and aloud."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from collections.abc import Callable
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from autograder import feedback
+from autograder.checks import temporal
+from autograder.gallery import Gallery
+from autograder.layout import ROOT
+from autograder.result import Artifact, Result
+from sim import Command, RobotSpec, Simulation, World, box, run
+
+pytestmark = pytest.mark.browser
+
+MADE = runpy.run_path(str(ROOT / "docs" / "build_site.py"))
+READ = ("index", "students", "instructors", "trust", "glossary", "chapters/02_nodes", "api/sim")
+RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+LINK = re.compile(r'<(?:a|img|iframe|link|script)[^>]+(?:href|src)="([^"]+)"')
+ROOM = Simulation(World.from_segments(box(4.0, 3.0), name="a room"), (RobotSpec(radius=0.18),))
+RUN = run(ROOM, lambda state, scans: Command(linear=0.5), seconds=5.0)
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the results of the pictures lie."""
+    return tmp_path_factory.mktemp("graded")
+
+
+@pytest.fixture
+def pictures(
+    page: Page,
+    graded: Path,
+    make_result: Callable[..., Result],
+    broken_result: Result,
+    track: Callable[..., Artifact],
+) -> Path:
+    """The pictures of the instructors' guide: a page of feedback, a run in it, and the page of a class."""
+    folder = graded / "screenshots"
+    if folder.is_dir():
+        return folder
+    alice = make_result(artifacts=(track(graded / "alice"),))
+    gallery = Gallery(graded / "carol")
+    verdict = temporal.always("gap > 0.01", RUN.times.tolist(), {"gap": RUN.clearances[:, 0].tolist()})
+    gallery.of("turns").track("track", RUN, "It meets the wall.", mark=3.0, rules={"the gap, in m": verdict})
+    carol = make_result("carol", artifacts=tuple(gallery.artifacts))
+    results = [alice, broken_result, carol]
+    shots = {result.student: feedback.write(result, graded / result.student) for result in results}
+    shots["class"] = feedback.write_summary(results, graded)
+    for name in ("alice", "class", "carol"):
+        page.goto(f"{shots[name].as_uri()}#t=2.5")
+        if name == "carol":
+            page.locator("canvas").scroll_into_view_if_needed()
+            expect(page.locator("canvas")).to_be_in_viewport()
+        page.screenshot(path=folder / f"{name}.png")
+    return folder
+
+
+@pytest.fixture
+def site(pictures: Path, graded: Path) -> Path:
+    """The folder of the built site."""
+    complaints = graded / "complaints"
+    if not complaints.exists():
+        sphinx = MADE["build"](pictures)
+        complaints.write_text(sphinx.stderr)
+    assert complaints.read_text() == ""
+    return Path(MADE["HTML"])
+
+
+@pytest.mark.parametrize(("name", "scheme"), [*((name, "light") for name in READ), ("chapters/02_nodes", "dark")])
+def test_axe_finds_nothing_wrong_with_a_page_of_the_site(
+    site: Path, page: Page, name: str, scheme: str, screenshots: Path
+) -> None:
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.goto((site / f"{name}.html").as_uri())
+    page.screenshot(path=screenshots / f"site-{name.replace('/', '-')}-{scheme}.png")
+    found = Axe().run(page, options=RULES)
+    assert found.violations_count == 0, found.generate_report()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["alice/feedback.html", "carol/feedback.html", "index.html"])
+def test_axe_finds_nothing_wrong_with_feedback(
+    pictures: Path, graded: Path, page: Page, name: str, scheme: str
+) -> None:
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.goto((graded / name).as_uri())
+    found = Axe().run(page, options=RULES)
+    assert found.violations_count == 0, found.generate_report()
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_page_fits_a_phone(site: Path, page: Page, name: str) -> None:
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.goto((site / f"{name}.html").as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+
+
+def test_the_run_on_the_start_page_plays_by_keyboard(site: Path, page: Page) -> None:
+    page.goto((site / "index.html").as_uri())
+    run = page.frame_locator("iframe")
+    play = run.get_by_role("button", name="Play")
+    play.focus()
+    page.keyboard.press("Enter")
+    expect(run.get_by_role("button", name="Pause")).to_be_visible()
+    expect(run.locator("output").first).not_to_have_text("0.00 s")
+
+
+def test_links_inside_lead_somewhere(site: Path) -> None:
+    """Sphinx holds the links of pages to pages. Raw HTML and the outputs of notebooks have links of their own."""
+    for path in site.rglob("*.html"):
+        for link in LINK.findall(path.read_text(encoding="utf-8")):
+            target = urlsplit(link)
+            if not target.scheme and target.path:
+                assert (path.parent / unquote(target.path)).exists(), f"{path.relative_to(site)} links to {link}"

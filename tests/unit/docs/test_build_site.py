@@ -1,0 +1,39 @@
+"""What of the site is made: the chapters with their outputs, and how much proves each suite."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+
+from autograder import layout
+from autograder.course.sync import Chapter, write_notebook
+
+MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
+
+
+@pytest.mark.parametrize(("executed", "shown"), [("1 + 1", 1), ("1 + 2", 0)])
+def test_outputs_are_those_of_the_same_cells(
+    executed: str, shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(layout, "BUILD", tmp_path)
+    chapter = Chapter(tmp_path / "10_mapping")
+    reports, site = tmp_path / "notebooks", tmp_path / "site"
+    for folder in (chapter.folder, reports, site):
+        folder.mkdir()
+    chapter.write(new_notebook(cells=[new_code_cell("1 + 1")]))
+    output = new_output("execute_result", {"text/plain": "2"})
+    write_notebook(
+        reports / "10_mapping-released.ipynb", new_notebook(cells=[new_code_cell(executed, outputs=[output])])
+    )
+    MADE["write_chapter"](chapter, site)
+    (cell,) = nbformat.read(site / "10_mapping.ipynb", as_version=4).cells
+    assert len(cell.outputs) == shown
+
+
+def test_the_table_of_the_proof_has_each_graded_chapter() -> None:
+    lines = MADE["proof_table"]().splitlines()
+    assert sum(line.startswith("| 0") for line in lines) == 9
