@@ -18,9 +18,8 @@ import yaml
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course.execute import Form
-from autograder.course.forms import in_form
-from autograder.course.markdown import table
+from autograder.course.forms import Form, in_form
+from autograder.course.markdown_table import table
 from autograder.course.sync import Chapter, chapters, write_notebook
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
