@@ -20,7 +20,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course.forms import Form, in_form
 from autograder.course.markdown_table import table
-from autograder.course.sync import Chapter, chapters, write_notebook
+from autograder.course.sync import Chapter, chapters
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
 
@@ -64,7 +64,7 @@ def write_chapter(chapter: Chapter, folder: Path) -> None:
         executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
         if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
             notebook = executed
-    write_notebook(folder / chapter.path.name, notebook)
+    nbformat.write(notebook, folder / chapter.path.name)
     if (chapter.folder / "figures").is_dir():
         shutil.copytree(chapter.folder / "figures", folder / "figures", dirs_exist_ok=True)
 

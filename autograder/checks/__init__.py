@@ -1,4 +1,6 @@
-"""The checks: what a check is, and one package a chapter with the checks that judge it. A chapter has::
+"""The checks: what a check is, and one package a chapter with the checks that judge it.
+
+The package of a chapter::
 
     chNN_name/
         conftest.py    the fixtures of this chapter

@@ -10,7 +10,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import layout
-from autograder.course.sync import Chapter, write_notebook
+from autograder.course.sync import Chapter
 
 MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
 
@@ -26,9 +26,8 @@ def test_outputs_are_those_of_the_same_cells(
         folder.mkdir()
     chapter.write(new_notebook(cells=[new_code_cell("1 + 1")]))
     output = new_output("execute_result", {"text/plain": "2"})
-    write_notebook(
-        reports / "10_mapping-released.ipynb", new_notebook(cells=[new_code_cell(executed, outputs=[output])])
-    )
+    ran = new_notebook(cells=[new_code_cell(executed, outputs=[output])])
+    nbformat.write(ran, reports / "10_mapping-released.ipynb")
     MADE["write_chapter"](chapter, site)
     (cell,) = nbformat.read(site / "10_mapping.ipynb", as_version=4).cells
     assert len(cell.outputs) == shown
