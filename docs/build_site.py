@@ -7,6 +7,7 @@ run on the start page, and the table of the proof.
 from __future__ import annotations
 
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,7 @@ SOURCE, HTML = SITE / "source", SITE / "html"
 KEPT_BACK = ("checks.md", "cluster", "*.py", "__pycache__")
 # Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
 AHEAD, ROOM = math.radians(50.0), 0.6
+FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
 FROM_ELSEWHERE = ("CHANGELOG.md", "SECURITY.md", "chapters/ros2-commands.md")
 
 
@@ -43,14 +45,15 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     shutil.rmtree(SITE, ignore_errors=True)
     shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*KEPT_BACK))
     shutil.copy(DOCS / "conf.py", SOURCE)
-    for path in map(layout.ROOT.joinpath, FROM_ELSEWHERE):
-        text = path.read_text(encoding="utf-8").replace("](docs/", "](")
-        (SOURCE / path.name).write_text(text, encoding="utf-8")
-    shutil.copytree(screenshots, SOURCE / "screenshots")
+    for name in FROM_ELSEWHERE:
+        shutil.copy(layout.ROOT / name, SOURCE)
+    for page in SOURCE.glob("*.md"):  # the site has the pages of all folders in one
+        page.write_text(FOLDER_OF_A_LINK.sub("](", page.read_text(encoding="utf-8")), encoding="utf-8")
+    shutil.copytree(screenshots, SOURCE / "made")
     (SOURCE / "chapters").mkdir()
     for chapter in chapters():
         write_chapter(chapter, SOURCE / "chapters")
-    (SOURCE / "proof.md").write_text(proof_table(), encoding="utf-8")
+    (SOURCE / "made" / "proof.md").write_text(proof_table(), encoding="utf-8")
     write_run(SOURCE / "_extra" / "run.html")
     sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
     return subprocess.run([*sphinx, str(SOURCE), str(HTML)], capture_output=True, text=True, check=False)

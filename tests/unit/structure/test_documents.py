@@ -20,7 +20,7 @@ DOCUMENTS = (
     *(f"docs/{p.name}" for p in ROOT.glob("docs/*.md")),
 )
 FOLDERS = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
-MADE = (".build/", ".venv")  # what a command makes
+MADE = (".build/", ".venv", "made/")  # what a command makes
 IN_A_CHAPTER = ("ws/src", "support/contract.py", "hidden/conftest.py")  # paths in a chapter's folder
 
 
@@ -56,7 +56,7 @@ def commands(document: str) -> list[list[str]]:
 def test_each_path_that_a_document_names_is_there(document: str) -> None:
     named = {path for path in paths(document) if not path.startswith(MADE) and path not in IN_A_CHAPTER}
     beside = (ROOT, (ROOT / document).parent)
-    missing = {path for path in named if not any((folder / path).exists() for folder in beside)}
+    missing = {path for path in named if not any(any(folder.glob(path)) for folder in beside)}
     assert missing <= {"package.xml", "setup.py"}
 
 
