@@ -5,17 +5,16 @@ from __future__ import annotations
 import signal
 from typing import Any
 
-from autograder.cluster.machine import Machine
+from autograder.cluster.machine import resources
 
-TOLD = "autograder"  # the field of a worker's description that says what it grades with
 DEATHS = 2  # workers that a submission may take with it
 
 
 def dask_setup(server: Any) -> None:
     """Prepare a worker or a scheduler of Dask, which calls this when it starts.
 
-    A worker tells what it grades with, and offers a resource for each assignment and tier. A scheduler gives a
-    submission up when two workers have died with it; Dask's own default is four.
+    A worker offers a resource for each assignment and tier. A scheduler gives a submission up when two workers have
+    died with it; Dask's own default is four.
 
     Args:
         server: Dask's `Worker` or `Scheduler`.
@@ -26,9 +25,7 @@ def dask_setup(server: Any) -> None:
     if server.nanny:
         # Ctrl-C in a terminal reaches all processes. The nanny decides what its worker does then.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-    machine = Machine.of_this()
-    server.startup_information[TOLD] = lambda worker: machine.to_json()
     # As many as there are threads: the number of threads alone says how many submissions are graded at once.
-    offered = dict.fromkeys(machine.resources(), float(server.state.nthreads))
+    offered = dict.fromkeys(resources(), float(server.state.nthreads))
     server.state.total_resources.update(offered)
     server.state.available_resources.update(offered)

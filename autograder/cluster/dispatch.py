@@ -22,6 +22,7 @@ from autograder.cluster.accept import accept, give_up, write
 from autograder.cluster.dask_hooks import DEATHS
 from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.fitting import TICK, FittingWorkers
+from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Parcel
 from autograder.exceptions import StudentError
 from autograder.grading.batch import OnResult
@@ -91,9 +92,6 @@ def _first_interrupt() -> Iterator[threading.Event]:
     Python drops an exception that comes in a finalizer, and futures of Dask have one. So the first raises none.
     """
     noted = threading.Event()
-    if threading.current_thread() is not threading.main_thread():  # only the main one hears signals
-        yield noted
-        return
 
     def note(*_: object) -> None:
         noted.set()
@@ -114,7 +112,8 @@ class _Dispatch:
     ) -> None:
         self.results: dict[int, Result] = {}
         self._client, self._on_result, self._grade = client, on_result, grade
-        self._workers = FittingWorkers(client, requests[0].assignment, requests[0].isolation, say)
+        self._resource = resource(requests[0].assignment, requests[0].isolation)
+        self._workers = FittingWorkers(client, self._resource, say)
         self._parcels = self._packed(requests)
         self._under_way: dict[Future, _Sent] = {}
         self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
@@ -157,7 +156,7 @@ class _Dispatch:
 
     def _send(self, sent: _Sent) -> None:
         future = self._client.submit(
-            self._grade, sent.parcel, key=f"grade-{uuid.uuid4()}", resources={self._workers.resource: 1}, pure=False
+            self._grade, sent.parcel, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
         self._under_way[future] = sent
         future.add_done_callback(self._ended.put)

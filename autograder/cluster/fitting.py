@@ -7,10 +7,8 @@ from collections.abc import Callable
 
 from distributed import Client
 
-from autograder.cluster.dask_hooks import TOLD
 from autograder.cluster.exceptions import ClusterError
-from autograder.cluster.machine import Machine
-from autograder.sandbox import Tier
+from autograder.cluster.machine import difference
 
 TICK = 0.5  # s between two looks
 PATIENCE = 120.0  # s without any worker that fits
@@ -21,23 +19,16 @@ class FittingWorkers:
 
     Args:
         client: the connection to the scheduler.
-        assignment: what is to be graded.
-        tier: how submissions are isolated.
+        resource: what workers offer who can grade this.
         say: is told once of each worker that is refused, and why.
     """
 
-    def __init__(self, client: Client, assignment: str, tier: Tier, say: Callable[[str], None]) -> None:
-        self._client, self._assignment, self._tier, self._say = client, assignment, tier, say
-        self._machine = Machine.of_this()
+    def __init__(self, client: Client, resource: str, say: Callable[[str], None]) -> None:
+        self._client, self._resource, self._say = client, resource, say
         self._refused: set[str] = set()
         self._threads = 0
         self._looked = float("-inf")
         self._fitted = time.monotonic()
-
-    @property
-    def resource(self) -> str:
-        """The name of the resource that workers offer who can grade."""
-        return self._machine.resource(self._assignment, self._tier)
 
     def threads(self) -> int:
         """Return how many submissions the workers that fit can grade at once.
@@ -65,7 +56,7 @@ class FittingWorkers:
             raise ClusterError(f"the scheduler does not answer: {error}") from None
         self._threads = 0
         for address, worker in workers.items():
-            why = self._machine.difference(Machine.from_json(worker.get(TOLD)), self._assignment, self._tier)
+            why = difference(self._resource, worker["resources"])
             if not why:
                 self._threads += worker["nthreads"]
             elif address not in self._refused:

@@ -16,11 +16,11 @@ from typing import Any
 import pytest
 
 from autograder.checks import suites
-from autograder.cluster import fitting
+from autograder.cluster import dispatch, fitting
 from autograder.cluster.connection import LOCAL, connected
 from autograder.cluster.dispatch import grade_on
 from autograder.cluster.exceptions import ClusterError
-from autograder.cluster.machine import Machine
+from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.request import Request
@@ -150,9 +150,9 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     requests: list[Request], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
-    other = replace(Machine.of_this(), suites={ASSIGNMENT: "another"})
+    other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).version, "another")
     with connected(LOCAL, 1, tmp_path) as client:
-        monkeypatch.setattr(Machine, "of_this", classmethod(lambda _: other))
+        monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
         monkeypatch.setattr(fitting, "PATIENCE", 0.0)
         with pytest.raises(ClusterError, match="there was no worker that can grade this"):
             grade_on(client, requests, pytest.fail, say=said.append, grade=answered)
