@@ -2,46 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from urllib.parse import urlsplit
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 from autograder.checks import Outcome
 from autograder.checks.contract import Sentence
 from autograder.diagnosis import Kind
+from autograder.feedback.pictures import Picture, read_picture
 from autograder.feedback.text import clean
-from autograder.result import Artifact, CheckResult, Result, Status
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture on a page: its data URI, or None if the file is missing, and its alternative text.
-
-    `run` is the run that it shows as JSON for the player, or None; `name` is unique on the page.
-    """
-
-    uri: str | None
-    caption: str
-    name: str = ""
-    run: str | None = None
+from autograder.result import CheckResult, Result, Status
 
 
 @dataclass(frozen=True)
 class CheckView:
     """A check on a page.
 
-    `outcome` is in words. `doc` is an http or https address, or None. `contract` holds the sentences that a check which
-    failed holds a student to.
+    `message` is empty if the check before it says the same. `contract` holds the sentences that a check which failed
+    holds a student to.
     """
 
-    id: str
-    title: str
-    outcome: str
-    points: float
-    max_points: float
+    result: CheckResult
     message: str
-    hints: tuple[str, ...]
-    doc: str | None
     contract: tuple[str, ...]
     pictures: tuple[Picture, ...]
 
@@ -51,9 +33,17 @@ class GroupView:
     """The checks that count for one locked grade cell."""
 
     name: str
-    points: float
-    max_points: float
     checks: tuple[CheckView, ...]
+
+    @property
+    def points(self) -> float:
+        """The points that the checks earned."""
+        return sum(check.result.points for check in self.checks)
+
+    @property
+    def max_points(self) -> float:
+        """The points that the checks are worth."""
+        return sum(check.result.max_points for check in self.checks)
 
 
 @dataclass(frozen=True)
@@ -61,19 +51,30 @@ class PageView:
     """The content of a feedback page.
 
     Attributes:
-        graded: whether there is a score. There is none if the grader failed.
-        started: whether the submission was built and started, so that there is no diagnosis to show.
+        result: the result to show.
         groups: the groups of checks, in the order of the suite.
-        first: the first check that failed, or None.
         pictures: pictures that belong to no check.
     """
 
     result: Result
-    graded: bool
-    started: bool
     groups: tuple[GroupView, ...]
-    first: CheckView | None
     pictures: tuple[Picture, ...]
+
+    @property
+    def graded(self) -> bool:
+        """Whether there is a score. There is none if the grader failed."""
+        return self.result.status is Status.GRADED
+
+    @property
+    def started(self) -> bool:
+        """Whether the submission was built and started, so that there is no diagnosis to show."""
+        return self.result.diagnosis.kind is Kind.OK
+
+    @property
+    def first(self) -> CheckResult | None:
+        """The first check that failed, or None."""
+        checks = (check.result for group in self.groups for check in group.checks)
+        return next((check for check in checks if check.outcome is Outcome.FAILED), None)
 
     @property
     def plays(self) -> bool:
@@ -87,79 +88,38 @@ class PageView:
         return int(self.result.percent + 1e-9)
 
 
-def page_view(
-    result: Result, picture: Callable[[Artifact], Picture | None], contract: Mapping[str, Sentence] = {}
-) -> PageView:
+def page_view(result: Result, folder: Path | None, contract: Mapping[str, Sentence] = {}) -> PageView:
     """Return the content of the page of a result.
 
     Args:
         result: the result to show.
-        picture: function that returns the picture of an artifact, or None if the artifact is not a picture.
+        folder: the folder with its artifacts, or None for a page without pictures.
         contract: the sentences of the assignment's contract, by their ids.
     """
     known = {check.id for check in result.checks}
     pictures: dict[str, list[Picture]] = {}
     for artifact in result.artifacts:
-        found = picture(artifact)
+        found = None if folder is None else read_picture(artifact, folder)
         if found is not None:
             pictures.setdefault(artifact.check if artifact.check in known else "", []).append(found)
     groups = tuple(
-        _group(name, result.group(name), pictures, contract) for name in dict.fromkeys(c.group for c in result.checks)
+        GroupView(name, _checks(result.group(name), pictures, contract))
+        for name in dict.fromkeys(check.group for check in result.checks)
     )
-    checks = [check for group in groups for check in group.checks]
-    return PageView(
-        result=result,
-        graded=result.status is Status.GRADED,
-        started=result.diagnosis.kind is Kind.OK,
-        groups=groups,
-        first=next((check for check in checks if check.outcome == Outcome.FAILED.words), None),
-        pictures=tuple(pictures.get("", ())),
-    )
+    return PageView(result, groups, tuple(pictures.get("", ())))
 
 
-def _group(
-    name: str,
-    checks: Sequence[CheckResult],
-    pictures: dict[str, list[Picture]],
-    contract: Mapping[str, Sentence],
-) -> GroupView:
-    views = [_check(check, tuple(pictures.get(check.id, ())), contract) for check in checks]
-    views = [
-        replace(after, message="") if _repeats(before, after) else after
-        for before, after in zip([None, *views], views, strict=False)
-    ]
-    return GroupView(
-        name=name,
-        points=sum(check.points for check in checks),
-        max_points=sum(check.max_points for check in checks),
-        checks=tuple(views),
-    )
-
-
-def _repeats(before: CheckView | None, after: CheckView) -> bool:
-    """Return whether a check was not checked for the same reason as the check before it."""
-    skipped = after.outcome == Outcome.NOT_CHECKED.words
-    return before is not None and skipped and (before.outcome, before.message) == (after.outcome, after.message)
-
-
-def _check(check: CheckResult, pictures: tuple[Picture, ...], contract: Mapping[str, Sentence]) -> CheckView:
-    held = check.holds if check.outcome is Outcome.FAILED else ()
-    return CheckView(
-        id=check.id,
-        title=check.title,
-        outcome=check.outcome.words,
-        points=check.points,
-        max_points=check.max_points,
-        message=clean(check.message).strip(),
-        hints=() if check.outcome is Outcome.PASSED else check.hints,
-        doc=safe_link(check.doc),
-        contract=tuple(contract[name].text for name in held if name in contract),
-        pictures=pictures,
-    )
-
-
-def safe_link(address: str | None) -> str | None:
-    """Return `address` if it is an http or https address, and None otherwise."""
-    if address is None or urlsplit(address).scheme not in ("http", "https"):
-        return None
-    return address
+def _checks(
+    checks: Sequence[CheckResult], pictures: Mapping[str, Sequence[Picture]], contract: Mapping[str, Sentence]
+) -> tuple[CheckView, ...]:
+    views: list[CheckView] = []
+    said = ""  # the reason for which the check before was not checked
+    for check in checks:
+        held = check.holds if check.outcome is Outcome.FAILED else ()
+        sentences = tuple(contract[name].text for name in held if name in contract)
+        message = clean(check.message).strip()
+        skipped = check.outcome is Outcome.NOT_CHECKED
+        shown = "" if skipped and message == said else message
+        views.append(CheckView(check, shown, sentences, tuple(pictures.get(check.id, ()))))
+        said = message if skipped else ""
+    return tuple(views)

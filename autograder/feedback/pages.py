@@ -12,6 +12,7 @@ from functools import cache
 from html import escape
 from pathlib import Path
 from statistics import mean
+from urllib.parse import urlsplit
 
 import jinja2
 from markupsafe import Markup
@@ -19,8 +20,8 @@ from markupsafe import Markup
 from autograder import layout
 from autograder.checks import Outcome
 from autograder.checks.contract import contract
-from autograder.feedback.model import Picture, page_view
-from autograder.feedback.pictures import picture_reader
+from autograder.feedback.model import page_view
+from autograder.feedback.pictures import Picture
 from autograder.feedback.text import NOT_GRADED, clean, number
 from autograder.result import Result, Status, write_atomically
 
@@ -46,6 +47,7 @@ def environment() -> jinja2.Environment:
     )
     found.filters["number"] = number
     found.filters["player"] = _player
+    found.filters["web_address"] = _web_address
     found.globals["not_graded"] = NOT_GRADED
     found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return found
@@ -63,7 +65,7 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
         UsageError: the path of an artifact leads out of its folder.
     """
     known = contract(result.assignment) if result.assignment in layout.assignments() else {}
-    page = page_view(result, picture_reader(artifacts or folder), known)
+    page = page_view(result, artifacts or folder, known)
     script, style = _player_assets() if page.plays else ("", "")
     digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii") if script else ""
     template = environment().get_template("feedback.html.j2")
@@ -71,6 +73,11 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
         folder / PAGE,
         template.render(page=page, script=Markup(script), script_digest=digest, player_style=Markup(style)),
     )
+
+
+def _web_address(address: str | None) -> str | None:
+    """Return `address` if it is an http or https address, and None otherwise."""
+    return address if urlsplit(address or "").scheme in ("http", "https") else None
 
 
 def _player_assets() -> tuple[str, str]:
@@ -118,7 +125,7 @@ def _link(result: Result, folder: Path) -> str | None:
 
 def _reason(result: Result) -> str:
     """Return a sentence that says why points are missing."""
-    page = page_view(result, lambda artifact: None)
+    page = page_view(result, None)
     if not page.started:
         return result.diagnosis.sentence
     if not page.graded:

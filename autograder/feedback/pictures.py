@@ -4,41 +4,38 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.feedback.model import Picture
 from autograder.result import Artifact
 
-MEDIA_TYPES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture on a page: its data URI, or None if the file is missing, and its alternative text.
+
+    `run` is the run that it shows as JSON for the player, or None; `name` is unique on the page.
+    """
+
+    uri: str | None
+    caption: str
+    name: str
+    run: str | None
 
 
-def picture_file(artifact: Artifact, folder: Path) -> Path | None:
-    """Return the path of an artifact's picture, or None if the artifact is not a picture.
+def read_picture(artifact: Artifact, folder: Path) -> Picture | None:
+    """Return the picture of an artifact, or None if the artifact is not a picture.
 
     Raises:
         UsageError: the path of the artifact leads out of `folder`.
     """
-    if Path(artifact.name).suffix.lower() not in MEDIA_TYPES:
+    if not artifact.name.endswith(".png"):
         return None
-    return _inside(artifact.name, folder)
-
-
-def picture_reader(folder: Path) -> Callable[[Artifact], Picture | None]:
-    """Return a function that reads the picture of an artifact in `folder`. It returns None if there is no picture."""
-
-    def read(artifact: Artifact) -> Picture | None:
-        path = picture_file(artifact, folder)
-        if path is None:
-            return None
-        run = _run(artifact, folder)
-        if not path.is_file():
-            return Picture(None, artifact.caption, path.stem, run)
-        data = base64.b64encode(path.read_bytes()).decode("ascii")
-        return Picture(f"data:{MEDIA_TYPES[path.suffix.lower()]};base64,{data}", artifact.caption, path.stem, run)
-
-    return read
+    path, uri = _inside(artifact.name, folder), None
+    if path.is_file():
+        uri = f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+    return Picture(uri, artifact.caption, path.stem, _run(artifact, folder))
 
 
 def _run(artifact: Artifact, folder: Path) -> str | None:

@@ -20,7 +20,6 @@ from traitlets import Bool, Integer, Unicode
 from autograder import feedback
 from autograder.exceptions import GraderError
 from autograder.feedback.model import page_view
-from autograder.feedback.pictures import picture_reader
 from autograder.feedback.text import clean
 from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
@@ -102,7 +101,7 @@ class SandboxedGrade(NbGraderPreprocessor):
 
     def _write_scores(self, nb: NotebookNode, result: Result, out: Path) -> None:
         """Write the score and the feedback of each group into the outputs of its locked grade cell."""
-        page = page_view(result, picture_reader(out))
+        page = page_view(result, out)
         groups = {group.name: group for group in page.groups}
         graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
         named = [_group(cell) for cell in graded]

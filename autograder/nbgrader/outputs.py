@@ -32,18 +32,17 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
         first: whether this is the first grade cell of the notebook, which also gets the diagnosis.
     """
     html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
-    text = "\n".join(f"[{check.outcome}] {check.title} {check.message}".strip() for check in group.checks)
+    text = "\n".join(
+        f"[{check.result.outcome.words}] {check.result.title} {check.message}".strip() for check in group.checks
+    )
     outputs = [
         new_output("execute_result", {"text/plain": str(float(points))}, execution_count=1),
         new_output("display_data", {"text/html": html, "text/plain": clean(text) or number(points)}),
     ]
     for picture in (picture for check in group.checks for picture in check.pictures):
         if picture.uri is not None:
-            media, _, data = picture.uri.removeprefix("data:").partition(";base64,")
-            alt = {media: {"alt": clean(picture.caption)}}
-            outputs.append(
-                new_output("display_data", {media: data, "text/plain": clean(picture.caption)}, metadata=alt)
-            )
+            shown = {"image/png": picture.uri.partition(",")[2], "text/plain": clean(picture.caption)}
+            outputs.append(new_output("display_data", shown, metadata={"image/png": {"alt": clean(picture.caption)}}))
     return outputs
 
 

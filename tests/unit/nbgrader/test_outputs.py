@@ -15,7 +15,6 @@ from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.utils import determine_grade
 
 from autograder.feedback.model import PageView, page_view
-from autograder.feedback.pictures import picture_reader
 from autograder.nbgrader.markdown import sanitized_markdown
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
 from autograder.result import Artifact, Result
@@ -69,7 +68,7 @@ def test_text_colours_and_pictures_are_kept() -> None:
 
 @pytest.fixture
 def page(make_result: Callable[..., Result], track: Callable[..., Artifact], tmp_path: Path) -> PageView:
-    return page_view(make_result(artifacts=(track(tmp_path),)), picture_reader(tmp_path))
+    return page_view(make_result(artifacts=(track(tmp_path),)), tmp_path)
 
 
 @pytest.mark.parametrize("points", [0.0, 1.0, 1 / 3, 4.0, 1e-7])
@@ -87,7 +86,7 @@ def test_a_verdict_shows_its_pictures_with_their_words(page: PageView) -> None:
 
 
 def test_the_first_verdict_also_tells_the_diagnosis(broken_result: Result) -> None:
-    page = page_view(broken_result, lambda artifact: None)
+    page = page_view(broken_result, None)
     first, other = (grade_outputs(0, page, page.groups[0], first=first)[1].data["text/html"] for first in (True, False))
     assert "The package does not build: setup.py line 3." in first
     assert "SyntaxError: oops" in first
