@@ -66,6 +66,29 @@ def test_turns(robot: Robot) -> None:
     expect_forward(robot.see(scan(Part(150.0, 180.0, 0.6))), "With a wall 0.6 m behind")
 
 
+@check(points=1, holds="bearings", depends=("turns",), doc=contract.LASER_SCAN)
+@hint("Take angle_min and angle_increment from the message: a beam's number is not its bearing in degrees.")
+def test_other_lidar(robot: Robot) -> None:
+    """With a lidar of 480 beams from -120° to 120° it turns for a wall ahead, and not for one at its left."""
+    for first, expect_reaction in ((-8.0, expect_turn), (70.0, expect_forward)):
+        seen = scan(Part(first, first + 16.0, 0.7), beams=480, first_bearing=-120.0, last_bearing=120.0)
+        expect_reaction(robot.see(seen), f"With a wall 0.7 m away, from {first:.0f}° to {first + 16.0:.0f}°")
+
+
+@check(points=1, holds="plus-inf", depends=("drives",), doc=contract.REP_117)
+@hint("+inf says that nothing is there: it counts, and it is far away.")
+def test_open_door(robot: Robot) -> None:
+    """It drives on when every beam ahead reads +inf and there are walls at both sides."""
+    expect_forward(robot.see(scan(Part(-40.0, 40.0, math.inf), fill=0.65)), "With +inf ahead and walls at both sides")
+
+
+@check(points=1, holds="blind", depends=("drives",))
+@hint("What does your minimum give when no reading is left? It must not mean that the way is clear.")
+def test_dirty_window(robot: Robot) -> None:
+    """It stands still when every beam ahead reads nan."""
+    expect_stop(robot.see(scan(Part(-50.0, 50.0, math.nan), fill=1.5)), "With nan from every beam ahead")
+
+
 @check(points=1, holds="nan", depends=("drives", "turns"), doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum.")
 def test_nan(robot: Robot) -> None:

@@ -19,6 +19,8 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
+OTHER = "lorry"  # the name of the second robot
+
 
 @dataclass(frozen=True)
 class Launches:
@@ -42,7 +44,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         yield Launches(
             robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
             quiet=start(ROBOT, {"report": "false"}),
-            fleet=start(FLEET, {"speed": "0.31"}, {SHARED: String}),
+            fleet=start(FLEET, {"speed": "0.31", "second": OTHER}, {SHARED: String}),
             full=start(SAFE, {"battery": "90"}),
             empty=start(SAFE, {"battery": "5"}),
         )
@@ -60,7 +62,7 @@ def test_arguments(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=("driver", "reporter", "speed", "robot-name", "ctrl-c"),
+    holds=("driver", "reporter", "speed", "robot-name", "file", "ctrl-c"),
     group="robot",
     depends=("arguments",),
     doc=contract.LAUNCH,
@@ -68,10 +70,10 @@ def test_arguments(workspace: Workspace) -> None:
 @hint("Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
 @hint("parameters=[config, {'speed': speed}]: what stands later wins.")
 def test_robot(launches: Launches) -> None:
-    """robot.launch.py starts driver and reporter with the given speed and name, and Ctrl-C ends both."""
+    """robot.launch.py starts driver and reporter with arguments and parameters file, and Ctrl-C ends both."""
     launch_probe.expect_nodes(launches.robot, [DRIVER, REPORTER])
-    launch_probe.expect_parameters(launches.robot, DRIVER, {"speed": 1.0})
-    launch_probe.expect_parameters(launches.robot, REPORTER, {"robot_name": "42"})
+    launch_probe.expect_parameters(launches.robot, DRIVER, {"speed": 1.0, "turn_rate": 0.4})
+    launch_probe.expect_parameters(launches.robot, REPORTER, {"robot_name": "42", "report_period": 0.5})
     launch_probe.expect_clean_stop(launches.robot)
 
 
@@ -82,14 +84,14 @@ def test_quiet(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.quiet, [DRIVER])
 
 
-@check(points=1, holds=("included", "fleet-status"), group="fleet", doc=contract.LARGE)
+@check(points=1, holds=("included", "first", "second", "fleet-status"), group="fleet", doc=contract.LARGE)
 @hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
 @hint("SetRemap stands before the include; launch_arguments={'robot_name': name, 'speed': speed}.items() in it.")
 def test_two_robots(launches: Launches) -> None:
-    """two_robots.launch.py starts two robots with the given speed; both report on /fleet/status under their names."""
+    """two_robots.launch.py starts two robots with given names and speed; both report on /fleet/status."""
     harness = launches.fleet
-    launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, contract.SECOND))
-    for space in (contract.FIRST, contract.SECOND):
+    launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, OTHER))
+    for space in (contract.FIRST, OTHER):
         launch_probe.expect_parameters(harness, f"/{space}{DRIVER}", {"speed": 0.31})
         launch_probe.expect_parameters(harness, f"/{space}{REPORTER}", {"robot_name": space})
     harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
