@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -106,15 +106,20 @@ def grade(
             said = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
             click.echo(f"\n{said}", err=True)
             sys.exit(INTERRUPTED)
-    for result in results:
-        feedback.write(result, out / result.student)
-    feedback.write_summary(results, out)
-    click.echo(table([(r.student, marks(r), reason(r)) for r in results], ("submission", "marks", "why")))
-    click.echo(f"\nFeedback: {out / feedback.SUMMARY}")
-    if json_file is not None:
-        write_json(json_file, [result.to_json() for result in results])
+    report(results, out, json_file)
     short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
     sys.exit(1 if short or not all_fit else 0)
+
+
+def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None:
+    """Write the feedback of a class to its folder, print the table of its marks, and write the results as JSON."""
+    for result in results:
+        feedback.write(result, out / result.student)
+    summary = feedback.write_summary(results, out)
+    click.echo("\n" + table([(r.student, marks(r), reason(r)) for r in results], ("submission", "marks", "why")))
+    click.echo(f"\nFeedback: {summary}")
+    if json_file is not None:
+        write_json(json_file, [result.to_json() for result in results])
 
 
 @contextmanager

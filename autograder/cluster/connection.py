@@ -43,12 +43,12 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
         with stays, _local(jobs) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
         return
-    address = with_protocol(scheduler)
-    security = _security(certificates) if address.startswith("tls://") else Security(require_encryption=False)
+    require_address(scheduler)
+    security = _security(certificates) if scheduler.startswith("tls://") else Security(require_encryption=False)
     try:
-        client = Client(address, security=security, timeout=PATIENCE, set_as_default=False)
+        client = Client(scheduler, security=security, timeout=PATIENCE, set_as_default=False)
     except OSError as error:
-        raise ClusterError(f"no scheduler answers at {address}: {error}") from None
+        raise ClusterError(f"no scheduler answers at {scheduler}: {error}") from None
     try:
         yield client
     finally:
@@ -56,27 +56,24 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
             client.close(timeout=PATIENCE)
 
 
-def with_protocol(scheduler: str) -> str:
-    """Return the address with its protocol: `tcp` on this machine, `tls` elsewhere.
+def require_address(scheduler: str) -> None:
+    """Require the address of a scheduler: `tls` and any machine, or `tcp` and this one.
 
     Raises:
         UsageError: it is no address, or would send submissions in clear text to another machine.
     """
-    protocol, mark, rest = scheduler.rpartition("://")
     try:
-        host, port = urlsplit(f"//{rest}").hostname, urlsplit(f"//{rest}").port
+        address = urlsplit(scheduler)
+        host, port = address.hostname, address.port
     except ValueError:
         host, port = None, None
-    if not host or port is None or (mark and protocol not in ("tcp", "tls")):
+    if not host or port is None or address.scheme not in ("tcp", "tls"):
         raise UsageError(f"{scheduler!r} is no address of a scheduler: give tls://HOST:PORT, or `{LOCAL}`")
-    if not mark:
-        protocol = "tcp" if _loopback(host) else "tls"
-    if protocol == "tcp" and not _loopback(host):
+    if address.scheme == "tcp" and not _loopback(host):
         raise UsageError(
             f"{scheduler} would send submissions and marks in clear text: start scheduler and workers with tls:// "
             "(`autograder cluster certificates` makes what they need)"
         )
-    return f"{protocol}://{rest}"
 
 
 def _loopback(host: str) -> bool:

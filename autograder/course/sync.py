@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -82,36 +83,21 @@ def sync_chapter(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]
     """
     notebook = chapter.read()
     differences = list(_differences(chapter, notebook, solutions))
-    for finding, correction in differences:
-        if correction is None:
+    for finding, correct in differences:
+        if correct is None:
             raise CourseError(str(finding))
-    for _, correction in differences:
-        if correction is not None:
-            correction.apply()
+    for _, correct in differences:
+        if correct is not None:
+            correct()
     if any(finding.cell is not None for finding, _ in differences):
         chapter.write(notebook)
     return [finding for finding, _ in differences]
 
 
-@dataclass(frozen=True)
-class _Correction:
-    """The text that a cell or a file should have."""
-
-    target: NotebookNode | Path
-    text: str
-
-    def apply(self) -> None:
-        if isinstance(self.target, Path):
-            self.target.parent.mkdir(parents=True, exist_ok=True)
-            self.target.write_text(self.text, encoding="utf-8")
-        else:
-            self.target.source = self.text
-
-
 def _differences(
     chapter: Chapter, notebook: NotebookNode, solutions: Path
-) -> Iterator[tuple[Finding, _Correction | None]]:
-    """Yield the findings, each with its correction, or None where a copy corrects nothing."""
+) -> Iterator[tuple[Finding, Callable[[], None] | None]]:
+    """Yield the findings, each with the copy that corrects it, or None where a copy corrects nothing."""
     name = chapter.path.name
     for cell in notebook.cells:
         cell_id = cell.get("id", "without id")
@@ -123,7 +109,8 @@ def _differences(
             continue
         if expected is not None and source is not None and cell.source != expected:
             message = f"differs from solutions/{source.source}; run `autograder course sync`"
-            yield Finding(name, cell_id, message + _diff(cell.source, expected)), _Correction(cell, expected)
+            finding = Finding(name, cell_id, message + _diff(cell.source, expected))
+            yield finding, partial(setattr, cell, "source", expected)
     try:
         pairs = given_files(notebook)
         texts = {target: read_solution(solutions, source) for target, source in pairs.items()}
@@ -137,7 +124,12 @@ def _differences(
             what = "is missing" if current is None else "differs"
             message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
             message += "run `autograder course sync`"
-            yield Finding(name, None, message + _diff(current or "", text)), _Correction(path, text)
+            yield Finding(name, None, message + _diff(current or "", text)), partial(_write, path, text)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
 
 
 def _diff(current: str, expected: str) -> str:

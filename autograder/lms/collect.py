@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grading.batch import ARCHIVES, Entry
@@ -52,8 +51,10 @@ def unpacked(download: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="handed-in-") as folder:
         try:
             with zipfile.ZipFile(download) as archive:
-                for info in archive.infolist():
-                    _unpack(archive, info, Path(folder))
+                outside = [name for name in archive.namelist() if name.startswith("/") or ".." in name.split("/")]
+                if outside:  # it would land inside under another name, perhaps that of another student
+                    raise ValueError(f"{outside[0]} points outside the archive")
+                archive.extractall(folder)
         except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
             raise UsageError(f"{download}: not a folder, and not a readable zip: {error}") from None
         yield Path(folder)
@@ -111,16 +112,3 @@ def _answer(path: Path, assignment: str) -> Path:
         return path / assignment
     inside = [child for child in path.iterdir() if child.name not in NOT_HANDED_IN]
     return inside[0] if len(inside) == 1 and inside[0].suffix in ARCHIVES else path
-
-
-def _unpack(archive: zipfile.ZipFile, info: zipfile.ZipInfo, folder: Path) -> None:
-    path = PurePosixPath(info.filename.replace("\\", "/"))
-    if path.is_absolute() or ".." in path.parts:
-        raise ValueError(f"{info.filename} points outside the archive")
-    target = folder / path
-    if info.is_dir():
-        target.mkdir(parents=True, exist_ok=True)
-        return
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with archive.open(info) as source, target.open("wb") as file:
-        shutil.copyfileobj(source, file)

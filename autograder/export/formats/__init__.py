@@ -39,11 +39,8 @@ def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
         out: the file or folder to write.
 
     Raises:
-        UsageError: the format does not exist, `out` is a folder instead of a file or the other way round, or two
-            results need the same file.
+        UsageError: `out` is a folder instead of a file or the other way round, or two results need the same file.
     """
-    if name not in FORMATS:
-        raise UsageError(f"there is no format {name!r}; the formats are {', '.join(FORMATS)}")
     format = FORMATS[name]
     if out.exists() and out.is_dir() is not format.FOLDER:
         kind = "folder" if format.FOLDER else "file"

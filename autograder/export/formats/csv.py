@@ -12,35 +12,18 @@ from autograder.result import Result, Status
 
 FOLDER = False
 
-COLUMNS = (
-    "assignment",
-    "student",
-    "status",
-    "score",
-    "max_score",
-    "percent",
-    "diagnosis",
-    "reason",
-    "seed",
-    "suite_version",
-    "isolation",
-    "submission_sha256",
-    "started",
-    "seconds",
-)
-
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
-    """Write `COLUMNS`, and a column for each check with the points that it earned.
+    """Write a row for each result, with a column for each check and the points that it earned.
 
     The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
     """
-    checks = list(dict.fromkeys(check.id for item in stored for check in item.result.checks))
+    rows = [_row(item.result) for item in stored]
     out.parent.mkdir(parents=True, exist_ok=True)
     with out.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, [*COLUMNS, *(f"check {id}" for id in checks)], restval="")
+        writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), restval="")
         writer.writeheader()
-        writer.writerows(_row(item.result) for item in stored)
+        writer.writerows(rows)
     return out
 
 
@@ -61,7 +44,7 @@ def _row(result: Result) -> dict[str, str | float]:
         "submission_sha256": result.submission_sha256,
         "started": _text(result.started),
         "seconds": result.seconds,
-        **({f"check {check.id}": check.points for check in result.checks} if graded else {}),
+        **{f"check {check.id}": check.points if graded else "" for check in result.checks},
     }
 
 

@@ -147,11 +147,6 @@ def test_a_module_of_the_folder_is_a_format() -> None:
     assert sorted(FORMATS) == sorted(path.stem for path in folder.glob("*.py") if path.stem != "__init__")
 
 
-def test_a_format_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=f"no format 'pdf'; the formats are {', '.join(FORMATS)}"):
-        write([], "pdf", tmp_path / "x")
-
-
 @pytest.mark.parametrize("format", FORMATS)
 def test_a_file_and_a_folder_are_not_mixed_up(format: str, tmp_path: Path) -> None:
     file = tmp_path / "file"
