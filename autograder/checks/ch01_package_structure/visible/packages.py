@@ -47,9 +47,10 @@ def test_licence(workspace: Workspace) -> None:
 @hint("Read the import lines of each file in square_dance: all that is neither Python's own nor the package's.")
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
-    """package.xml of square_dance declares whatever its files import."""
-    manifest = expect_manifest(workspace, contract.SQUARE_DANCE)
-    expect_declared(imports.imported(source_of(workspace, contract.SQUARE_DANCE)), manifest.needs())
+    """package.xml of square_dance declares whatever its files import, for the run or for the tests."""
+    manifest, source = expect_manifest(workspace, contract.SQUARE_DANCE), source_of(workspace, contract.SQUARE_DANCE)
+    expect_declared(imports.imported(source, without=("test",)), manifest.needs("exec"))
+    expect_declared(imports.imported(source), manifest.needs("exec", "test"))
 
 
 @check(points=1, holds="builds", doc=contract.COLCON)
@@ -124,9 +125,10 @@ def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
 @hint("numpy's name in package.xml is python3-numpy: rosdep's key, not pip's.")
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
-    """package.xml of wall_alarm declares whatever its files import."""
-    manifest = expect_manifest(workspace, contract.WALL_ALARM)
-    expect_declared(imports.imported(source_of(workspace, contract.WALL_ALARM)), manifest.needs())
+    """package.xml of wall_alarm declares whatever its files import, for the run or for the tests."""
+    manifest, source = expect_manifest(workspace, contract.WALL_ALARM), source_of(workspace, contract.WALL_ALARM)
+    expect_declared(imports.imported(source, without=("test",)), manifest.needs("exec"))
+    expect_declared(imports.imported(source), manifest.needs("exec", "test"))
 
 
 @check(
