@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import click
 
@@ -20,12 +19,9 @@ from autograder.course.points import set_points, wrong_points
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 from autograder.course.tables import PAGE, course_page
 from autograder.exceptions import UsageError
-from autograder.layout import CHAPTERS, SOLUTIONS
 from autograder.proof import guide
 
-_folders = click.option("--chapters", "root", type=click.Path(path_type=Path), default=CHAPTERS, show_default=True)
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
-_solutions = click.option("--solutions", type=click.Path(path_type=Path), default=SOLUTIONS, show_default=True)
 
 
 @click.group()
@@ -35,13 +31,11 @@ def course() -> None:
 
 @course.command()
 @_names
-@_folders
-@_solutions
-def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
+def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
-    for chapter in _chosen(names, root):
+    for chapter in _chosen(names):
         try:
-            changed = sync_chapter(chapter, solutions)
+            changed = sync_chapter(chapter)
             notebook = chapter.read()
             if any(map(is_graded, notebook.cells)) and set_points(
                 chapter.path.name, notebook, suites.hidden(chapter.assignment).groups
@@ -59,28 +53,26 @@ def sync(names: tuple[str, ...], root: Path, solutions: Path) -> None:
 
 @course.command()
 @_names
-@_folders
-@_solutions
-def check(names: tuple[str, ...], root: Path, solutions: Path) -> None:
+def check(names: tuple[str, ...]) -> None:
     """Say what is stale and which rules for notebooks are broken. If there is anything, the exit status is 1."""
-    found = [finding for chapter in _chosen(names, root) for finding in findings(chapter, solutions)]
+    found = [finding for chapter in _chosen(names) for finding in findings(chapter)]
     for finding in found:
         click.echo(str(finding))
     sys.exit(1 if found else 0)
 
 
-def _chosen(names: tuple[str, ...], root: Path) -> list[Chapter]:
+def _chosen(names: tuple[str, ...]) -> list[Chapter]:
     """Return the chapters of these names, all without any."""
-    there = {chapter.assignment: chapter for chapter in chapters(root)}
+    there = {chapter.assignment: chapter for chapter in chapters()}
     if unknown := set(names) - set(there):
         raise click.UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(there)}")
     return [there[name] for name in names or there]
 
 
-def findings(chapter: Chapter, solutions: Path) -> list[Finding]:
+def findings(chapter: Chapter) -> list[Finding]:
     """Return everything that is wrong with a chapter."""
     notebook, name = chapter.read(), chapter.path.name
-    found = [*find_outdated(chapter, solutions), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
+    found = [*find_outdated(chapter), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         try:
             hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)

@@ -16,10 +16,8 @@ DAYS = 400
 def make(folder: Path) -> tuple[Path, Path]:
     """Make a private key and a certificate that it signs, good for `DAYS` days; return the paths of both.
 
-    All machines of a cluster get both files. Who has them can read and grade submissions.
-
-    Args:
-        folder: where they are written. It is created, for its owner alone.
+    All machines of a cluster get both files. Who has them can read and grade submissions. The folder is created for its
+    owner alone.
 
     Raises:
         UsageError: one of the files exists, or `openssl` is not installed or fails.

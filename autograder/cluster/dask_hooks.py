@@ -15,9 +15,6 @@ def dask_setup(server: Any) -> None:
 
     A worker offers a resource for each assignment and tier. A scheduler gives a submission up when two workers have
     died with it; Dask's own default is four.
-
-    Args:
-        server: Dask's `Worker` or `Scheduler`.
     """
     if hasattr(server, "allowed_failures"):
         server.allowed_failures = DEATHS - 1

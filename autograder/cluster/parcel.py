@@ -24,14 +24,7 @@ MAX_ANSWER_FILES = 200
 
 @dataclass(frozen=True)
 class Parcel:
-    """A submission on its way to a worker.
-
-    Attributes:
-        assignment: the assignment that it answers.
-        seed: every hidden input is drawn from it.
-        tier: how the submission is isolated.
-        files: all files of the submission, as intake read them.
-    """
+    """A submission on its way to a worker: all its files, as intake read them, and what a grading has to know."""
 
     assignment: str
     seed: int

@@ -30,6 +30,7 @@ from typing import Any
 from jsonschema import Draft202012Validator, ValidationError
 from nbformat import NotebookNode
 
+from autograder import layout
 from autograder.course.exceptions import CourseError
 from autograder.course.solution_markers import mark_functions, mark_lines, strip_licence
 
@@ -38,28 +39,20 @@ _METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.s
 
 @dataclass(frozen=True)
 class Origin:
-    """The reference file that a cell copies.
-
-    Attributes:
-        source: path of the reference file, below `solutions/`.
-        target: path of the file that the cell writes, below the chapter's folder.
-        hide: qualified names of the functions whose bodies the student writes. It is empty where the student only runs
-            the cell.
-        cut: the lines before and after each part that the student writes, in a file without functions.
-    """
+    """The reference file that a cell copies: its metadata, as the docstring of this module describes them."""
 
     source: PurePosixPath
     target: PurePosixPath
     hide: tuple[str, ...]
     cut: tuple[tuple[str, str], ...]
 
-    def expected_text(self, solutions: Path) -> str:
+    def expected_text(self) -> str:
         """Return the source that the cell must have.
 
         Raises:
             CourseError: the reference file is missing, or a function or line to hide is not in it.
         """
-        text = strip_licence(read_solution(solutions, self.source))
+        text = strip_licence(read_solution(self.source))
         try:
             text = mark_functions(text, self.hide) if self.hide else text
             text = mark_lines(text, self.cut) if self.cut else text
@@ -118,13 +111,13 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
     return course
 
 
-def read_solution(solutions: Path, source: PurePosixPath) -> str:
+def read_solution(source: PurePosixPath) -> str:
     """Return the text of a reference file.
 
     Raises:
         CourseError: there is no such file.
     """
-    path = solutions / source
+    path = layout.SOLUTIONS / source
     if not path.is_file():
-        raise CourseError(f"the reference has no file {source}; look in {solutions.name}/")
+        raise CourseError(f"the reference has no file {source}; look in solutions/")
     return path.read_text(encoding="utf-8")

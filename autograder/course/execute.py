@@ -38,15 +38,7 @@ _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
 @dataclass(frozen=True)
 class Execution:
-    """How a notebook ran.
-
-    Attributes:
-        chapter: the assignment's name.
-        form: which form of it ran.
-        notebook: the executed notebook, as far as it came.
-        seconds: wall time, kernel start included.
-        failure: the id of the cell that failed and what it said, or None.
-    """
+    """How a notebook ran: the executed notebook, as far as it came, and which cell failed and what it said, or None."""
 
     chapter: str
     form: Form

@@ -7,13 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """A problem in a notebook.
-
-    Attributes:
-        notebook: the notebook's file name.
-        cell: the id of the cell, or None if the problem concerns no single cell.
-        message: what is wrong and what to do.
-    """
+    """A problem in a notebook: what is wrong and what to do. `cell` is None if it concerns no single cell."""
 
     notebook: str
     cell: str | None

@@ -23,13 +23,7 @@ _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
 @dataclass(frozen=True)
 class Effort:
-    """What there is to do in a chapter.
-
-    Attributes:
-        words: words of text.
-        cells: code cells.
-        lines: lines that the reference has where students write theirs; empty ones do not count.
-    """
+    """What there is to do in a chapter: words to read, code cells to run, lines to write without the empty ones."""
 
     words: int
     cells: int
@@ -68,12 +62,7 @@ def told(minutes: float) -> str:
 
 
 def wrong_promise(name: str, source: NotebookNode) -> list[Finding]:
-    """Return a finding where the first cell of a source notebook says another time than the rule.
-
-    Args:
-        name: file name of the notebook, for the finding.
-        source: the notebook.
-    """
+    """Return a finding where the first cell of a source notebook says another time than the rule."""
     words = promise(effort(source))
     if words in " ".join(source.cells[0].source.split()):
         return []

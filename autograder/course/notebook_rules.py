@@ -21,12 +21,7 @@ _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
 
 
 def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
-    """Return the rules that a source notebook breaks.
-
-    Args:
-        name: file name of the notebook, for the findings.
-        notebook: the notebook as it would be committed.
-    """
+    """Return the rules that a source notebook of this file name breaks."""
     try:
         nbformat.validate(notebook)
     except nbformat.ValidationError as error:

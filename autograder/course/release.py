@@ -39,11 +39,7 @@ WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{v
 
 
 def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
-    """Write the students' bundle to the new folder `out`, and return the names of its chapters.
-
-    Args:
-        out: the folder to make.
-        names: the chapters that the bundle holds; all of them if there are none.
+    """Write the students' bundle of these chapters (all by default) to the new folder `out`; return their names.
 
     Raises:
         UsageError: `out` exists, or a chapter does not exist. Nothing is written then.

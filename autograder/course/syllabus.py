@@ -36,10 +36,7 @@ _HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
 class Syllabus:
     """The contents of the chapter that the course teaches, by key.
 
-    Attributes:
-        objectives: abilities that students gain.
-        items: sections, examples, steps and questions.
-        errata: errors of the chapter and their corrections, by number.
+    `items` are sections, examples, steps and questions. `errata` are pairs of an error and its correction.
     """
 
     objectives: dict[str, str]
@@ -64,14 +61,7 @@ class Location:
 
 @dataclass(frozen=True)
 class ExerciseRow:
-    """An exercise and the objective that it serves.
-
-    Attributes:
-        objective: key of the objective.
-        chapter: name of the assignment.
-        exercise: heading of the exercise.
-        checks: the hidden checks that test it.
-    """
+    """The heading of an exercise, the key of the objective that it serves, and the hidden checks that test it."""
 
     objective: str
     chapter: str
@@ -81,13 +71,9 @@ class ExerciseRow:
 
 @dataclass(frozen=True)
 class SyllabusCoverage:
-    """The parts of the syllabus that notebooks cover.
+    """The parts of the syllabus that notebooks cover: exercises, and the locations of each item and erratum.
 
-    Attributes:
-        rows: the exercises, in the order of the chapters.
-        items: the locations that cover each item.
-        errata: the locations that correct each erratum.
-        findings: entries that nothing covers, and names that do not exist.
+    The findings name what nothing covers, and what the syllabus does not have.
     """
 
     rows: tuple[ExerciseRow, ...]
@@ -99,12 +85,7 @@ class SyllabusCoverage:
 def find_coverage(
     syllabus: Syllabus, chapters: Sequence[tuple[str, NotebookNode, Sequence[Check]]]
 ) -> SyllabusCoverage:
-    """Find the parts of the syllabus that chapters cover.
-
-    Args:
-        syllabus: the entries to cover.
-        chapters: name, source notebook and hidden checks of each chapter.
-    """
+    """Find what chapters cover, each given as its name, its source notebook and its hidden checks."""
     rows: list[ExerciseRow] = []
     items: dict[str, list[Location]] = {key: [] for key in syllabus.items}
     errata: dict[int, list[Location]] = {number: [] for number in syllabus.errata}

@@ -12,10 +12,10 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
+from autograder import layout
 from autograder.course.cells import given_files, origin, read_solution
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
-from autograder.layout import CHAPTERS, SOLUTIONS
 
 SHOWN_LINES = 12
 
@@ -64,25 +64,25 @@ class Chapter:
         nbformat.write(notebook, self.path)
 
 
-def chapters(root: Path = CHAPTERS) -> list[Chapter]:
-    """Return the chapters below `root`, sorted by name."""
-    return [Chapter(path.parent) for path in sorted(root.glob("*/*.ipynb")) if path.stem == path.parent.name]
+def chapters() -> list[Chapter]:
+    """Return the chapters, sorted by name."""
+    return [Chapter(path.parent) for path in sorted(layout.CHAPTERS.glob("*/*.ipynb")) if path.stem == path.parent.name]
 
 
-def find_outdated(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
+def find_outdated(chapter: Chapter) -> list[Finding]:
     """Return the cells and files that differ from the reference, and those with wrong metadata."""
     notebook = chapter.read()
-    return [finding for finding, _ in _differences(chapter, notebook, solutions)]
+    return [finding for finding, _ in _differences(chapter, notebook)]
 
 
-def sync_chapter(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]:
+def sync_chapter(chapter: Chapter) -> list[Finding]:
     """Copy the reference into a chapter, and return the cells and files that differed.
 
     Raises:
         CourseError: the metadata are wrong, or a reference file is missing. Nothing is written then.
     """
     notebook = chapter.read()
-    differences = list(_differences(chapter, notebook, solutions))
+    differences = list(_differences(chapter, notebook))
     for finding, correct in differences:
         if correct is None:
             raise CourseError(str(finding))
@@ -94,16 +94,14 @@ def sync_chapter(chapter: Chapter, solutions: Path = SOLUTIONS) -> list[Finding]
     return [finding for finding, _ in differences]
 
 
-def _differences(
-    chapter: Chapter, notebook: NotebookNode, solutions: Path
-) -> Iterator[tuple[Finding, Callable[[], None] | None]]:
+def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[tuple[Finding, Callable[[], None] | None]]:
     """Yield the findings, each with the copy that corrects it, or None where a copy corrects nothing."""
     name = chapter.path.name
     for cell in notebook.cells:
         cell_id = cell.get("id", "without id")
         try:
             source = origin(cell)
-            expected = None if source is None else source.expected_text(solutions)
+            expected = None if source is None else source.expected_text()
         except CourseError as error:
             yield Finding(name, cell_id, str(error)), None
             continue
@@ -113,7 +111,7 @@ def _differences(
             yield finding, partial(setattr, cell, "source", expected)
     try:
         pairs = given_files(notebook)
-        texts = {target: read_solution(solutions, source) for target, source in pairs.items()}
+        texts = {target: read_solution(source) for target, source in pairs.items()}
     except CourseError as error:
         yield Finding(name, None, str(error)), None
         return

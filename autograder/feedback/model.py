@@ -48,13 +48,7 @@ class GroupView:
 
 @dataclass(frozen=True)
 class PageView:
-    """The content of a feedback page.
-
-    Attributes:
-        result: the result to show.
-        groups: the groups of checks, in the order of the suite.
-        pictures: pictures that belong to no check.
-    """
+    """The content of a feedback page: the groups in the order of the suite, and pictures that belong to no check."""
 
     result: Result
     groups: tuple[GroupView, ...]

@@ -19,11 +19,8 @@ METADATA = "submission_metadata.yml"
 def read_metadata(folder: Path) -> list[HandedIn]:
     """Return what a download of Gradescope holds.
 
-    Args:
-        folder: the folder with `submission_metadata.yml`.
-
     Raises:
-        UsageError: the file cannot be read.
+        UsageError: its `submission_metadata.yml` cannot be read.
     """
     path = folder / METADATA
     try:

@@ -38,12 +38,9 @@ NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
 
 @dataclass(frozen=True)
 class Student:
-    """A student of the roster.
+    """A student: the name in results, what is known of them as pairs of a kind and a text, and the number of their row.
 
-    Attributes:
-        id: the name of the student in results.
-        keys: what is known of the student: pairs of a kind, a value of `COLUMNS`, and a text, both normalized.
-        row: the row of the table, without the headings, counted from 0.
+    Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings.
     """
 
     id: str
@@ -53,14 +50,7 @@ class Student:
 
 @dataclass(frozen=True)
 class Roster:
-    """A table of students.
-
-    Attributes:
-        path: the file.
-        students: the students, in the order of the table.
-        headings: the headings of the columns.
-        rows: all rows as they are in the file.
-    """
+    """A table of students: the file, the students in its order, its headings, and all its rows as they are."""
 
     path: Path
     students: tuple[Student, ...]

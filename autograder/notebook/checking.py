@@ -35,11 +35,8 @@ class Line:
 class CheckReport:
     """The visible checks' outcome.
 
-    Attributes:
-        assignment: which assignment's.
-        lines: one a check.
-        trouble: what kept the package from being built or the node from running, or None.
-        later: the titles of the checks that judge the packages after they are handed in.
+    `trouble` is what kept the package from being built or the node from running. `later` holds the titles of the checks
+    that judge the packages after they are handed in.
     """
 
     assignment: str

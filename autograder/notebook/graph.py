@@ -28,14 +28,7 @@ STYLE = """
 
 @dataclass(frozen=True)
 class Graph:
-    """Who publishes and who subscribes.
-
-    Attributes:
-        nodes: full names, in order.
-        topics: the type of each topic, by its name.
-        published: pairs of a node and a topic.
-        subscribed: pairs of a topic and a node.
-    """
+    """Who publishes, as pairs of a node and a topic, and who subscribes, as pairs of a topic and a node."""
 
     nodes: tuple[str, ...]
     topics: dict[str, str]

@@ -21,12 +21,7 @@ RECORDING = "recording.npz"
 
 @contextmanager
 def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Run a request; yields the worker's answer and the folder with the files that it wrote.
-
-    Args:
-        verb: `drive` or `check`.
-        workspace: the colcon workspace.
-        arguments: what the verb needs.
+    """Ask a worker to `drive` or to `check`; yield its answer and the folder with the files that it wrote.
 
     Raises:
         UsageError: there is no workspace at `workspace`.

@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -22,29 +21,6 @@ from autograder.notebook.notices import Notice
 STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
 RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last
 REPLACED = "replaced"
-
-
-class Action(Enum):
-    """What becomes of a file when a cell wants to write it."""
-
-    WRITE = "write"
-    KEEP = "keep"
-    COPY = "copy"  # then write
-
-
-def choose(cell: str, on_disk: str | None, written: str | None) -> Action:
-    """Choose what becomes of a file.
-
-    Args:
-        cell: the text that the cell would write.
-        on_disk: the file's text; None where there is no file.
-        written: the digest of what a cell wrote to the file last; None where that is not known.
-    """
-    if on_disk is None or on_disk == cell:
-        return Action.WRITE
-    if cell.count(STUB) > on_disk.count(STUB):
-        return Action.KEEP
-    return Action.WRITE if written == digest(on_disk) else Action.COPY
 
 
 def digest(text: str) -> str:
@@ -88,15 +64,15 @@ def write(line: str, cell: str, original: Any) -> None:
         if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
             _write_record(home, {**record, name: digest((on_disk or "") + cell)})
         return
-    action = choose(cell, on_disk, record.get(name))
-    if action is Action.KEEP:
-        _show(
-            f"{path} was kept as it is: it was written outside of this cell, and the cell still holds the exercise's "
-            "stub. To start again from the stub, delete the file and run the cell."
-        )
-        return
-    if action is Action.COPY:
-        _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
+    if on_disk is not None and on_disk != cell:
+        if cell.count(STUB) > on_disk.count(STUB):
+            _show(
+                f"{path} was kept as it is: it was written outside of this cell, and the cell still holds the "
+                "exercise's stub. To start again from the stub, delete the file and run the cell."
+            )
+            return
+        if record.get(name) != digest(on_disk):
+            _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
     original(line, cell)
     _write_record(home, {**record, name: digest(cell)})
 

@@ -47,9 +47,7 @@ class Case:
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """Return an assignment's proof: all of it, or the part for each change.
 
-    Args:
-        assignment: whose suite is to be proved.
-        quick: one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
+    The quick part has one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
     """
     sources = suites.hidden(assignment).sources
     found = [

@@ -28,15 +28,9 @@ class CaseKind(str, Enum):
 
 @dataclass(frozen=True)
 class Claim:
-    """The result of a submission of the proof, compared with the expected one.
+    """The result of a submission of the proof, and how it differs from the expected one, in words.
 
-    Attributes:
-        assignment: name of the assignment whose suite graded it.
-        kind: kind of the submission.
-        name: name of the submission, unique in its assignment.
-        result: the result of grading.
-        mismatch: differences from the expected result, in words. It is empty if the claim holds.
-        reason: the reason why a generated mutant may survive. It is empty for the others.
+    `mismatch` is empty if the claim holds. `reason` says why a generated mutant may survive.
     """
 
     assignment: str

@@ -12,14 +12,9 @@ MIN_KILLED = 0.9  # share of the generated mutants, without the survivors that h
 def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
     """Count the claims of each kind.
 
-    Args:
-        claims: the claims of a proof.
-        seconds: wall time of the proof.
-
-    Returns:
-        `reference` (the least), `release` (the highest) and `variants` (all) are percentages. `mutants_missed` counts
-        the mutants that lost no check. `mutants_wrong_check` counts those that lost other checks than they name, or
-        have another diagnosis. `generated` leaves out the survivors with a reason.
+    `reference` (the least), `release` (the highest) and `variants` (all) are percentages. `mutants_missed` counts the
+    mutants that lost no check. `mutants_wrong_check` counts those that lost other checks than they name, or have
+    another diagnosis. `generated` leaves out the survivors with a reason.
     """
     mutants, generated = _of(claims, CaseKind.MUTANT), _unexcused(claims)
     missed = [claim for claim in mutants if not (is_graded(claim.result) and lost_checks(claim.result))]

@@ -8,6 +8,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
 
+from autograder import layout
 from autograder.course.cells import origin
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
@@ -61,13 +62,16 @@ def _cell(**course: object) -> NotebookNode:
     return new_code_cell("", metadata={"course": {"source": "a/b.xml", "target": "ws/b.xml", **course}})
 
 
-def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(tmp_path: Path) -> None:
+def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(layout, "SOLUTIONS", tmp_path)
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "b.xml").write_text(MANIFEST)
     cell = _cell(cut=[["<package>", "</package>"]])
     source = origin(cell)
     assert source is not None
-    cell.source = source.expected_text(tmp_path)
+    cell.source = source.expected_text()
     cell.metadata["nbgrader"] = {
         **{"grade": False, "locked": False, "solution": True, "task": False},
         **{"grade_id": "b", "schema_version": 3},

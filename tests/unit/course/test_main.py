@@ -28,6 +28,8 @@ CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, ()
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(suites, "hidden", lambda assignment: SimpleNamespace(checks=CHECKS, groups={"graph": 2.0}))
     monkeypatch.setattr(suites, "visible", lambda assignment: SimpleNamespace(checks=()))
+    monkeypatch.setattr(layout, "CHAPTERS", tmp_path / "chapters")
+    monkeypatch.setattr(layout, "SOLUTIONS", tmp_path / "solutions")
     (tmp_path / "solutions").mkdir()
     (tmp_path / "solutions/node.py").write_text('def main():\n    """Run."""\n    return 0\n')
     origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"], "contract": {"runs": "Run."}}
@@ -42,37 +44,36 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(course: Path, verb: str, *names: str) -> Result:
-    folders = ["--chapters", str(course / "chapters"), "--solutions", str(course / "solutions")]
-    return CliRunner().invoke(command.course, [verb, *names, *folders])
+def run(verb: str, *names: str) -> Result:
+    return CliRunner().invoke(command.course, [verb, *names])
 
 
 def test_check_names_everything_that_is_wrong_and_ends_with_1(course: Path) -> None:
-    result = run(course, "check")
+    result = run("check")
     assert result.exit_code == 1
     assert "cell 'node': differs from solutions/node.py" in result.output
     assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in result.output
 
 
 def test_after_sync_nothing_is_wrong(course: Path) -> None:
-    assert run(course, "sync").output == "01_small: 2 brought up to date\n"
-    checked = run(course, "check")
+    assert run("sync").output == "01_small: 2 brought up to date\n"
+    checked = run("check")
     assert (checked.exit_code, checked.output) == (0, "")
-    assert run(course, "sync").output == "01_small: as it was\n"
+    assert run("sync").output == "01_small: as it was\n"
 
 
 def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
     (course / "solutions/node.py").write_text("def mian():\n    return 0\n")
-    result = run(course, "sync")
+    result = run("sync")
     assert result.exit_code == 1
     assert "01_small.ipynb, cell 'node': node.py: function 'main' occurs 0 times" in result.output
 
 
 def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path) -> None:
-    result = run(course, "check", "99_flying")
+    result = run("check", "99_flying")
     assert result.exit_code == 2
     assert "there is no chapter 99_flying; there are: 01_small" in result.output
-    assert run(course, "check", "01_small").exit_code == 1
+    assert run("check", "01_small").exit_code == 1
 
 
 def test_the_lists_of_what_is_judged_later_are_up_to_date() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from autograder import layout
 from autograder.course.exceptions import CourseError
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 
@@ -16,8 +17,10 @@ NODE = 'def main():\n    """Run."""\n    return 0\n'
 CELL: dict[str, Any] = {"source": "pkg/node.py", "target": "ws/src/pkg/node.py", "hide": ["main"]}
 
 
-@pytest.fixture
-def solutions(tmp_path: Path) -> Path:
+@pytest.fixture(autouse=True)
+def solutions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(layout, "CHAPTERS", tmp_path / "chapters")
+    monkeypatch.setattr(layout, "SOLUTIONS", tmp_path / "solutions")
     folder = tmp_path / "solutions"
     (folder / "pkg").mkdir(parents=True)
     (folder / "pkg/node.py").write_text("# Copyright 2026 Us\n\n" + NODE)
@@ -32,7 +35,7 @@ def small(tmp_path: Path, **course: Any) -> Chapter:
 
 def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    assert [finding.cell for finding in sync_chapter(made, solutions)] == ["node"]
+    assert [finding.cell for finding in sync_chapter(made)] == ["node"]
     assert made.read().cells[1].source == (
         "%%writefile ws/src/pkg/node.py\n"
         'def main():\n    """Run."""\n    # BEGIN SOLUTION\n    return 0\n    # END SOLUTION'
@@ -41,17 +44,17 @@ def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: 
 
 def test_sync_twice_changes_nothing(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    sync_chapter(made, solutions)
+    sync_chapter(made)
     before = made.path.read_bytes()
-    assert sync_chapter(made, solutions) == []
+    assert sync_chapter(made) == []
     assert made.path.read_bytes() == before
 
 
 def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
-    sync_chapter(made, solutions)
+    sync_chapter(made)
     (solutions / "pkg/node.py").write_text(NODE.replace("return 0", "return 1"))
-    (found,) = find_outdated(made, solutions)
+    (found,) = find_outdated(made)
     assert str(found).startswith(
         "01_small.ipynb, cell 'node': differs from solutions/pkg/node.py; run `autograder course sync`"
     )
@@ -61,19 +64,19 @@ def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path
 
 def test_a_cell_that_hides_nothing_shows_the_file(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path, hide=[])
-    sync_chapter(made, solutions)
+    sync_chapter(made)
     assert made.read().cells[1].source == f"%%writefile ws/src/pkg/node.py\n{NODE}".rstrip()
 
 
 def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(prose("# A title", "title"), given={"ws/src/pkg/setup.cfg": "pkg/setup.cfg"}))
-    (missing,) = find_outdated(made, solutions)
+    (missing,) = find_outdated(made)
     assert "the given file ws/src/pkg/setup.cfg is missing" in str(missing)
-    sync_chapter(made, solutions)
+    sync_chapter(made)
     assert (made.folder / "ws/src/pkg/setup.cfg").read_text() == "[develop]\n"
-    assert find_outdated(made, solutions) == []
+    assert find_outdated(made) == []
     (made.folder / "ws/src/pkg/setup.cfg").write_text("[install]\n")
-    (differs,) = find_outdated(made, solutions)
+    (differs,) = find_outdated(made)
     assert "the given file ws/src/pkg/setup.cfg differs" in str(differs)
 
 
@@ -95,22 +98,22 @@ def test_metadata_that_copying_cannot_mend_is_an_error_and_writes_nothing(
 ) -> None:
     made = small(tmp_path, **course)
     before = made.path.read_bytes()
-    (found,) = find_outdated(made, solutions)
+    (found,) = find_outdated(made)
     assert message in str(found)
     with pytest.raises(CourseError, match=r"01_small\.ipynb, cell 'node'"):
-        sync_chapter(made, solutions)
+        sync_chapter(made)
     assert made.path.read_bytes() == before
 
 
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(given=["pkg/setup.cfg"]))
-    (found,) = find_outdated(made, solutions)
+    (found,) = find_outdated(made)
     assert "course.given are wrong: ['pkg/setup.cfg'] is not of type 'object'" in found.message
 
 
 def test_course_metadata_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(code("", "odd", course="pkg/node.py")))
-    (found,) = find_outdated(made, solutions)
+    (found,) = find_outdated(made)
     assert "the metadata course are wrong: 'pkg/node.py' is not of type 'object'" in found.message
 
 
@@ -138,4 +141,4 @@ def test_chapters_come_in_their_order_and_scratch_notebooks_do_not(tmp_path: Pat
     for name in ("02_b", "01_a"):
         chapter(tmp_path, notebook(), name)
     (tmp_path / "chapters/01_a/Untitled.ipynb").write_text("{}")
-    assert [made.assignment for made in chapters(tmp_path / "chapters")] == ["01_a", "02_b"]
+    assert [made.assignment for made in chapters()] == ["01_a", "02_b"]

@@ -10,7 +10,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from IPython.testing.globalipapp import start_ipython
 
 from autograder.course.forms import CODE_STUB
-from autograder.notebook.writefile import RECORD, REPLACED, STUB, Action, choose, digest, register
+from autograder.notebook.writefile import RECORD, REPLACED, STUB, register
 
 UNSOLVED = f"def main():\n    {CODE_STUB}\n"
 HALF = f"def main():\n    return 0\n\n\ndef other():\n    {CODE_STUB}\n"
@@ -18,29 +18,6 @@ SOLVED = "def main():\n    return 0\n"
 OTHER = "def main():\n    return 1\n"
 Run = Callable[[str, str], str]
 FILE = "ws/src/pkg/node.py"
-
-
-@pytest.mark.parametrize(
-    ("cell", "on_disk", "written", "action"),
-    [
-        (UNSOLVED, None, None, Action.WRITE),
-        (UNSOLVED, UNSOLVED, None, Action.WRITE),
-        (UNSOLVED, SOLVED, None, Action.KEEP),
-        (UNSOLVED, SOLVED, digest(SOLVED), Action.KEEP),  # the cell was solved once and has lost its answer
-        (UNSOLVED, "", None, Action.KEEP),
-        (UNSOLVED + UNSOLVED, HALF, None, Action.KEEP),
-        (HALF, UNSOLVED, digest(UNSOLVED), Action.WRITE),
-        (HALF, UNSOLVED + "# mine\n", digest(UNSOLVED), Action.COPY),
-        (SOLVED, UNSOLVED, digest(UNSOLVED), Action.WRITE),
-        (SOLVED, OTHER, digest(OTHER), Action.WRITE),
-        (SOLVED, OTHER, digest(UNSOLVED), Action.COPY),
-        (SOLVED, OTHER, None, Action.COPY),
-    ],
-)
-def test_a_file_is_written_kept_or_copied_first(
-    cell: str, on_disk: str | None, written: str | None, action: Action
-) -> None:
-    assert choose(cell, on_disk, written) is action
 
 
 def test_the_stub_is_the_one_that_releases_hold() -> None:
@@ -68,6 +45,36 @@ def run(
         return capsys.readouterr().out
 
     return run_cell
+
+
+@pytest.mark.parametrize(
+    ("cell", "on_disk", "written", "said"),
+    [
+        (UNSOLVED, None, None, "Writing"),
+        (UNSOLVED, UNSOLVED, None, "Overwriting"),
+        (UNSOLVED, SOLVED, None, "was kept"),
+        (UNSOLVED, SOLVED, SOLVED, "was kept"),  # the cell was solved once and has lost its answer
+        (UNSOLVED, "", None, "was kept"),
+        (UNSOLVED + UNSOLVED, HALF, None, "was kept"),
+        (HALF, UNSOLVED, UNSOLVED, "Overwriting"),
+        (HALF, UNSOLVED + "# mine\n", UNSOLVED, "was changed outside of this cell"),
+        (SOLVED, UNSOLVED, UNSOLVED, "Overwriting"),
+        (SOLVED, OTHER, OTHER, "Overwriting"),
+        (SOLVED, OTHER, UNSOLVED, "was changed outside of this cell"),
+        (SOLVED, OTHER, None, "was changed outside of this cell"),
+    ],
+)
+def test_a_file_is_written_kept_or_copied_first(
+    run: Run, cell: str, on_disk: str | None, written: str | None, said: str
+) -> None:
+    if written is not None:
+        run(written)
+    if on_disk is not None:
+        Path(FILE).write_text(on_disk)
+    told = run(cell)
+    assert said in told
+    assert ("was kept" in told, "was changed" in told) == ("was kept" in said, "was changed" in said)
+    assert Path(FILE).read_text() == (on_disk if "was kept" in said else cell)
 
 
 def test_a_cell_writes_its_file_and_writes_it_again(run: Run) -> None:
