@@ -24,6 +24,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -160,10 +161,17 @@ def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -
 def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) -> list[str]:
     files = [str(folder / "test" / name) for name in wanted.files]
     plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
-    plain += ["-p", "launch_pytest.plugin"] if launches else []
+    plain += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
     asked = [*(["-x"] if wanted.first_failure else []), *([] if wanted.conftest else ["--noconftest"])]
     return [*plain, *quiet, *asked, *files]
+
+
+def _launch_plugins() -> tuple[str, str]:
+    """Return the plugins of both styles: a fixture of launch_pytest, a description that is marked `launch_test`."""
+    spec = find_spec("launch_testing")
+    is_real = spec is not None and spec.origin is not None and not Path(spec.origin).is_relative_to(STANDINS)
+    return "launch_pytest.plugin", "launch_testing.pytest.hooks" if is_real else "launch_testing.plugin"
 
 
 def _launches(source: Source, wanted: TestRun) -> bool:

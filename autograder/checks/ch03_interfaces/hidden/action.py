@@ -18,6 +18,7 @@ from autograder.probes.pace import is_paced, mean_period
 check = group("action")
 MOVES = ("drive_moves",)
 SLACK = 0.02  # m
+PUSHED = 0.2  # m, made good within a second
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
 LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real
 NAMES = {
@@ -96,18 +97,25 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
-@check(points=2, holds=("driven", "arrives"), depends=("drive_succeeds",), doc=contract.ACTION)
+@check(points=2, holds=("driven", "arrives", "drive-cmd-vel"), depends=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
+@hint("driven is a distance, from the start to the newest position; it is not the sum of steps.")
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # a tenth of it is more than what is allowed
-    placed_driver.finish(goal, LONG, "With a way of some metres to drive")
+    placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.6)
+    placed_driver.push(-PUSHED)
+    placed_driver.finish(goal, LONG, f"With a way of some metres to drive, and pushed back by {PUSHED} m")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
     expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
+    ended = placed_driver.seconds
+    placed_driver.run(0.5)
+    later = placed_driver.messages(COMMANDS, since=ended)
+    expect(not later, f"Within 0.5 s after the goal, {len(later)} more commands came on cmd_vel.", fraction=0.5)
 
 
 @check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)

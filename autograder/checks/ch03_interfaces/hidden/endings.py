@@ -18,7 +18,7 @@ check = group("action", doc=contract.ACTION)
 LATE = 0.4  # s beyond the patience: two commands, and the harness's looks at the result
 REAL_LATE = 2.0  # s, where time is real and a machine may be busy
 SLOW = 0.007  # m/s
-SOON_THERE, UNHURRIED = 0.1, 0.04  # m, m/s: less than a centimetre in a tenth of a second
+SOON_THERE, UNHURRIED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
 
 @check(points=3, holds=("cancels", "stop"), depends=MOVES)
@@ -100,7 +100,7 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     placed_driver.finish(goal, LONG, f"At {UNHURRIED} m/s")
     ended = NAMES.get(goal.status, goal.status)
     arrived = goal.status == GoalStatus.STATUS_SUCCEEDED
-    expect(arrived, f"At {UNHURRIED} m/s, some centimetres in 1 s, the goal ended {ended}.", fraction=0.7)
+    expect(arrived, f"At {UNHURRIED} m/s, more than a centimetre in 1 s, the goal ended {ended}.", fraction=0.7)
 
 
 @check(points=2, holds="stuck", depends=("drive_stuck",))

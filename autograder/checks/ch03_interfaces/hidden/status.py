@@ -142,13 +142,16 @@ def test_status_charging(reporter: Reporter) -> None:
         reporter.publish_battery(0.5, status=getattr(BatteryState, f"POWER_SUPPLY_STATUS_{name}"))
         said = reporter.status().is_charging
         expect(said is (name == "CHARGING"), f"is_charging is {said} while power_supply_status is {name}.")
+    reporter.publish_battery(math.nan, status=BatteryState.POWER_SUPPLY_STATUS_CHARGING)
+    said = reporter.status().is_charging
+    expect(said, "is_charging is False while the battery is charging, and does not say its level.", fraction=0.5)
 
 
 @check(points=1, holds=("joint-topic", "newest"), depends=NEEDS)
 @hint("msg.joint_positions = list(self.joints.position), when there are joints.")
 def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
     """joint_positions are the newest joint state's positions, as many as there are."""
-    for count in (draw.randrange(2, 6), draw.randrange(6, 12)):
+    for count in (draw.randrange(2, 6), draw.randrange(6, 12), 0):
         positions = [draw.uniform(-3.0, 3.0) for _ in range(count)]
         reporter.publish_joints(positions)
         said = list(reporter.status().joint_positions)

@@ -13,10 +13,12 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, refusal
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
+from autograder.probes.calls import call, calls, made, make
 from autograder.probes.parameters import Value, as_declared, differences
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
+CONFIGURATION = "my_robot_package.configuration"
 RADIUS = 0.18  # m
 SECONDS = 20.0
 NEAR = 0.02  # m between where it stands and where it should
@@ -134,6 +136,24 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
         told = f"safety_distance {safety} and slow_distance {slow}"
         expect(words is not None, f"Started with {told}, the node runs.")
         expect(all(name in (words or "") for name in values), f"It ends, but does not name {told}.", fraction=0.5)
+    fits, raised = _called(workspace, distance)
+    expect(fits == "", f"contradiction(0.5, 1.0) returned {fits!r}, instead of ''.", fraction=0.5)
+    expect(raised == "ValueError", f"declare_configuration raised {raised or 'nothing'}, no ValueError.", fraction=0.5)
+
+
+def _called(workspace: Workspace, distance: float) -> tuple[Value, str]:
+    """Return what contradiction says of distances that fit, and what declare_configuration raises at equal ones."""
+    given = [part for name in ("safety_distance", "slow_distance") for part in ("-p", f"{name}:={distance}")]
+    outcomes = calls(
+        workspace,
+        CONFIGURATION,
+        call("contradiction", 0.5, 1.0),
+        call("init", module="rclpy", args=["--ros-args", *given]),
+        make("Node", "bench", module="rclpy.node"),
+        call("declare_configuration", made(2)),
+        network=True,
+    )
+    return outcomes[0].value, outcomes[-1].raised
 
 
 def _towards_a_wall(draw: random.Random) -> Simulation:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 import re
 
@@ -10,11 +11,14 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, scan
 from autograder.probes.parameters import Value, differences
+from autograder.time_record import LOCKSTEP
 
 check = group("changes")
 DISTANCES = ("safety_distance", "slow_distance")
 SPEED = 0.3  # m/s, the default
-ROUNDED = 0.051  # a value in a sentence may be rounded to one decimal
+ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
+UNEVEN = (29.0, 41.0, 47.0)  # Hz: their periods are more than 1 % off in whole milliseconds
+EXACT = 0.005  # of a rate, in lockstep
 
 
 @check(points=3, holds=("contradiction", "refused", "keep-value"), depends=("names",), doc=contract.PARAMETERS)
@@ -40,7 +44,7 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
 @hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
 def test_reason(robot: Robot, draw: random.Random) -> None:
     """Its reason names both parameters and their values."""
-    safety = draw.randrange(120, 280) / 100
+    safety = (10 * draw.randrange(12, 28) + draw.randrange(2, 9)) / 100
     reason = robot.change({"safety_distance": safety}).reason
     missing = [name for name in DISTANCES if name not in reason]
     numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", reason)]
@@ -57,9 +61,10 @@ def test_together(robot: Robot, draw: random.Random) -> None:
     far = round(draw.uniform(1.4, 1.8), 2)
     up: dict[str, Value] = {"safety_distance": far, "slow_distance": round(far + 0.5, 2)}
     down: dict[str, Value] = {"slow_distance": 0.6, "safety_distance": 0.3}
-    for request in (up, down):
+    close: dict[str, Value] = {"safety_distance": 0.59}
+    for request in (up, down, close):
         answer = robot.change(request)
-        expect(answer.accepted, f"It refused {_told(request)} in one request: “{answer.reason}”.")
+        expect(answer.accepted, f"It refused {_told(request)}, which fit: “{answer.reason}”.")
         wrong = differences(robot.parameters.values(*request), request)
         expect(not wrong, f"It took {_told(request)}, and yet {'; '.join(wrong)}.")
 
@@ -73,8 +78,14 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
     request: dict[str, Value] = {"control_frequency": 25.0, "max_linear_velocity": 0.8, "safety_distance": 2.0}
     _change(robot, CHANGEABLE)
     present, before = robot.parameters.values(*request), robot.command_rate()
+    robot.see(2.5)
+    began = robot.seconds
     answer = robot.change(request)
+    robot.live(0.2)  # less than the time after which it counts as blind
     expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+    commands = robot.messages("/cmd_vel", since=began)
+    speed = commands[-1].message.linear.x if commands else math.nan
+    expect_speed(speed, SPEED, "Right after a refused request, with a wall 2.5 m ahead")
     wrong = differences(robot.parameters.values(*request), present)
     expect(not wrong, f"It refused the request, and yet {'; '.join(wrong)}.")
     expect_speed(robot.speed_at(2.5), SPEED, "After a refused request for 0.8 m/s, with a wall 2.5 m ahead")
@@ -122,6 +133,13 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
     for frequency in (draw.choice((20.0, 25.0, 50.0)), draw.choice((4.0, 5.0))):
         _change(robot, {"control_frequency": frequency})
         expect_rate(robot.command_rate(), frequency, f"After control_frequency was set to {frequency}")
+    if robot.time == LOCKSTEP:  # in real time no rate is exact
+        uneven = draw.choice(UNEVEN)
+        _change(robot, {"battery_threshold": 25, "control_frequency": uneven})  # a request of several
+        rate = robot.command_rate(4.0)
+        said = f"After control_frequency was set to {uneven}, it published {rate:.2f} commands a second"
+        exact = abs(rate - uneven) <= EXACT * uneven
+        expect(exact, f"{said}: the timer's period is in whole nanoseconds.", fraction=0.5)
 
 
 @check(points=1, holds=("apply-rate", "lets-pass"), depends=("rate_change", "speed_change"))

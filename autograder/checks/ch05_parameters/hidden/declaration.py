@@ -217,7 +217,8 @@ def _range_fault(wanted: Wanted, found: ParameterDescriptor) -> str:
     low, high = float(ranges[0].from_value), float(ranges[0].to_value)
     if abs(low - float(wanted.low or 0)) > 1e-9 or abs(high - float(wanted.high or 0)) > 1e-9:
         return f"its range is {low:g} to {high:g} instead of {wanted.low:g} to {wanted.high:g}"
-    return ""
+    finest = 1 if isinstance(wanted.default, int) else 0
+    return f"its range has steps of {ranges[0].step:g}" if ranges[0].step > finest else ""
 
 
 def _outside(wanted: Wanted, draw: random.Random) -> tuple[Value, Value]:

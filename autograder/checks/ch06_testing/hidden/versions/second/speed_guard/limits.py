@@ -3,7 +3,8 @@
 
 def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
     """Return the allowed speed."""
-    if stop_distance < 0.0 or stop_distance >= slow_distance:
+    sensible = stop_distance >= 0.0 and slow_distance > stop_distance
+    if not sensible:
         raise ValueError("the distances do not make sense")
     unknown = distance is None or distance != distance
     if not wanted > 0.0:

@@ -1,0 +1,73 @@
+"""The launched guard, in the style of launch_testing: a description, and cases beside it."""
+
+import os
+import time
+import unittest
+
+from geometry_msgs.msg import Twist
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription, SetEnvironmentVariable
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+import launch_testing
+import launch_testing.actions
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Range
+
+DOMAIN = 1 + os.getpid() % 100
+
+
+@pytest.mark.launch_test
+def generate_test_description():
+    """Launch what the user launches."""
+    file = PathJoinSubstitution([FindPackageShare('speed_guard'), 'launch', 'guard.launch.py'])
+    return LaunchDescription([
+        SetEnvironmentVariable('ROS_DOMAIN_ID', str(DOMAIN)),
+        IncludeLaunchDescription(PythonLaunchDescriptionSource(file)),
+        launch_testing.actions.ReadyToTest(),
+    ])
+
+
+class GuardAtWork(unittest.TestCase):
+    """While it runs."""
+
+    def setUp(self):
+        """Join its domain."""
+        self.context = Context()
+        rclpy.init(context=self.context, domain_id=DOMAIN)
+        self.node = rclpy.create_node('asker', context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+
+    def tearDown(self):
+        """Leave."""
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.try_shutdown(context=self.context)
+
+    def test_half_way_is_half_as_fast(self):
+        """At 0.55 m of 0.3 m to 0.8 m, half of the speed is left."""
+        answers = []
+        self.node.create_subscription(
+            Twist, '/cmd_vel', lambda answer: answers.append(answer.linear.x), 10)
+        sensor = self.node.create_publisher(Range, '/distance', qos_profile_sensor_data)
+        planner = self.node.create_publisher(Twist, '/cmd_vel_raw', 10)
+        command = Twist()
+        command.linear.x = 1.0
+
+        def tick():
+            sensor.publish(Range(range=0.55))
+            planner.publish(command)
+
+        timer = self.node.create_timer(0.05, tick)
+        end = time.monotonic() + 10.0
+        while time.monotonic() < end and not any(abs(answer - 0.5) < 1e-4 for answer in answers):
+            self.executor.spin_once(timeout_sec=0.1)
+        timer.cancel()
+        self.assertAlmostEqual(max(answers, default=0.0), 0.5, places=4)
+        self.assertIn('speed_guard', self.node.get_node_names())
