@@ -38,9 +38,6 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command line; errors that the grader knows become one sentence, not a traceback."""
     try:
         group(args=arguments, prog_name="autograder")
-    except UsageError as error:
-        click.echo(f"autograder: {error}", err=True)
-        sys.exit(2)
     except AutograderError as error:
         click.echo(f"autograder: {error}", err=True)
-        sys.exit(1)
+        sys.exit(2 if isinstance(error, UsageError) else 1)

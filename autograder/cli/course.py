@@ -11,7 +11,6 @@ from autograder.checks import suites
 from autograder.course import judged_later
 from autograder.course.cells import is_graded
 from autograder.course.contract_rules import broken_contract
-from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
 from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
@@ -34,21 +33,13 @@ def course() -> None:
 def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     for chapter in _chosen(names):
-        try:
-            changed = sync_chapter(chapter)
-            notebook = chapter.read()
-            if any(map(is_graded, notebook.cells)) and set_points(
-                chapter.path.name, notebook, suites.hidden(chapter.assignment).groups
-            ):
-                chapter.write(notebook)
-                changed.append(Finding(chapter.path.name, None, "points"))
-        except (CourseError, UsageError) as error:
-            raise click.ClickException(str(error)) from error
-        click.echo(
-            f"{chapter.assignment}: {len(changed)} brought up to date"
-            if changed
-            else f"{chapter.assignment}: as it was"
-        )
+        changed, notebook = len(sync_chapter(chapter)), chapter.read()
+        if any(map(is_graded, notebook.cells)) and set_points(
+            chapter.path.name, notebook, suites.hidden(chapter.assignment).groups
+        ):
+            chapter.write(notebook)
+            changed += 1
+        click.echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
 
 
 @course.command()

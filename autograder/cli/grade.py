@@ -164,22 +164,18 @@ class Progress:
     """A progress bar on a terminal, a plain line a submission elsewhere."""
 
     def __init__(self, total: int) -> None:
-        self._total, self._done = total, 0
-        self._bar = click.progressbar(length=total, label="grading") if sys.stdout.isatty() else None
+        self._total, self._plain = total, not sys.stdout.isatty()
+        self._bar = click.progressbar(length=total, label="grading", hidden=self._plain)
 
     def __enter__(self) -> Progress:
-        if self._bar is not None:
-            self._bar.__enter__()
+        self._bar.__enter__()
         return self
 
     def __exit__(self, *error: object) -> None:
-        if self._bar is not None:
-            self._bar.render_finish()
+        self._bar.render_finish()
 
     def show(self, result: Result, name: str = "") -> None:
         """Count one more result, of the student or of what else is named."""
-        self._done += 1
-        if self._bar is not None:
-            self._bar.update(1)
-        else:
-            click.echo(f"[{self._done}/{self._total}] {name or result.student}: {marks(result)}")
+        self._bar.update(1)
+        if self._plain:
+            click.echo(f"[{self._bar.pos}/{self._total}] {name or result.student}: {marks(result)}")

@@ -17,8 +17,7 @@ from IPython.core.getipython import get_ipython
 
 from autograder.notebook import writefile
 from autograder.notebook.checking import check
-from autograder.notebook.comparing import side_by_side
-from autograder.notebook.driving import drive
+from autograder.notebook.driving import drive, side_by_side
 from autograder.notebook.graph import graph
 from autograder.notebook.notices import NotGraded
 from autograder.notebook.scoring import score

@@ -1,4 +1,4 @@
-"""`drive`: a program of the student's workspace steers the simulated robot."""
+"""`drive`: a program of the student's workspace steers the simulated robot; `side_by_side`: drives in one picture."""
 
 from __future__ import annotations
 
@@ -36,6 +36,7 @@ FAULTS = {
     "dead": Faults(dead=(Window(10.0),)),
 }
 RADIUS = 0.18  # m
+WIDTH, HEIGHT = 6.0, 4.9  # inches of a picture
 
 Parameters = Mapping[str, object] | str | Path
 """Values by name, or the path of a parameter file, as a launch file's Node takes them."""
@@ -145,6 +146,30 @@ def drive(
             return Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
         commands = tuple((float(t), float(v), float(w)) for t, v, w in answer["commands"])
         return DriveReport(load_recording(folder / RECORDING), answer["output"], commands)
+
+
+def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice:
+    """Show the tracks of drives next to each other, each under its title; or the first notice among them.
+
+    Args:
+        drives: what `drive` returned, by title; at least one.
+    """
+    from matplotlib.figure import Figure
+
+    from sim.view import LIGHT, Picture, plot
+
+    reports: dict[str, DriveReport] = {}
+    for title, report in drives.items():
+        if isinstance(report, Notice):
+            return report
+        reports[title] = report
+    figure = Figure(figsize=(WIDTH * len(reports), HEIGHT), facecolor=LIGHT.paper, layout="constrained")
+    axes = figure.subplots(1, len(reports), squeeze=False)[0]
+    alts = [
+        f"{title}: {plot(report.recording, ax=ax, title=title).alt}"
+        for ax, (title, report) in zip(axes, reports.items(), strict=True)
+    ]
+    return Picture(figure, " ".join(alts))
 
 
 def _faults(faults: str | Faults | None) -> Faults:

@@ -16,10 +16,10 @@ from _pytest.mark import ParameterSet
 
 from autograder.course.execute import run_notebook
 from autograder.course.forms import Form, in_form
-from autograder.course.notebook_rules import images_without_alt
 from autograder.course.sync import Chapter, chapters
 from autograder.layout import ROOT
 from tests.drawn import drawn, unless
+from tests.notebooks.alternative_texts import images_without_alt
 from tests.notebooks.outputs import said
 
 CHAPTERS = chapters()

@@ -45,4 +45,5 @@ def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
     if out.exists() and out.is_dir() is not format.FOLDER:
         kind = "folder" if format.FOLDER else "file"
         raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
+    out.parent.mkdir(parents=True, exist_ok=True)
     return format.write(stored, out)

@@ -19,7 +19,6 @@ def write(stored: Sequence[Stored], out: Path) -> Path:
     The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
     """
     rows = [_row(item.result) for item in stored]
-    out.parent.mkdir(parents=True, exist_ok=True)
     with out.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), restval="")
         writer.writeheader()

@@ -20,7 +20,6 @@ def write(stored: Sequence[Stored], out: Path) -> Path:
     root = ET.Element("testsuites", _totals(suites))
     root.extend(suites)
     ET.indent(root)
-    out.parent.mkdir(parents=True, exist_ok=True)
     ET.ElementTree(root).write(out, encoding="utf-8", xml_declaration=True)
     return out
 

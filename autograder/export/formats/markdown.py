@@ -26,7 +26,6 @@ def write(stored: Sequence[Stored], out: Path) -> Path:
     ]
     for result in results:
         lines += ["", *_submission(result)]
-    out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return out
 

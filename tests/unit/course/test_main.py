@@ -15,6 +15,7 @@ from autograder import layout
 from autograder.checks import Check, Outcome, Visibility, suites
 from autograder.cli import course as command
 from autograder.course import judged_later
+from autograder.course.exceptions import CourseError
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result import CheckResult
@@ -65,8 +66,8 @@ def test_after_sync_nothing_is_wrong(course: Path) -> None:
 def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
     (course / "solutions/node.py").write_text("def mian():\n    return 0\n")
     result = run("sync")
-    assert result.exit_code == 1
-    assert "01_small.ipynb, cell 'node': node.py: function 'main' occurs 0 times" in result.output
+    assert isinstance(result.exception, CourseError)
+    assert "01_small.ipynb, cell 'node': node.py: function 'main' occurs 0 times" in str(result.exception)
 
 
 def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path) -> None:
