@@ -103,6 +103,15 @@ def diagnose_no_answer(kind: Kind, waited: str, output: str) -> Diagnosis:
     return Diagnosis(kind, sentence, tail(output))
 
 
+def diagnose_too_much(output: str) -> Diagnosis:
+    """Return the diagnosis of a program whose nodes, topics and timers are too many to be told in one message."""
+    sentence = (
+        "Your program has more nodes, topics, services or timers than can be graded: make each of them once, in "
+        "__init__, and none in a loop or in a callback."
+    )
+    return Diagnosis(Kind.STUCK, sentence, tail(output))
+
+
 _UNSTEPPABLE = {  # by each of the protocol's `REASONS`
     "thread": "it uses rclpy in threads of its own",
     "clock": "it has a timer on a clock that is not the ROS clock",

@@ -17,7 +17,13 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import protocol
 from autograder.lockstep.exceptions import UnsteppableError
-from autograder.lockstep.failures import diagnose_crash, diagnose_deadlock, diagnose_ending, diagnose_no_answer
+from autograder.lockstep.failures import (
+    diagnose_crash,
+    diagnose_deadlock,
+    diagnose_ending,
+    diagnose_no_answer,
+    diagnose_too_much,
+)
 from autograder.lockstep.protocol import START_NS, Description, ProtocolError, Reply
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
@@ -156,7 +162,7 @@ class Stepper:
         deadline, before = time.monotonic() + timeout.seconds, None
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
-                return bytes(self._buffer)
+                raise StudentError(diagnose_too_much(self.process.output))
             left = deadline - time.monotonic()
             if not self._selector.select(max(0.0, min(_TICK, left))):
                 if left <= 0.0:

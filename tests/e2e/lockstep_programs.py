@@ -466,3 +466,60 @@ def program():
 run(program)
 """,
 }
+
+FLOODS = {
+    "3,000 topics": """
+class Flood(Node):
+    def __init__(self):
+        super().__init__('flood')
+        self.them = [self.create_publisher(String, f'/topic_{number}', 10) for number in range(3000)]
+
+
+rclpy.init()
+rclpy.spin(Flood())
+""",
+    "100 kHz": """
+class Flood(Node):
+    def __init__(self):
+        super().__init__('flood')
+        self.said = self.create_publisher(String, '/said', 10)
+        self.create_timer(0.00001, lambda: self.said.publish(String(data='x')))
+
+
+rclpy.init()
+rclpy.spin(Flood())
+""",
+    "100,000 at once": """
+class Flood(Node):
+    def __init__(self):
+        super().__init__('flood')
+        self.said = self.create_publisher(String, '/said', 10)
+        self.create_timer(0.4, self.flood)
+
+    def flood(self):
+        for _ in range(100_000):
+            self.said.publish(String(data='x'))
+
+
+rclpy.init()
+rclpy.spin(Flood())
+""",
+    "the grader's parameters": """
+from rcl_interfaces.srv import SetParameters
+
+
+class Flood(Node):
+    def __init__(self):
+        super().__init__('flood')
+        self.said = self.create_publisher(String, '/said', 10)
+        self.grader = self.create_client(SetParameters, '/grader/set_parameters')
+        self.create_timer(0.1, self.ask)
+
+    def ask(self):
+        self.said.publish(String(data=f'ready: {self.grader.service_is_ready()}'))
+
+
+rclpy.init()
+rclpy.spin(Flood())
+""",
+}

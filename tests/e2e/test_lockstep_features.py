@@ -370,6 +370,34 @@ def test_programs_that_answer_each_other_for_ever_are_stopped() -> None:
     assert "would go on for ever" in sentence
 
 
+def flooded(scratch: Path, text: str) -> list[Any]:
+    """Return how many messages the grader heard in half a second of a program, or what it says of the program."""
+    from autograder.exceptions import StudentError
+
+    try:
+        with open_lab(write_workspace(scratch, node=text), "node") as harness:
+            harness.run(0.5)
+            return said(harness)
+    except StudentError as error:
+        return [error.diagnosis.sentence]
+
+
+def test_a_program_that_floods_discovery_is_told_so() -> None:
+    (sentence,) = in_cell(flooded, programs.FLOODS["3,000 topics"])
+    assert "more nodes, topics, services or timers" in sentence
+
+
+@pytest.mark.parametrize("name", ["100 kHz", "100,000 at once"])
+def test_a_flood_of_messages_is_heard_as_far_as_the_queue_is_deep(name: str) -> None:
+    heard = in_cell(flooded, programs.FLOODS[name])
+    assert {text for _, text in heard} == {"x"}
+    assert len(heard) < 20_000
+
+
+def test_the_grader_serves_no_parameters_that_a_program_could_set() -> None:
+    assert [text for _, text in in_cell(flooded, programs.FLOODS["the grader's parameters"])] == ["ready: False"] * 5
+
+
 def test_of_several_programs_the_one_that_crashes_is_named() -> None:
     texts = {"server": programs.SERVER, "broken": "raise ValueError('no lidar')"}
     kind, sentence = in_cell(failing, texts)

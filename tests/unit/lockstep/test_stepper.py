@@ -97,6 +97,11 @@ def test_a_forged_line_is_no_event(host: Open, forged: str) -> None:
     assert _kind(host(f"os.write(write, {forged})\nraise SystemExit(0)").wait_ready) is Kind.ENDED_EARLY
 
 
+def test_a_program_with_more_topics_than_a_line_can_name_is_told_so(host: Open) -> None:
+    with pytest.raises(StudentError, match="more nodes, topics, services or timers"):
+        host("os.write(write, b'x' * 60_000)\nos.write(write, b'x' * 60_000)").wait_ready()
+
+
 def test_a_crash_event_is_told_in_its_own_words(host: Open) -> None:
     event = '{"event": "crash", "phase": "import", "type": "NameError", "message": "x", "traceback": "T"}'
     program = host(f"os.write(write, {event.encode()!r} + b'\\n')")

@@ -1,0 +1,55 @@
+"""Writes attacks.md from attacks.yaml: `python docs/attacks_page.py`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from autograder.course.markdown_table import table
+from autograder.layout import ROOT
+from autograder.proof.attacks import ASSIGNMENT, attacks
+
+PAGE = ROOT / "docs" / "attacks.md"
+ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))
+
+HEAD = f"""# Attacks, and what holds them
+
+What a malicious submission can try. The proof grades submissions that try it, as answers to {ASSIGNMENT}, and tests try
+it on a part alone. `python docs/attacks_page.py` writes this page from `docs/attacks.yaml`.
+"""
+OPEN = """
+## Not held
+
+- **Inodes.** A file system in memory has a size, and as many files as the kernel gives it.
+- **Memory that is neither resident nor mapped**: files made by `memfd_create` that are not mapped, and detached segments
+  of System V. The limits of a sandbox count what its processes have mapped.
+- **Answers copied from another student.** The grader compares no submissions.
+"""
+
+
+def current() -> str:
+    """Return the page as it should be."""
+    described = {attack.id: attack.description for attack in attacks(ASSIGNMENT)}
+    rows = [
+        (str(number), row["attack"], "; ".join(row["submissions"]), _tests(row["tests"]))
+        for number, row in enumerate(ROWS, 1)
+    ]
+    return "\n".join(
+        [
+            HEAD,
+            *table(("#", "attack", "submissions of the proof", "tests"), rows),
+            "## The submissions\n",
+            *table(("name", "what it tries"), list(described.items())),
+            OPEN.strip() + "\n",
+        ]
+    )
+
+
+def _tests(files: dict[str, list[str]]) -> str:
+    names = (name.removeprefix("test_") for named in files.values() for name in named)
+    return "; ".join(name.replace("_s_", "'s ").replace("_", " ") for name in names)
+
+
+if __name__ == "__main__":
+    PAGE.write_text(current(), encoding="utf-8")

@@ -1,0 +1,33 @@
+"""Each attack has something that holds it, and what the page names is there."""
+
+from __future__ import annotations
+
+import re
+import runpy
+
+from autograder.layout import ROOT
+from autograder.proof.attacks import ASSIGNMENT, attacks
+
+MADE = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))
+ROWS = MADE["ROWS"]
+
+
+def test_the_page_is_current() -> None:
+    assert MADE["PAGE"].read_text(encoding="utf-8") == MADE["current"](), "run `python docs/attacks_page.py`"
+
+
+def test_each_of_the_attacks_is_held_by_a_test() -> None:
+    assert len(ROWS) == 32
+    assert all(row["tests"] for row in ROWS)
+
+
+def test_each_test_that_the_table_names_is_there() -> None:
+    for row in ROWS:
+        for file, names in row["tests"].items():
+            defined = set(re.findall(r"^def (test_\w+)", (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE))
+            assert set(names) <= defined, file
+
+
+def test_the_table_names_the_submissions_of_the_proof_and_no_others() -> None:
+    named = {name for row in ROWS for name in row["submissions"]}
+    assert named == {attack.id for attack in attacks(ASSIGNMENT)}
