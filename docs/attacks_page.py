@@ -22,7 +22,7 @@ OPEN = """
 ## Not held
 
 - **Inodes.** A file system in memory has a size, and as many files as the kernel gives it.
-- **Memory that is neither resident nor mapped**: files made by `memfd_create` that are not mapped, and detached segments
+- **Memory that is neither resident nor mapped**: unmapped files of `memfd_create`, and detached segments
   of System V. The limits of a sandbox count what its processes have mapped.
 - **Answers copied from another student.** The grader compares no submissions.
 """
