@@ -41,7 +41,7 @@ def test_it_is_called_speed_guard(robot, guard):
 
 
 def test_before_the_first_distance_it_stands(robot, guard):
-    """No distance is not a clear way; the way back is free all the same."""
+    """Without a distance it does not go forward; the way back is free all the same."""
     guard(timeout=PATIENT)
     assert robot.ask(0.8).linear.x == 0.0
     assert robot.ask(-0.3).linear.x == -0.3
@@ -81,7 +81,7 @@ def test_its_distances_are_parameters(robot, guard):
 
 
 def test_an_old_distance_is_not_known(robot, guard):
-    """A sensor that has fallen silent says nothing about now."""
+    """A distance that came more than timeout seconds ago is not known."""
     guard(timeout=HASTY)
     robot.see(4.0)
     robot.spin(2 * HASTY)

@@ -40,7 +40,7 @@ def test_far_things_do_not_matter():
 
 
 def test_nothing_ahead_is_far_away():
-    """Nothing seen, inf, is a clear way."""
+    """A distance of inf is a clear way."""
     assert safe_speed(0.8, math.inf) == pytest.approx(0.8)
 
 
@@ -51,7 +51,7 @@ def test_an_unknown_distance_is_not_a_clear_way():
 
 
 def test_the_way_back_is_not_guarded():
-    """Backwards, or standing, it is left alone, whatever is in front or not known."""
+    """A speed of 0 or below stays as it is, whatever is in front or not known."""
     for distance in (0.1, 1.0, math.inf, math.nan, None):
         assert safe_speed(-0.3, distance) == -0.3
         assert safe_speed(0.0, distance) == 0.0
