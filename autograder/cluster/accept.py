@@ -42,13 +42,11 @@ def accept(data: object, request: Request, sha256: str) -> Result:
         raise AnswerError(f"the worker failed: {answer.failure}")
     files = dict(answer.files)
     result = _result(files.pop(RESULT, b""), request, sha256)
-    notebook, log = files.pop(NOTEBOOK, None), files.pop(LOG, None)
-    _require_artifacts(files, result)
-    others = {**files, **{name: data for name, data in ((NOTEBOOK, notebook), (LOG, log)) if data is not None}}
-    if notebook is not None:
-        _require_notebook(notebook)
+    _require_artifacts({name: content for name, content in files.items() if name not in (NOTEBOOK, LOG)}, result)
+    if NOTEBOOK in files:
+        _require_notebook(files[NOTEBOOK])
     _clear(request.out)
-    for name, content in others.items():
+    for name, content in files.items():
         write_atomically(request.out / name, content)
     return write(result, request)
 

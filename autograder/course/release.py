@@ -55,7 +55,7 @@ def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
         chosen = [known[name] for name in names or known]
         _copy_parts(bundle)
         for chapter in chosen:
-            _release(chapter, bundle / "chapters" / chapter.assignment)
+            write_released(chapter, bundle / "chapters" / chapter.assignment)
         shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
         bundle.rename(out)
     return [chapter.assignment for chapter in chosen]
@@ -78,6 +78,7 @@ def _copy_parts(bundle: Path) -> None:
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
-def _release(chapter: Chapter, folder: Path) -> None:
+def write_released(chapter: Chapter, folder: Path) -> None:
+    """Write the folder of a chapter as students get it."""
     shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
     nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)

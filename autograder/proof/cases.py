@@ -10,6 +10,8 @@ from pathlib import Path
 
 from autograder import layout
 from autograder.checks import suites
+from autograder.course.release import write_released
+from autograder.course.sync import Chapter
 from autograder.grading.job import Scope
 from autograder.proof.attacks import Attack, attacks
 from autograder.proof.claims import CaseKind, verify_full_marks, verify_killed, verify_mutant, verify_zero
@@ -49,10 +51,10 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
 
     The quick part has one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
     """
-    sources = suites.hidden(assignment).sources
+    sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     found = [
         Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
-        Case(assignment, CaseKind.RELEASE, "release", partial(write_release, assignment), verify_zero),
+        Case(assignment, CaseKind.RELEASE, "release", partial(write_released, chapter), verify_zero),
         *_variants(assignment, sources),
     ]
     if quick:
@@ -84,18 +86,6 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
             chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
             uncovered -= covers[best.id]
     return [(m, suite.with_dependencies(*chosen[m.id])) for m in candidates if m.id in chosen]
-
-
-def write_release(assignment: str, folder: Path) -> None:
-    """Write the assignment's folder as students get it."""
-    import nbformat
-
-    from autograder.course.forms import Form, in_form
-    from autograder.course.sync import Chapter
-
-    chapter = Chapter(layout.chapter(assignment))
-    shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
-    nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
 
 
 def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:

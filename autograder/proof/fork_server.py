@@ -1,12 +1,12 @@
 """A fork server: a worker that has imported everything once, and forks for each submission.
 
-    python -m autograder.proof.fork_server SCRATCH ORDERS_FD REPLIES_FD
+    python -m autograder.proof.fork_server SCRATCH DESCRIPTOR
 
 Starting a worker costs about a core-second, as much as many a submission's checks. The proof grades hundreds of
 submissions of its own, so it lets each lane's share one cell, one after another. Whoever grades students' submissions
 gives each a cell of its own (`pipeline.in_own_cell`); the sandboxes around students' code are the same in both.
 
-It reads jobs, a line each. A reply is a line, too: the child's exit status and what it wrote.
+It receives jobs. A reply is the child's exit status and what it wrote. All are JSON; nothing is unpickled.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ import os
 import subprocess
 import sys
 import traceback
+from contextlib import suppress
+from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import TextIO
 
 from autograder.checks import suites
 from autograder.checks.suites import Suite
@@ -30,10 +31,11 @@ from autograder.sandbox.launcher import warm_up
 OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
 
 
-def serve(scratch: Path, jobs: TextIO, replies: TextIO) -> None:
-    """Do jobs until there are no more, each in a child of its own that leaves no file but MEMORY's."""
-    for line in jobs:
-        said, job = scratch / "said.log", Job.from_json(line)
+def serve(scratch: Path, client: Connection) -> None:
+    """Do jobs until the client ends, each in a child of its own that leaves no file but MEMORY's."""
+    said = scratch / "said.log"
+    while True:
+        job = Job.from_json(client.recv_bytes().decode())
         suite = suites.hidden(job.assignment)
         assert suite.version  # read once for all, too
         child = os.fork()
@@ -43,8 +45,7 @@ def serve(scratch: Path, jobs: TextIO, replies: TextIO) -> None:
         reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
         for left in (left for left in scratch.iterdir() if left.name != MEMORY):
             subprocess.run(["rm", "-rf", "--", left], check=True)
-        replies.write(json.dumps(reply) + "\n")
-        replies.flush()
+        client.send_bytes(json.dumps(reply).encode())
 
 
 def _work(job: Job, suite: Suite, said: Path) -> None:
@@ -73,16 +74,15 @@ def _end_of(log: Path) -> str:
 
 
 def main() -> None:
-    """Serve in the folder and on the descriptors that the command line names."""
-    scratch, jobs, replies = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    """Serve in the folder and on the descriptor that the command line names."""
     worker.prepare()
     for profile in PROFILES:  # a server that a child warmed up would end with it
         warm_up(profile)
     PROFILES["tests"].load()  # a worker needs most of that, too
     gc.collect()
     gc.freeze()  # what the children share is not theirs to look through
-    with os.fdopen(jobs) as lines, os.fdopen(replies, "w") as answers:
-        serve(scratch, lines, answers)
+    with Connection(int(sys.argv[2])) as client, suppress(EOFError):
+        serve(Path(sys.argv[1]), client)
 
 
 if __name__ == "__main__":

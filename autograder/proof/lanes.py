@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
 import queue
-import selectors
 import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import replace
+from multiprocessing import Pipe
 from pathlib import Path
 
 from autograder.grading.job import MEMORY, Job
@@ -26,7 +25,7 @@ _TICK = 0.25  # s between two looks at whether a silent server still lives
 class Lanes:
     """Grades submissions in a few cells that are used again and again; a context manager.
 
-    It is called as `pipeline.in_own_cell` is. For submissions that are the course's own, see `forkserver`.
+    It is called as `pipeline.in_own_cell` is. For submissions that are the course's own, see `fork_server`.
 
     Args:
         tier: how strongly a cell is kept apart.
@@ -72,46 +71,35 @@ class _Lane:
 
     def __init__(self, tier: Tier) -> None:
         self._stack = ExitStack()
-        their_jobs, self._jobs = os.pipe()
-        self._replies, their_replies = os.pipe()
-        for descriptor in (self._jobs, self._replies):
-            self._stack.callback(os.close, descriptor)
-        theirs = (their_jobs, their_replies)
+        ours, theirs = Pipe()
+        self._server = self._stack.enter_context(ours)
 
         def command(scratch: Path) -> list[str]:
-            server = [sys.executable, "-m", "autograder.proof.fork_server", str(scratch)]
-            return [*server, *map(str, theirs)]
+            return [sys.executable, "-m", "autograder.proof.fork_server", str(scratch), str(theirs.fileno())]
 
-        try:
-            cell = in_cell(command, tier, PROOF_CELL, pass_fds=theirs)
+        with theirs:
+            cell = in_cell(command, tier, PROOF_CELL, pass_fds=(theirs.fileno(),))
             self._process, self.scratch = self._stack.enter_context(cell)
-        except BaseException:
-            self._stack.close()
-            raise
-        finally:
-            for descriptor in theirs:
-                os.close(descriptor)
 
     def grade(self, job: Job) -> CellReport:
         """Order one job and wait for its end; any ending but `exited` is the server's, which is of no more use."""
-        with suppress(BrokenPipeError):  # of a server that is no more; its end is seen below
-            os.write(self._jobs, job.to_json().encode() + b"\n")
-        reply, deadline = b"", time.monotonic() + GRADING_CELL.wall_seconds
-        with selectors.DefaultSelector() as selector:
-            selector.register(self._replies, selectors.EVENT_READ)
-            while not reply.endswith(b"\n"):
-                if selector.select(_TICK):
-                    chunk = os.read(self._replies, 65536)
-                    reply += chunk
-                    if not chunk:
-                        self._process.wait(GRADING_CELL.wall_seconds)
+        deadline = time.monotonic() + GRADING_CELL.wall_seconds
+        try:
+            self._server.send_bytes(job.to_json().encode())
+            while not self._server.poll(_TICK):
                 if self._process.ending is not None or time.monotonic() > deadline:
-                    self._process.kill()
-                    ending = self._process.ending or Ending.WALL_TIME
-                    ending = Ending.KILLED if ending is Ending.EXITED else ending
-                    return CellReport(ending, self._process.returncode or 1, self._process.output)
-        said = json.loads(reply)
+                    return self._dead()
+            said = json.loads(self._server.recv_bytes())
+        except (EOFError, OSError):  # the server is no more
+            self._process.wait(GRADING_CELL.wall_seconds)
+            return self._dead()
         return CellReport(Ending.EXITED, said["status"], said["output"])
+
+    def _dead(self) -> CellReport:
+        self._process.kill()
+        ending = self._process.ending or Ending.WALL_TIME
+        ending = Ending.KILLED if ending is Ending.EXITED else ending
+        return CellReport(ending, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:
         """End the server and all that is below it."""
