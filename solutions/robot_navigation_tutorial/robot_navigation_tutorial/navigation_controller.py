@@ -38,7 +38,7 @@ class NavigationController(Node):
 
     def __init__(self, **kwargs):
         """
-        Name the node navigation_controller; declare its parameters, create its ends.
+        Name the node navigation_controller; declare its parameters, create its endpoints.
 
         forward_speed: 0.3 m/s, from 0.05 to 0.5. turn_speed: 0.8 rad/s, from 0.1 to 1.5.
         safety_distance: 0.6 m, from 0.3 to 2.0. data_timeout: 0.5 s, from 0.2 to 2.0.
@@ -74,7 +74,8 @@ class NavigationController(Node):
         Publish one command, whatever happens.
 
         Disabled, or without a clearance that can be trusted: stand still. Otherwise turn on
-        the spot at turn_speed, or drive straight on at forward_speed, as choose_turn says.
+        the spot at up to turn_speed, or drive straight on at up to forward_speed, as
+        choose_turn says.
         """
         command = Twist()
         if self.enabled and self.is_trusted(self.clearance):
