@@ -18,10 +18,10 @@ import jinja2
 from markupsafe import Markup
 
 from autograder import layout
-from autograder.checks import Outcome
 from autograder.checks.contract import contract
 from autograder.feedback.model import page_view
 from autograder.feedback.pictures import Picture
+from autograder.feedback.statistics import class_statistics
 from autograder.feedback.text import NOT_GRADED, clean, number
 from autograder.result import Result, Status, write_atomically
 
@@ -111,7 +111,7 @@ def write_summary(results: Sequence[Result], folder: Path) -> Path:
             rows=[(result, _link(result, folder), _reason(result)) for result in results],
             graded=graded,
             mean=mean(result.percent for result in graded) if graded else None,
-            missed=_missed(graded),
+            statistics=class_statistics(graded) if graded else None,
         )
     )
     return _write(folder / SUMMARY, html)
@@ -131,15 +131,6 @@ def _reason(result: Result) -> str:
     if not page.graded:
         return NOT_GRADED
     return (page.first.message or page.first.title) if page.first else ""
-
-
-def _missed(results: Sequence[Result]) -> list[tuple[str, int, int]]:
-    """Return (title, passed, graded) of each check that a submission did not pass, the most missed first."""
-    counts: dict[str, tuple[str, int, int]] = {}
-    for check in (check for result in results for check in result.checks):
-        title, passed, total = counts.get(check.id, (check.title, 0, 0))
-        counts[check.id] = (title, passed + (check.outcome is Outcome.PASSED), total + 1)
-    return sorted((entry for entry in counts.values() if entry[1] < entry[2]), key=lambda e: e[1] / e[2])
 
 
 def _write(path: Path, html: str) -> Path:

@@ -1,0 +1,49 @@
+"""`autograder compare`: whose mark changes between two gradings, and by which check."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from autograder import export
+from autograder.cli.options import json_option
+from autograder.export.changes import Change, CheckChange, changes
+from autograder.result import write_json
+
+
+@click.command()
+@click.argument("old", type=click.Path(path_type=Path))
+@click.argument("new", type=click.Path(path_type=Path))
+@json_option
+def compare(old: Path, new: Path, json_file: Path | None) -> None:
+    """Say whose mark differs between the stored results OLD and NEW, by how much, and by which checks.
+
+    Each is a folder that `autograder grade --out` wrote, or a JSON file. After a suite was mended, grade the class into
+    another folder and compare the two.
+    """
+    found = changes(export.load(old), export.load(new))
+    for change in found:
+        marks = f"{_number(change.before)} -> {_number(change.after)}"
+        click.echo(f"{change.student} ({change.assignment}): {marks}{_note(change)}")
+        for check in change.checks:
+            click.echo(f"    {check.id}: {_points(check)}")
+    students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
+    click.echo(f"{students} with another result" if found else "No result has changed.")
+    if json_file is not None:
+        write_json(json_file, [asdict(change) for change in found])
+
+
+def _note(change: Change) -> str:
+    if change.before is None or change.after is None or change.same_submission:
+        return ""
+    return ", of another submission"
+
+
+def _points(check: CheckChange) -> str:
+    return f"{_number(check.before, 'not in the suite')} -> {_number(check.after, 'not in the suite')}"
+
+
+def _number(points: float | None, none: str = "no mark") -> str:
+    return none if points is None else f"{points:g}"

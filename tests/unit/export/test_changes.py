@@ -1,0 +1,81 @@
+"""Two gradings of a class, compared."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from autograder.cli import group
+from autograder.export.changes import CheckChange, changes
+from autograder.export.stored import Stored
+from autograder.result import Result, write_json
+
+MakeResult = Callable[..., Result]
+
+
+def stored(*results: Result) -> list[Stored]:
+    return [Stored(result, Path()) for result in results]
+
+
+def regraded(result: Result, points: float) -> Result:
+    """Return the result with other points for its third check."""
+    checks = list(result.checks)
+    checks[2] = replace(checks[2], points=points)
+    return replace(result, checks=tuple(checks))
+
+
+def test_who_has_the_same_points_is_not_named(make_result: MakeResult) -> None:
+    assert changes(stored(make_result("alice")), stored(make_result("alice"))) == ()
+
+
+def test_a_mended_check_is_named_with_its_points(make_result: MakeResult) -> None:
+    alice = make_result("alice")
+    (change,) = changes(stored(alice, make_result("bob")), stored(regraded(alice, 4.0), make_result("bob")))
+    assert (change.student, change.before, change.after, change.same_submission) == ("alice", 4.0, 7.0, True)
+    assert change.checks == (CheckChange("turns", 1.0, 4.0),)
+
+
+def test_checks_that_move_points_between_them_are_named_though_the_mark_is_the_same(make_result: MakeResult) -> None:
+    alice = make_result("alice")
+    moved = replace(alice, checks=(replace(alice.checks[0], points=0.0), *regraded(alice, 2.0).checks[1:]))
+    (change,) = changes(stored(alice), stored(moved))
+    assert change.before == change.after
+    assert [check.id for check in change.checks] == ["starts", "turns"]
+
+
+def test_a_check_that_is_new_or_gone_and_a_student_who_is(make_result: MakeResult, ungraded_result: Result) -> None:
+    alice = make_result("alice")
+    fewer = replace(alice, checks=alice.checks[1:])
+    found = changes(stored(fewer), stored(alice, make_result("dora"), ungraded_result))
+    assert found[0].checks == (CheckChange("starts", None, 1.0),)
+    assert [(change.student, change.before, change.after) for change in found[1:]] == [("dora", None, 4.0)]
+
+
+def test_a_student_with_two_results_is_refused(make_result: MakeResult) -> None:
+    from autograder.exceptions import UsageError
+
+    with pytest.raises(UsageError, match="the new results hold 'alice' twice for 02_nodes; give the folder of one"):
+        changes(stored(), stored(make_result("alice"), make_result("alice")))
+
+
+def test_the_command_names_students_checks_and_another_submission(make_result: MakeResult, tmp_path: Path) -> None:
+    alice = make_result("alice")
+    write_json(tmp_path / "old" / "alice" / "result.json", alice.to_json())
+    write_json(
+        tmp_path / "new" / "alice" / "result.json", regraded(replace(alice, submission_sha256="0" * 64), 4.0).to_json()
+    )
+    arguments = ["compare", str(tmp_path / "old"), str(tmp_path / "new"), "--json", str(tmp_path / "found.json")]
+    ran = CliRunner().invoke(group, arguments)
+    assert ran.exit_code == 0
+    assert ran.output.splitlines() == [
+        "alice (02_nodes): 4 -> 7, of another submission",
+        "    turns: 1 -> 4",
+        "1 student with another result",
+    ]
+    (found,) = json.loads((tmp_path / "found.json").read_text())
+    assert found["checks"] == [{"id": "turns", "before": 1.0, "after": 4.0}]

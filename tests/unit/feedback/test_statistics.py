@@ -1,0 +1,51 @@
+"""What a class's results say of the class and of the checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from autograder.checks import Outcome
+from autograder.feedback.statistics import class_statistics
+from autograder.result import Result
+
+MakeResult = Callable[..., Result]
+
+
+def with_passes(result: Result, *passed: bool) -> Result:
+    """Return a result of checks worth 1 point each, passed or failed."""
+    outcomes = [(Outcome.PASSED, 1.0) if each else (Outcome.FAILED, 0.0) for each in passed]
+    checks = tuple(
+        replace(check, outcome=outcome, points=points, max_points=1.0)
+        for check, (outcome, points) in zip(result.checks, outcomes, strict=False)
+    )
+    return replace(result, checks=checks, max_score=float(len(passed)))
+
+
+def test_marks_are_counted_in_bands_and_full_marks_lie_in_the_last(make_result: MakeResult) -> None:
+    results = [with_passes(make_result(), *([True] * n + [False] * (4 - n))) for n in (0, 1, 2, 4)]
+    assert class_statistics(results).bands == (1, 0, 1, 0, 0, 1, 0, 0, 0, 1)
+
+
+def test_a_check_that_good_answers_pass_discriminates_and_its_opposite_does_not(make_result: MakeResult) -> None:
+    rows = [(True, True, False), (True, True, False), (False, False, True), (False, False, True)]
+    by_id = {c.id: c for c in class_statistics([with_passes(make_result(), *row) for row in rows]).checks}
+    assert by_id["starts"].difficulty == 0.5
+    assert by_id["turns"].discrimination == pytest.approx(-1.0)
+    first = by_id["starts"].discrimination
+    assert first is None or first > by_id["turns"].discrimination  # type: ignore[operator]
+
+
+def test_a_check_that_all_did_alike_has_no_discrimination_and_one_that_all_passed_is_left_out(
+    make_result: MakeResult,
+) -> None:
+    (missed,) = class_statistics([with_passes(make_result(), True, False) for _ in range(3)]).checks
+    assert (missed.id, missed.passed, missed.total, missed.discrimination) == ("listens", 0, 3, None)
+
+
+def test_what_several_were_told_is_counted_once_for_each(make_result: MakeResult) -> None:
+    found = class_statistics([make_result("alice"), make_result("bob")]).reasons
+    assert ("it starts after 3 s", 2) in found
+    assert class_statistics([make_result("alice")]).reasons == ()
