@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -17,6 +18,8 @@ from autograder.ros.ros2.main import COMMANDS
 
 PAGE = ROOT / "docs" / "platform.md"
 LOCK = ROOT / "requirements.lock"
+DIFFERENCES = ROOT / "tests" / "e2e" / "launch_standin" / "differences.yaml"
+SUBMODULES = ROOT / "autograder" / "ros" / "standins" / "standin_submodules.py"
 TUTORIALS = ROOT / "tests" / "e2e" / "tutorials" / "pages.yaml"
 PYTHONS = ("3.10", "3.11", "3.12", "3.13")
 REQUIREMENT = re.compile(r"^([^\s#-][^\\\n]*)", re.MULTILINE)
@@ -60,6 +63,11 @@ Tests hold them to records of the real packages: launch files in Python, XML and
 `tests/e2e/ros2_records/differences.yaml` have it, each with its reason. What is not covered raises an error that says
 so. All of it works after `make real-launch`, or with a sourced Jazzy.
 """
+OTHERWISE = """
+`tests/e2e/launch_standin` tests the stand-ins more closely. With the real packages installed, it tests those. They do
+not pass these tests, in which the stand-in leaves no process, does not hang, or gives a clearer error:
+"""
+OTHERWISE_COLUMNS = ("test", "what the real one does")
 UNCOVERED = ("not covered", "why", "the error")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
 INNER = "launch files do not use it: a helper inside the real package"
@@ -85,7 +93,8 @@ def platform_page(lock: str, tutorials: str) -> str:
     by_python = {python: locked(lock, python) for python in PYTHONS}
     versions = table(COLUMNS, (_row(package, by_python) for package in PACKAGES))
     pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
-    return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, STAND_INS, *table(UNCOVERED, _uncovered())])
+    stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), OTHERWISE, *table(OTHERWISE_COLUMNS, _otherwise())]
+    return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, *stand_ins])
 
 
 def current() -> str:
@@ -121,6 +130,16 @@ def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
 def _uncovered() -> Iterator[tuple[str, str, str]]:
     for name, reason in LAUNCH.items():
         yield f"`{name}`", reason, f"'{name}' is not covered: this is the course's stand-in …"
+    # The stand-ins are importable only where the real packages are not, so their text is read.
+    found = re.search(r"^NOT_COVERED = (\{.*?^\})", SUBMODULES.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    assert found
+    for parent, names in ast.literal_eval(found[1]).items():
+        modules = ", ".join(f"`{parent}.{name}`" for name in names.split())
+        yield (
+            modules,
+            "it is inside the real package",
+            f"'{parent}.{names.split()[0]}' is not covered: this is the course's stand-in …",
+        )
     for option in ("--node-name", "--library-name"):
         called = f"`ros2 pkg create --build-type ament_cmake {option}`"
         yield called, OF_CPP, f"{called}, a C++ package, is not covered by this stand-in …"
@@ -129,6 +148,11 @@ def _uncovered() -> Iterator[tuple[str, str, str]]:
         for called in missing:
             error = str(NotCoveredError(f"`{called}`")).partition(";")[0]
             yield f"`{called}`", "the course does not use it", f"{error} …"
+
+
+def _otherwise() -> Iterator[tuple[str, str]]:
+    for test, reason in yaml.safe_load(DIFFERENCES.read_text(encoding="utf-8")).items():
+        yield f"`{test.partition('[')[0]}`", reason
 
 
 def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:

@@ -7,8 +7,8 @@ reached:
     ROS2_LAUNCH_SOURCE=/clones/launch python -m autograder.ros.real_launch
 
 A source is anything git can clone, with or without `@tag`. `composition_interfaces`, which launch_ros imports, has to
-be built by colcon; it goes into the environment's own prefix. The tags are those of Jazzy's distribution file
-(github.com/ros/rosdistro, jazzy/distribution.yaml).
+be built by colcon; it goes into the environment's own prefix. The tags are those with which the records in tests/e2e
+were written.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ SOURCES = (
     Source(
         "ROS2_INTERFACES_SOURCE",
         "https://github.com/ros2/rcl_interfaces.git",
-        "2.0.3",
+        "2.0.2",
         ("composition_interfaces",),
         built=True,
     ),
@@ -75,21 +75,21 @@ SOURCES = (
     Source(
         "ROS2_LAUNCH_SOURCE",
         "https://github.com/ros2/launch.git",
-        "3.4.9",
+        "3.4.3",
         ("launch", "launch_xml", "launch_yaml", "launch_testing", "launch_pytest"),
     ),
     Source(
         "ROS2_LAUNCH_ROS_SOURCE",
         "https://github.com/ros2/launch_ros.git",
-        "0.26.10",
+        "0.26.6",
         ("launch_ros", "ros2launch", "launch_testing_ros"),
     ),
     # `ros2 pkg create` asks it for the texts of licences.
-    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", "0.17.3", ("ament_copyright",)),
+    Source("ROS2_LINT_SOURCE", "https://github.com/ament/ament_lint.git", "0.17.1", ("ament_copyright",)),
     Source(
         "ROS2_CLI_SOURCE",
         "https://github.com/ros2/ros2cli.git",
-        "0.32.6",
+        "0.32.2",
         (
             "ros2cli",
             "ros2action",

@@ -44,4 +44,6 @@ def guard(module: str, reasons: Mapping[str, str] | None = None) -> Callable[[st
         near = [] if reason else get_close_matches(name, vars(sys.modules[module]), n=1, cutoff=0.8)
         raise not_covered(f"{module}.{name}", standin=module.partition(".")[0], reason=reason, near="".join(near))
 
+    # Python looks for submodules of a module only if it has a path.
+    vars(sys.modules[module]).setdefault("__path__", [])
     return missing

@@ -1,17 +1,18 @@
 """The public submodules of the real packages, for programs that import a name from the module in which it stands.
 
 The stand-ins divide their code in another way. So `launch.actions.group_action` is a module with the names of
-`launch.actions`.
+`launch.actions`. A submodule that no stand-in covers, such as `launch_testing.decorator`, raises an error that says so.
 """
 
 from __future__ import annotations
 
-import importlib
 import sys
 from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
+
+from standin_notice import not_covered
 
 # The submodules of each module, as the packages of Jazzy have them.
 SUBMODULES = {
@@ -52,6 +53,9 @@ SUBMODULES = {
         "normalize_to_list_of_substitutions_impl perform_substitutions_impl signal_management typing_file_path "
         "visit_all_entities_and_collect_futures_impl"
     ),
+    "launch_testing.actions": "ready",
+    "launch_testing.asserts": "assert_exit_codes assert_output assert_sequential_output",
+    "launch_testing.event_handlers": "stdout_ready_listener",
     "launch_xml.launch_description_sources": "xml_launch_description_source",
     "launch_yaml.launch_description_sources": "yaml_launch_description_source",
     "launch_ros": "parameters_type remap_rule_type",
@@ -68,14 +72,28 @@ SUBMODULES = {
         "to_parameters_list track_node_names"
     ),
 }
+# Those that the real packages have, and the stand-ins do not.
+NOT_COVERED = {
+    "launch_testing": "decorator junitxml legacy parametrize parse_arguments pytest ready_to_test_action_timeout",
+    "launch_testing.actions": "gtest pytest test",
+    "launch_testing.tools": "output process text",
+    "launch_pytest": "fixture",
+    "ament_copyright": "copyright_names crawler licenses parser",
+}
 
 
 class _Submodules(MetaPathFinder, Loader):
+    """Asked last, for what no file of a stand-in holds."""
+
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         parent, _, name = fullname.rpartition(".")
-        return ModuleSpec(fullname, self) if name in SUBMODULES.get(parent, "").split() else None
+        if name in SUBMODULES.get(parent, "").split():
+            return ModuleSpec(fullname, self)
+        if name in NOT_COVERED.get(parent, "").split():
+            raise not_covered(fullname, standin=fullname.partition(".")[0])
+        return None
 
     def exec_module(self, module: ModuleType) -> None:
         parent = vars(sys.modules[module.__name__.rpartition(".")[0]])
@@ -83,10 +101,10 @@ class _Submodules(MetaPathFinder, Loader):
         module.__dict__.update({name: parent[name] for name in kept})
 
 
-def offer_submodules(package: str) -> None:
-    """Let programs import the submodules of a package and of its modules, which become packages by it."""
-    for name in SUBMODULES:
-        if name.partition(".")[0] == package:
-            vars(importlib.import_module(name)).setdefault("__path__", [])
-    if not any(isinstance(finder, _Submodules) for finder in sys.meta_path):
-        sys.meta_path.append(_Submodules())
+_FINDER = _Submodules()
+
+
+def offer_submodules() -> None:
+    """Let programs import the submodules that the real packages have; those that are not covered raise an error."""
+    if _FINDER not in sys.meta_path:
+        sys.meta_path.append(_FINDER)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import launch
@@ -16,13 +14,7 @@ from launch.actions import (
 )
 from launch.event_handlers import OnProcessExit, OnShutdown
 
-
-@pytest.fixture(autouse=True)
-def _log_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    launch.logging.reset()
-    yield
-    launch.logging.reset()
+pytestmark = pytest.mark.usefixtures("own_log")
 
 
 def service_with(*entities: Any) -> launch.LaunchService:

@@ -6,7 +6,7 @@ import asyncio
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,13 +26,7 @@ from launch.actions import (
 from launch.event_handlers import OnProcessExit, OnProcessStart, OnShutdown
 from launch.events.process import SignalProcess, matches_executable, matches_name, matches_pid
 
-
-@pytest.fixture(autouse=True)
-def _log_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    launch.logging.reset()
-    yield
-    launch.logging.reset()
+pytestmark = pytest.mark.usefixtures("own_log")
 
 
 def sleeper(**more: Any) -> ExecuteProcess:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -39,13 +39,10 @@ def _left_over(mark: str) -> list[str]:
 
 
 @pytest.fixture
-def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def mark(own_log: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """The mark that all processes of this test carry in their environment."""
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
     monkeypatch.setenv(MARK, str(tmp_path))
-    launch.logging.reset()
-    yield str(tmp_path)
-    launch.logging.reset()
+    return str(tmp_path)
 
 
 @pytest.mark.parametrize("starts", [12, pytest.param(90, marks=pytest.mark.nightly)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sysconfig
 import venv
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, find
 from autograder.ros.real_launch import SOURCES, RealLaunchError, Source, install, main
 
@@ -142,3 +144,15 @@ def test_a_failure_is_one_line_and_exit_code_1(
     monkeypatch.setenv("PATH", "")
     assert main([]) == 1
     assert capsys.readouterr().err.startswith("real-launch: git is needed to fetch the sources")
+
+
+def test_the_tags_are_those_of_the_records() -> None:
+    tags = {Path(source.url).stem: source.tag for source in SOURCES}
+    names = {"launch": "launch", "launch_ros": "launch_ros", "launch_testing": "launch", "ros2cli": "ros2cli"}
+    for folder in ("launch_cases", "launch_test_cases", "ros2_records"):
+        head = (ROOT / "tests/e2e" / folder / "records.yaml").read_text().partition("\n")[0]
+        versions = [
+            (tags[names[name]], version) for name, version in re.findall(r"(\w+) ([\d.]+),", head) if name in names
+        ]
+        assert versions
+        assert all(tag == version for tag, version in versions), head

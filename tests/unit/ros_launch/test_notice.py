@@ -6,7 +6,8 @@ import importlib
 
 import launch
 import pytest
-from standin_notice import NotInStandInError
+from standin_notice import NotInStandInError, not_covered
+from standin_submodules import NOT_COVERED
 
 PACKAGES = ("launch", "launch_ros", "launch_testing", "launch_pytest")
 ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 Jazzy is sourced"
@@ -65,6 +66,17 @@ def test_an_uncovered_name_is_named_with_the_way_to_get_it(module: str, name: st
     assert text.startswith(f"'{module}.{name}' is not covered: this is the course's stand-in for {package}, ")
     assert reason in text
     assert text.endswith(f"To use '{module}.{name}', {ADVICE}.")
+
+
+@pytest.mark.parametrize(
+    "module", [f"{parent}.{name}" for parent, names in NOT_COVERED.items() for name in names.split()]
+)
+def test_an_uncovered_submodule_is_named_with_the_way_to_get_it(module: str) -> None:
+    for statement in (f"import {module}", f"from {module} import Name"):
+        with pytest.raises(NotInStandInError) as caught:
+            exec(statement)
+        package = module.partition(".")[0]
+        assert str(caught.value) == str(not_covered(module, standin=package))
 
 
 def test_a_typing_error_is_answered_with_the_name_that_was_meant() -> None:

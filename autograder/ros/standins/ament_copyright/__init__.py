@@ -5,9 +5,12 @@ It is found only where the real package is not importable. Covered: `main(argv)`
 """
 
 from standin_notice import guard
+from standin_submodules import offer_submodules
 
 from .main import main
 
 __all__ = ["main"]
 
 __getattr__ = guard(__name__)
+
+offer_submodules()

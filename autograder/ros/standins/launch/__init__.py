@@ -74,4 +74,4 @@ __all__ = [
 
 __getattr__ = guard(__name__)
 
-offer_submodules(__name__)
+offer_submodules()

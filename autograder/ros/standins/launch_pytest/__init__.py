@@ -13,6 +13,7 @@ import importlib
 from typing import Any
 
 from standin_notice import guard
+from standin_submodules import offer_submodules
 
 from ._fixture import fixture
 
@@ -27,3 +28,6 @@ def __getattr__(name: str) -> Any:
     if name in _SUBMODULES:
         return importlib.import_module(f"{__name__}.{name}")
     return _missing(name)
+
+
+offer_submodules()

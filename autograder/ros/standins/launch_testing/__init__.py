@@ -14,6 +14,7 @@ import importlib
 from typing import Any
 
 from standin_notice import guard
+from standin_submodules import offer_submodules
 
 __all__ = [
     "ActiveIoHandler",
@@ -47,3 +48,6 @@ def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
     return _missing(name)
+
+
+offer_submodules()

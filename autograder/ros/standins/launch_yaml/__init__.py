@@ -13,4 +13,4 @@ __all__ = ["Entity", "Parser", "launch_description_sources"]
 
 __getattr__ = guard(__name__)
 
-offer_submodules(__name__)
+offer_submodules()

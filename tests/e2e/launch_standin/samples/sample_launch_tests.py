@@ -9,6 +9,15 @@ from launch_ros.actions import Node
 from launch_testing.util import KeepAliveProc
 
 
+def says(words):
+    """Return a validator that fails an assertion as long as the words are not in the output."""
+
+    def validate(text):
+        assert words in text
+
+    return validate
+
+
 def node(executable, **more):
     return Node(package="fleet", executable=executable, cached_output=True, output="screen", **more)
 
@@ -26,13 +35,13 @@ def launched(beacon):
 @pytest.mark.launch(fixture=launched)
 def test_plain(beacon, launch_context):
     assert tools.wait_for_start_sync(launch_context, beacon, timeout=60)
-    tools.assert_output_sync(launch_context, beacon, lambda text: "ready: /tested" in text, timeout=60)
+    tools.assert_output_sync(launch_context, beacon, says("ready: /tested"), timeout=60)
     assert beacon.return_code is None
 
 
 @pytest.mark.launch(fixture=launched)
 async def test_coroutine(beacon, launch_context):
-    await tools.assert_output(launch_context, beacon, lambda text: "label='under test'" in text, timeout=60)
+    await tools.assert_output(launch_context, beacon, says("label='under test'"), timeout=60)
 
 
 @pytest.mark.launch(fixture=launched)
@@ -51,7 +60,7 @@ async def test_async_generator(beacon, launch_context):
 
 @pytest.mark.launch(fixture=launched)
 def test_that_fails_beside_the_launch(beacon, launch_context):
-    tools.assert_output_sync(launch_context, beacon, lambda text: "something else" in text, timeout=0.1)
+    tools.assert_output_sync(launch_context, beacon, says("something else"), timeout=0.1)
 
 
 @pytest.mark.launch(fixture=launched)
@@ -75,14 +84,14 @@ def crashing(crash):
 async def test_of_an_exit(crash, launch_context):
     assert await tools.wait_for_exit(launch_context, crash, timeout=60)
     assert crash.return_code == 3
-    await tools.assert_stderr(launch_context, crash, lambda text: text == "about to crash\n", timeout=60)
+    await tools.assert_stderr(launch_context, crash, says("about to crash"), timeout=60)
     assert not await tools.wait_for_stderr(launch_context, crash, lambda text: "fine" in text, timeout=0.01)
 
 
 @pytest.mark.launch(fixture=crashing)
 def test_of_an_exit_in_plain_python(crash, launch_context, launch_service, event_loop):
     assert tools.wait_for_exit_sync(launch_context, crash, timeout=60)
-    tools.assert_stderr_sync(launch_context, crash, lambda text: "crash" in text, timeout=60)
+    tools.assert_stderr_sync(launch_context, crash, says("crash"), timeout=60)
     assert not tools.wait_for_stderr_sync(launch_context, crash, lambda text: "fine" in text, timeout=0.01)
     assert launch_service.event_loop is event_loop
 

@@ -2,7 +2,8 @@
 
 Each returns whether it came to that within `timeout` seconds; without a time-out it waits for ever. The
 action must have been made with ``cached_output=True`` where its output is asked for. A validator gets all of
-the output so far and returns True, or fails an assertion or returns False as long as it does not suit.
+the output so far. That of `wait_for` returns whether it suits. That of `assert` fails an assertion as long as it
+does not: what it returns counts for nothing.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from launch.event_handler import BaseEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from standin_notice import guard
 
-Validator = Callable[[str], "bool | None"]
+Validator = Callable[[str], object]
 
 
 def _handlers(action: ExecuteLocal, notify: Callable[[], None]) -> list[BaseEventHandler]:
@@ -81,12 +82,17 @@ def _exited(action: ExecuteLocal) -> Callable[[], bool]:
     return lambda: action.return_code is not None
 
 
-def _valid(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
+def _suits(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
+    return lambda: bool(validate(read()))
+
+
+def _asserts(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
     def condition() -> bool:
         try:
-            return bool(validate(read()))
+            validate(read())
         except AssertionError:
             return False
+        return True
 
     return condition
 
@@ -126,7 +132,7 @@ async def wait_for_output(
     timeout: float | None = None,
 ) -> bool:
     """Wait until the standard output suits."""
-    condition = _valid(execute_process_action.get_stdout, validate_output)
+    condition = _suits(execute_process_action.get_stdout, validate_output)
     return await _wait(launch_context, execute_process_action, condition, timeout)
 
 
@@ -137,7 +143,7 @@ def wait_for_output_sync(
     timeout: float | None = None,
 ) -> bool:
     """Wait until the standard output suits."""
-    condition = _valid(execute_process_action.get_stdout, validate_output)
+    condition = _suits(execute_process_action.get_stdout, validate_output)
     return _wait_sync(launch_context, execute_process_action, condition, timeout)
 
 
@@ -148,7 +154,7 @@ async def wait_for_stderr(
     timeout: float | None = None,
 ) -> bool:
     """Wait until the standard error suits."""
-    condition = _valid(execute_process_action.get_stderr, validate_output)
+    condition = _suits(execute_process_action.get_stderr, validate_output)
     return await _wait(launch_context, execute_process_action, condition, timeout)
 
 
@@ -159,13 +165,8 @@ def wait_for_stderr_sync(
     timeout: float | None = None,
 ) -> bool:
     """Wait until the standard error suits."""
-    condition = _valid(execute_process_action.get_stderr, validate_output)
+    condition = _suits(execute_process_action.get_stderr, validate_output)
     return _wait_sync(launch_context, execute_process_action, condition, timeout)
-
-
-def _explain(text: str, validate: Validator) -> None:
-    """Let the validator's own assertion fail, or say that it returned False."""
-    assert validate(text), f"the output does not suit: {text!r}"
 
 
 async def assert_output(
@@ -175,8 +176,9 @@ async def assert_output(
     timeout: float | None = None,
 ) -> None:
     """Fail unless the standard output suits in time."""
-    if not await wait_for_output(launch_context, execute_process_action, validate_output, timeout):
-        _explain(execute_process_action.get_stdout(), validate_output)
+    condition = _asserts(execute_process_action.get_stdout, validate_output)
+    if not await _wait(launch_context, execute_process_action, condition, timeout):
+        validate_output(execute_process_action.get_stdout())
 
 
 def assert_output_sync(
@@ -186,8 +188,9 @@ def assert_output_sync(
     timeout: float | None = None,
 ) -> None:
     """Fail unless the standard output suits in time."""
-    if not wait_for_output_sync(launch_context, execute_process_action, validate_output, timeout):
-        _explain(execute_process_action.get_stdout(), validate_output)
+    condition = _asserts(execute_process_action.get_stdout, validate_output)
+    if not _wait_sync(launch_context, execute_process_action, condition, timeout):
+        validate_output(execute_process_action.get_stdout())
 
 
 async def assert_stderr(
@@ -197,8 +200,9 @@ async def assert_stderr(
     timeout: float | None = None,
 ) -> None:
     """Fail unless the standard error suits in time."""
-    if not await wait_for_stderr(launch_context, execute_process_action, validate_output, timeout):
-        _explain(execute_process_action.get_stderr(), validate_output)
+    condition = _asserts(execute_process_action.get_stderr, validate_output)
+    if not await _wait(launch_context, execute_process_action, condition, timeout):
+        validate_output(execute_process_action.get_stderr())
 
 
 def assert_stderr_sync(
@@ -208,8 +212,9 @@ def assert_stderr_sync(
     timeout: float | None = None,
 ) -> None:
     """Fail unless the standard error suits in time."""
-    if not wait_for_stderr_sync(launch_context, execute_process_action, validate_output, timeout):
-        _explain(execute_process_action.get_stderr(), validate_output)
+    condition = _asserts(execute_process_action.get_stderr, validate_output)
+    if not _wait_sync(launch_context, execute_process_action, condition, timeout):
+        validate_output(execute_process_action.get_stderr())
 
 
 __getattr__ = guard(__name__)
