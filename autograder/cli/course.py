@@ -6,7 +6,6 @@ import sys
 
 import click
 
-from autograder import layout
 from autograder.checks import suites
 from autograder.course import judged_later
 from autograder.course.cells import is_graded
@@ -80,7 +79,5 @@ def tables() -> None:
     page, problems = course_page()
     for finding in problems:
         click.echo(str(finding))
-    for assignment, text in judged_later.outdated().items():
-        layout.judged_later(assignment).write_text(text, encoding="utf-8")
-    PAGE.write_text(page, encoding="utf-8")
-    guide.PAGE.write_text(guide.guide(), encoding="utf-8")
+    for path, text in {**judged_later.texts(), PAGE: page, guide.PAGE: guide.guide()}.items():
+        path.write_text(text, encoding="utf-8")

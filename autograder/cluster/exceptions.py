@@ -1,9 +1,4 @@
-"""The errors of grading on a cluster.
-
-GraderError
-└── ClusterError       the cluster cannot be reached, was lost, or lacks what it needs   (exit status 1)
-    └── AnswerError    what a worker sent back is no grading of what it was sent
-"""
+"""The errors of grading on a cluster."""
 
 from __future__ import annotations
 
@@ -11,7 +6,7 @@ from autograder.exceptions import GraderError
 
 
 class ClusterError(GraderError):
-    """The cluster cannot be used. What is graded by then is kept."""
+    """The cluster cannot be reached, was lost, or lacks what it needs. What is graded by then is kept."""
 
 
 class AnswerError(ClusterError):

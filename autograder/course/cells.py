@@ -1,22 +1,12 @@
-"""Reads the course's own metadata of notebooks and cells.
+"""Reads the course's own metadata of notebooks and cells, of which `metadata.schema.json` beside this module has all.
 
-The metadata of a cell that writes a file into the student's workspace:
+A cell that writes a file into the student's workspace names the file of the reference that it copies:
 
     {"course": {"source": "my_robot_package/my_robot_package/nodes/robot_controller.py",
                 "target": "ws/src/my_robot_package/my_robot_package/nodes/robot_controller.py",
                 "hide": ["RobotController.control_loop"]}}
 
-A file that is not Python, or has no functions, has `cut`: the lines around each part that the student writes:
-
-    {"course": {"source": "square_dance/package.xml", "target": "ws/src/square_dance/package.xml",
-                "cut": [["<export>", "</export>"]]}}
-
-The metadata of a notebook names the files of the chapter's folder that are copies of the reference's:
-
-    {"course": {"given": {"ws/src/my_robot_package/setup.cfg": "my_robot_package/setup.cfg"}}}
-
-Sources are paths in `solutions/`, targets are paths in the chapter's folder. `metadata.schema.json` beside this module
-has all that the metadata may hold.
+Sources are paths in `solutions/`, targets are paths in the chapter's folder.
 """
 
 from __future__ import annotations

@@ -6,19 +6,15 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 from autograder.checks import suites
 from autograder.layout import judged_later
 
 
-def outdated() -> dict[str, str]:
-    """Return the text that each assignment's file should have, by the assignment, where the file is out of date."""
-    found = {}
-    for assignment in sorted({*suites.checked()} & {*suites.graded()}):
-        path, text = judged_later(assignment), _text(assignment)
-        if not path.is_file() or path.read_text(encoding="utf-8") != text:
-            found[assignment] = text
-    return found
+def texts() -> dict[Path, str]:
+    """Return the text of each assignment's file."""
+    return {judged_later(name): _text(name) for name in sorted({*suites.checked()} & {*suites.graded()})}
 
 
 def _text(assignment: str) -> str:

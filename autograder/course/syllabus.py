@@ -1,14 +1,9 @@
 """The syllabus, and which cells and hidden checks of the course cover it.
 
-`assets/syllabus.yaml` lists the chapter's objectives, sections, examples, steps and questions, and its errors.
-The metadata of notebooks name the entries that they cover:
-
-    a cell       {"course": {"covers": ["basic_node.py"], "errata": [18, 19]}}
-    a notebook   {"course": {"errata": [16],
-                             "objectives": [{"objective": "nodes", "exercise": CELL, "groups": [GROUP]}]}}
-
-The packages that a notebook gives correct the notebook's own errata. An objective names the cell with the exercise's
-heading and the groups of hidden checks that test it.
+`assets/syllabus.yaml` lists the chapter's objectives, sections, examples, steps and questions, and its errors. The
+metadata of cells name the items that they cover (`covers`) and the `errata` that they correct. Those of a notebook name
+the errata that its packages correct, and for each objective the cell with the exercise's heading and the groups of
+hidden checks that test it (`objectives`).
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ Each attack starts from a mutant whose losses are known. An attack that gains no
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
@@ -77,23 +77,6 @@ class Attack:
         return "; ".join(wrong)
 
 
-@dataclass(frozen=True)
-class Edits:
-    """Payloads and the places where they go.
-
-    Attributes:
-        head: text before the controller's source.
-        foot: text before the controller's `if __name__`.
-        replace: parts of the controller's source, each with its new text.
-        files: new files by their path below the package. The text for `setup.py` goes before the existing one.
-    """
-
-    head: str = ""
-    foot: str = ""
-    replace: Mapping[str, str] = field(default_factory=dict)
-    files: Mapping[str, str] = field(default_factory=dict)
-
-
 def all_checks() -> frozenset[str]:
     """Return the ids of every check."""
     return frozenset(check.id for check in suites.hidden(ASSIGNMENT).checks)
@@ -104,8 +87,23 @@ def mutant(name: str) -> Mutant:
     return next(found for found in mutants(ASSIGNMENT) if found.id == name)
 
 
-def package_writer(base: str | None, edits: Edits) -> Callable[[Path], None]:
-    """Return a function that writes a source tree: a mutant, or the reference if `base` is None, with edits."""
+def package_writer(
+    base: str | None,
+    *,
+    head: str = "",
+    foot: str = "",
+    replace: Mapping[str, str] = {},
+    files: Mapping[str, str] = {},
+) -> Callable[[Path], None]:
+    """Return a function that writes a source tree with payloads.
+
+    Args:
+        base: the mutant that gets them; the reference if None.
+        head: text before the controller's source.
+        foot: text before the controller's `if __name__`.
+        replace: parts of the controller's source, each with its new text.
+        files: new files by their path below the package. The text for `setup.py` goes before the existing one.
+    """
 
     def write(folder: Path) -> None:
         if base is None:
@@ -114,11 +112,11 @@ def package_writer(base: str | None, edits: Edits) -> Callable[[Path], None]:
             write_mutant(mutant(base), (PACKAGE,), folder)
         home = folder / "src" / PACKAGE
         text = (home / CONTROLLER).read_text()
-        for find, put in edits.replace.items():
+        for find, put in replace.items():
             assert text.count(find) == 1, find
             text = text.replace(find, put)
-        (home / CONTROLLER).write_text(f"{edits.head}\n{text}".replace("\nif __name__", f"\n{edits.foot}\nif __name__"))
-        for name, content in edits.files.items():
+        (home / CONTROLLER).write_text(f"{head}\n{text}".replace("\nif __name__", f"\n{foot}\nif __name__"))
+        for name, content in files.items():
             path = (folder / name) if name.startswith("../") else (home / name)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content + (path.read_text() if name == "setup.py" else ""))
@@ -130,7 +128,7 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
     """Return a function that writes a notebook: attack cells, then the exercise with a mutant's answer."""
 
     def write(folder: Path) -> None:
-        package_writer(base, Edits())(folder / "answer")
+        package_writer(base)(folder / "answer")
         answer = (folder / "answer" / "src" / PACKAGE / CONTROLLER).read_text()
         exercise = new_code_cell(WRITEFILE + answer)
         exercise.metadata.nbgrader = {"grade_id": "robot-controller", "grade": True, "points": 999, "locked": False}
@@ -156,20 +154,20 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "thief",
             "reads suites, processes and accounts; writes results and code; phones home; leaves a daemon",
-            package_writer("five_hertz", Edits(head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES)),
+            package_writer("five_hertz", head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES),
             slow,
             exactly=True,
         ),
         Attack(
             "tricks",
             "objects equal to anything; patched builtins, time and unittest; atexit and __del__",
-            package_writer("five_hertz", Edits(foot=OVERRIDE_BUILTINS)),
+            package_writer("five_hertz", foot=OVERRIDE_BUILTINS),
             slow,
         ),
         Attack(
             "forged protocol",
             "answers in the host's place with steps and counts of its own",
-            package_writer("five_hertz", Edits(head=STEAL_SECRETS, foot=FORGE_PROTOCOL)),
+            package_writer("five_hertz", head=STEAL_SECRETS, foot=FORGE_PROTOCOL),
             slow,
         ),
         Attack(
@@ -177,21 +175,22 @@ def _corpus() -> tuple[Attack, ...]:
             "publishes on the grader's topics, /clock, /rosout and /parameter_events",
             package_writer(
                 "drives_blind",
-                Edits(foot=SPOOF_ROS, replace={"        self.last_scan_time = None\n": CALL_SPOOF}),
+                foot=SPOOF_ROS,
+                replace={"        self.last_scan_time = None\n": CALL_SPOOF},
             ),
             blind,
         ),
         Attack(
             "grader's name",
             "calls its node as the grader's is called",
-            package_writer(None, Edits(replace={"__init__('robot_controller'": "__init__('grader'"})),
+            package_writer(None, replace={"__init__('robot_controller'": "__init__('grader'"}),
             everything,
             frozenset({Kind.RESERVED_NAME}),
         ),
         Attack(
             "constants",
             "replays a recorded past: always forward, whatever the lidar says",
-            package_writer(None, Edits(replace={"clearance = self.current_clearance()": "clearance = 3.0"})),
+            package_writer(None, replace={"clearance = self.current_clearance()": "clearance = 3.0"}),
             frozenset(
                 {"turns_when_blocked", "threshold", "nan", "blind", "stops_before_first_scan", "room", "corridor"}
             ),
@@ -199,20 +198,20 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "nan commands",
             "commands that compare equal to nothing",
-            package_writer(None, Edits(replace={"        self.cmd_vel_pub.publish(command)": PUBLISH_NAN})),
+            package_writer(None, replace={"        self.cmd_vel_pub.publish(command)": PUBLISH_NAN}),
             frozenset({"forward_when_clear", "turns_when_blocked", "stops_before_first_scan", "room"}),
         ),
         Attack(
             "build thief",
             "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
-            package_writer("five_hertz", Edits(files=PLANTED_FILES)),
+            package_writer("five_hertz", files=PLANTED_FILES),
             slow,
             exactly=True,
         ),
         Attack(
             "build link",
             "setup.py leaves a link out of the install space, which a mount would follow",
-            package_writer(None, Edits(files={"setup.py": "import os\nos.symlink('/', '../../install/all')\n"})),
+            package_writer(None, files={"setup.py": "import os\nos.symlink('/', '../../install/all')\n"}),
             everything,
             frozenset({Kind.BUILD_FAILED}),
         ),
@@ -221,9 +220,7 @@ def _corpus() -> tuple[Attack, ...]:
             "a package called rclpy in the student's own",
             package_writer(
                 None,
-                Edits(
-                    files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY}
-                ),
+                files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY},
             ),
             everything,
             frozenset({Kind.ENDED_EARLY, Kind.BUILD_FAILED, Kind.CRASHED_AT_IMPORT}),
@@ -231,7 +228,7 @@ def _corpus() -> tuple[Attack, ...]:
         Attack(
             "fork bomb",
             "a fork bomb in __init__",
-            package_writer(None, Edits(replace={"        self.last_scan_time = None\n": FORK_BOMB})),
+            package_writer(None, replace={"        self.last_scan_time = None\n": FORK_BOMB}),
             everything,
             frozenset({Kind.OUT_OF_MEMORY}),
         ),

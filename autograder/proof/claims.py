@@ -12,7 +12,7 @@ from enum import Enum
 from autograder.checks import Outcome
 from autograder.diagnosis import Kind
 from autograder.proof.mutants import Mutant
-from autograder.result import Result, Status
+from autograder.result import Result
 
 
 class CaseKind(str, Enum):
@@ -86,8 +86,3 @@ def verify_killed(result: Result) -> str:
 def lost_checks(result: Result) -> frozenset[str]:
     """Return the ids of the checks that did not pass."""
     return frozenset(check.id for check in result.checks if check.outcome is not Outcome.PASSED)
-
-
-def is_graded(result: Result) -> bool:
-    """Return whether the grader reached a result."""
-    return result.status is Status.GRADED

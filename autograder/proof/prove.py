@@ -10,8 +10,9 @@ from pathlib import Path
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
-from autograder.proof.claims import Claim, is_graded
+from autograder.proof.claims import Claim
 from autograder.proof.lanes import Lanes
+from autograder.result import Status
 
 SUBMISSION = "submission"
 
@@ -44,7 +45,7 @@ def prove(
                 scope=case.scope,
                 run_job=lanes,
             )
-        mismatch = case.verify(result) if is_graded(result) else result.diagnosis.sentence
+        mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         return Claim(case.assignment, case.kind, case.name, result, mismatch, case.reason)
 
     claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)

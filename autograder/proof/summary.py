@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from autograder.proof.claims import CaseKind, Claim, is_graded, lost_checks
+from autograder.proof.claims import CaseKind, Claim, lost_checks
+from autograder.result import Status
 
 MIN_KILLED = 0.9  # share of the generated mutants, without the survivors that have a reason
 
@@ -17,7 +18,7 @@ def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
     another diagnosis. `generated` leaves out the survivors with a reason.
     """
     mutants, generated = _of(claims, CaseKind.MUTANT), _unexcused(claims)
-    missed = [claim for claim in mutants if not (is_graded(claim.result) and lost_checks(claim.result))]
+    missed = [claim for claim in mutants if not (claim.result.status is Status.GRADED and lost_checks(claim.result))]
     attacks = _of(claims, CaseKind.ATTACK)
     return {
         "reference": min(_percents(claims, CaseKind.REFERENCE), default=None),
