@@ -11,8 +11,8 @@ by their names:
 """
 
 from autograder.nbgrader.exporter import SubmissionExporter
-from autograder.nbgrader.grade import SandboxedGrade
-from autograder.nbgrader.markdown import sanitized_markdown
 from autograder.nbgrader.restore import RestoreCells
+from autograder.nbgrader.sandboxed_grade import SandboxedGrade
+from autograder.nbgrader.sanitizing import sanitized_markdown
 
 __all__ = ["RestoreCells", "SandboxedGrade", "SubmissionExporter", "sanitized_markdown"]

@@ -15,8 +15,8 @@ from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.utils import determine_grade
 
 from autograder.feedback.model import PageView, page_view
-from autograder.nbgrader.markdown import sanitized_markdown
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
+from autograder.nbgrader.sanitizing import sanitized_markdown
 from autograder.result import Artifact, Result
 
 TEXT = st.text(st.sampled_from("ab <>'&\x00\x1b[31m\udcff\ud800é\n"), max_size=20)
