@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
-from autograder.doctor import examine, healthy, render
+from autograder.doctor import System, examine, healthy, render
 from autograder.result import write_json
 
 
@@ -17,7 +17,7 @@ from autograder.result import write_json
 @json_option
 def doctor(json_file: Path | None) -> None:
     """Say what this machine has, what it lacks, and the one command that mends it."""
-    findings = examine()
+    findings = examine(System())
     click.echo(render(findings))
     if json_file is not None:
         write_json(json_file, [dataclasses.asdict(finding) for finding in findings])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import stat
 import subprocess
@@ -13,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render, this_system
+from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.platform_versions import PACKAGES
 
@@ -38,7 +37,14 @@ def answers(failing: Mapping[str, Ran]) -> Callable[[Sequence[str], Mapping[str,
     return run
 
 
-GOOD = System(
+def good(**lack: Any) -> System:
+    """Return a machine that has everything, but for what is replaced."""
+    system = System()
+    vars(system).update({**GOOD, **lack})
+    return system
+
+
+GOOD: dict[str, Any] = dict(
     python=(3, 12, 1),
     platform=("Linux", "x86_64"),
     prefix=VENV,
@@ -74,11 +80,11 @@ def raising(error: Exception) -> Callable[[], RosEnvironment]:
 
 def finding(name: str, **lack: Any) -> Finding:
     """Examine the good machine with something replaced, and return the finding of that name."""
-    return next(found for found in examine(dataclasses.replace(GOOD, **lack)) if found.name == name)
+    return next(found for found in examine(good(**lack)) if found.name == name)
 
 
 def test_a_machine_with_everything_is_healthy_and_nothing_has_to_be_mended() -> None:
-    findings = examine(GOOD)
+    findings = examine(good())
     assert {found.status for found in findings} == {Status.OK}, findings
     assert [found.mend for found in findings if found.mend] == []
     assert healthy(findings)
@@ -324,12 +330,12 @@ def test_a_lack_is_named_with_what_mends_it(
 
 
 def test_what_is_weak_does_not_make_a_machine_unfit_and_what_is_missing_does() -> None:
-    assert healthy(examine(dataclasses.replace(GOOD, in_venv=False)))
-    assert not healthy(examine(dataclasses.replace(GOOD, which=without("bwrap"))))
+    assert healthy(examine(good(in_venv=False)))
+    assert not healthy(examine(good(which=without("bwrap"))))
 
 
 def test_a_sourced_jazzy_alone_is_fine_and_has_no_wheels_to_mend() -> None:
-    alone = dataclasses.replace(GOOD, find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
+    alone = good(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(alone)
     assert {found.status for found in findings} == {Status.OK}
     assert "CMake files" not in [found.name for found in findings]
@@ -342,7 +348,7 @@ def test_rclpy_is_started_with_the_log_folder_that_the_user_chose() -> None:
         seen.append(variables)
         return Ran(0, "fine")
 
-    examine(dataclasses.replace(GOOD, run=run, environ={"ROS_LOG_DIR": "/mine"}))
+    examine(good(run=run, environ={"ROS_LOG_DIR": "/mine"}))
     started = next(variables for variables in seen if variables)
     assert (started["ROS_LOG_DIR"], started["AMENT_PREFIX_PATH"]) == ("/mine", str(VENV))
 
@@ -364,13 +370,13 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
 
 
 def test_this_machine_can_run_the_course() -> None:
-    findings = {found.name: found for found in examine()}
+    findings = {found.name: found for found in examine(System())}
     for name in ("Python", "environment", "ROS 2", "rclpy", "compiler", "build tools", "notebooks", "disk"):
         assert findings[name].status is Status.OK, findings[name]
 
 
 def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    system = this_system()
+    system = System()
     assert system.run(["no-such-command-anywhere"], {}).status == 127
     told = system.run([sys.executable, "-c", "import os; print(os.environ['X']); raise SystemExit('why')"], {"X": "y"})
     assert (told.status, told.output, told.last_line) == (1, "y\nwhy\n", "why")
@@ -380,12 +386,12 @@ def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeyp
     assert system.writable(tmp_path / "made" / "later")
     assert not system.writable(Path("/proc/nothing"))
     monkeypatch.setenv("TMPDIR", "/proc")
-    assert this_system().tmp == Path("/proc")
+    assert System().tmp == Path("/proc")
 
 
 def test_a_command_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("autograder.doctor.system.PATIENCE_SECONDS", 0.2)
-    ran = this_system().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
+    ran = System().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
     assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
 
 
@@ -396,14 +402,14 @@ def test_a_bubblewrap_that_is_denied_namespaces_is_found_out_for_real(
     denied.write_text(f"#!/bin/sh\necho '{DENIED}' >&2\nexit 1\n")
     denied.chmod(denied.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-    seen = next(found for found in examine() if found.name == "isolation")
+    seen = next(found for found in examine(System()) if found.name == "isolation")
     assert (seen.status, DENIED in seen.found, bool(seen.mend)) == (Status.WEAK, True, True)
 
 
 def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> None:
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").write_text("raise ImportError('half an installation')\n")
-    code = "from autograder.doctor import *; f = examine(); print(render(f)); raise SystemExit(not healthy(f))"
+    code = "from autograder.doctor import *; f = examine(System()); print(render(f)); raise SystemExit(not healthy(f))"
     environ = {
         **os.environ,
         "PYTHONPATH": str(tmp_path),
