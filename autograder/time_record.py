@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
-from autograder.lockstep.failures import unsteppable_reason
-from autograder.lockstep.protocol import REASONS
+from autograder.lockstep.failures import UNSTEPPABLE
 
 LOCKSTEP, REAL = "lockstep", "real"
 
@@ -34,7 +33,7 @@ class TimeRecord:
 
         Args:
             executables: all of them.
-            reasons: by executable, for those that cause it, one of `REASONS` or `REAL`.
+            reasons: by executable, for those that cause it, one of `UNSTEPPABLE` or `REAL`.
         """
         for executable in executables:
             self.real_time[executable] = reasons.get(executable) or self.real_time.get(executable, "")
@@ -47,7 +46,7 @@ class TimeRecord:
     def explain(self) -> str:
         """Return which programs were not stepped, and why, in sentences; an empty string if all were stepped."""
         said = [
-            f"{name} was met in real time: {unsteppable_reason(why) if why in REASONS else 'that was asked for'}."
+            f"{name} was met in real time: {UNSTEPPABLE.get(why, 'that was asked for')}."
             for name, why in sorted(self.real_time.items())
             if why
         ]

@@ -15,8 +15,8 @@ from autograder.checks import suites
 from autograder.cluster.exceptions import AnswerError
 from autograder.cluster.parcel import Answer
 from autograder.exceptions import UsageError
+from autograder.grading.batch import Request
 from autograder.grading.pipeline import NOTEBOOK, RESULT
-from autograder.grading.request import Request
 from autograder.grading.unchecked import LOG, not_graded
 from autograder.result import Result, Status, from_json, write_atomically, write_json
 

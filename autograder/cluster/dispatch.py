@@ -25,8 +25,7 @@ from autograder.cluster.fitting import TICK, FittingWorkers
 from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Parcel
 from autograder.exceptions import StudentError
-from autograder.grading.batch import OnResult
-from autograder.grading.request import Request
+from autograder.grading.batch import OnResult, Request
 from autograder.grading.unchecked import refused
 from autograder.intake import detect_layout, read_files
 from autograder.result import Result

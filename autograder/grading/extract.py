@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import nbformat
+from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
@@ -17,15 +20,15 @@ from autograder import layout
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.grading import submitted_notebook
-from autograder.grading.kernel import SandboxedKernel
 from autograder.grading.submitted_notebook import STUB
 from autograder.lockstep.failures import tail
 from autograder.sandbox import Mount, Process, Sandbox
+from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import KERNEL
 from autograder.workspace import Workspace
 from sim.grading import GRADING_VARIABLE
 
-CELL_SECONDS = 60
+CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
 MAX_OUTPUT = 4 * 1024 * 1024  # characters
 WRITEFILE = "%%writefile "
 
@@ -50,9 +53,7 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
     out.write_bytes(executed.encode("utf-8", errors="replace"))
 
 
-def execute(
-    notebook: NotebookNode, folder: Path, workspace: Workspace, *, cell_seconds: int = CELL_SECONDS
-) -> NotebookNode:
+def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:
     """Run a notebook in a sandboxed kernel, and write the outputs into its cells.
 
     A cell that raises does not end the run. A kernel that dies ends it, and the files written before it count.
@@ -61,7 +62,6 @@ def execute(
         notebook: the restored notebook.
         folder: folder of the assignment, with `ws/`, in which the kernel runs. The notebook may write there.
         workspace: workspace whose ROS 2 and scratch folder are used.
-        cell_seconds: wall time that one cell may take. A cell that takes longer ends the run.
 
     Returns:
         The same notebook.
@@ -72,9 +72,9 @@ def execute(
     """
     connections = workspace.scratch / "jupyter"
     connections.mkdir(exist_ok=True)
-    kernel = SandboxedKernel(_sandbox(folder, workspace), connections)
+    kernel = _SandboxedKernel(_sandbox(folder, workspace), connections)
     skipped = {index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)}
-    client = _Client(notebook, km=kernel, timeout=cell_seconds, allow_errors=True, skipped=skipped)
+    client = _Client(notebook, km=kernel, timeout=CELL_SECONDS, allow_errors=True, skipped=skipped)
     with kernel.process as process:
         try:
             client.execute()
@@ -83,6 +83,32 @@ def execute(
         except RuntimeError as error:  # nbclient raises it if the kernel does not start
             raise _no_kernel(process, error) from error
     return notebook
+
+
+class _SandboxedKernel(AsyncKernelManager):
+    """A kernel of the grader's own Python in a sandbox; Jupyter connects to it by Unix sockets, and does not start it.
+
+    Args:
+        sandbox: where it runs.
+        connections: the folder of the sockets, which the sandbox can write to.
+    """
+
+    def __init__(self, sandbox: Sandbox, connections: Path) -> None:
+        super().__init__(transport="ipc", connection_file=str(connections / "k.json"), ip=str(connections / "k"))
+        self.write_connection_file()
+        self.process = launch([sys.executable, "-m", "ipykernel_launcher", "-f", self.connection_file], sandbox)
+
+    @property
+    def has_kernel(self) -> bool:
+        return True
+
+    async def _async_is_alive(self) -> bool:  # which clients ask
+        return self.process.ending is None
+
+    is_alive = _async_is_alive
+
+    async def shutdown_kernel(self, now: bool = False, restart: bool = False) -> None:  # type: ignore[override]
+        self.process.kill()
 
 
 class _Client(NotebookClient):
@@ -128,10 +154,9 @@ def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
 
 
 def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
-    package = Path(autograder.__file__).parent
-    system = tuple(Mount(prefix) for prefix in workspace.ros.prefixes if workspace.ros.kind == "sourced")
+    plain = workspace.sandbox(KERNEL)
     environment = {
-        **workspace.environment(),
+        **plain.environment,
         GRADING_VARIABLE: "1",
         "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create asks for the user's name
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
@@ -140,16 +165,6 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
     }
     environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
-    return Sandbox(
-        workdir=folder,
-        mounts=(
-            *system,
-            Mount(package),
-            Mount(Path(sim.__file__).parent),
-            Mount(layout.WORLDS),
-            Mount(folder, writable=True),
-            Mount(workspace.scratch, writable=True),
-        ),
-        environment=environment,
-        limits=KERNEL,
-    )
+    readable = (Path(autograder.__file__).parent, Path(sim.__file__).parent, layout.WORLDS)
+    mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
+    return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from autograder.checks import suites
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
-from autograder.grading.machine_lock import MachineLock
 from autograder.grading.unchecked import LOG, not_graded
 from autograder.result import Result, from_json, write_json
 from autograder.sandbox import Tier, require
@@ -28,9 +29,41 @@ TRIES = 2
 FAILED = f"The grader failed on this submission, {TRIES} times."
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
-_machine = MachineLock()
-
 RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
+
+
+class MachineLock:
+    """A readers-writer lock: many gradings share the machine, or one has it to itself.
+
+    Who wants it exclusively waits until all others are done; whoever comes meanwhile waits as well.
+    """
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()  # of those who come; one who waits for the machine alone holds it
+        self._changed = threading.Condition()
+        self._sharing = 0
+
+    @contextmanager
+    def shared(self) -> Iterator[None]:
+        """Use the machine while others may use it."""
+        with self._turn, self._changed:
+            self._sharing += 1
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._sharing -= 1
+                self._changed.notify()
+
+    @contextmanager
+    def exclusive(self) -> Iterator[None]:
+        """Use the machine while no other does."""
+        with self._turn, self._changed:
+            self._changed.wait_for(lambda: self._sharing == 0)
+            yield
+
+
+_machine = MachineLock()
 
 
 def in_own_cell(job_in: Callable[[Path], Job], tier: Tier) -> CellReport:

@@ -7,10 +7,9 @@ a harness for several checks.
 """
 
 from autograder.harness.auto import AutoHarness
-from autograder.harness.base import Harness
+from autograder.harness.base import Harness, Program
 from autograder.harness.drive import Drive, drive
 from autograder.harness.goals import Goal, Stamped
-from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.shared import Shared
 from autograder.harness.stepped import SteppedHarness

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rclpy.node import Node
 
 from autograder.exceptions import StudentError
-from autograder.harness.base import Harness
+from autograder.harness.base import Harness, Program
 from autograder.harness.goals import Goal, Stamped
-from autograder.harness.programs import Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
 from autograder.sandbox import Process

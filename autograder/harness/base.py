@@ -8,16 +8,15 @@ import time
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from operator import attrgetter
-from types import TracebackType
 from typing import Any, TypeVar
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness.goals import Actions, Goal, Stamped
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
-from autograder.harness.programs import Program
 from autograder.harness.steps import TICK_NS
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
@@ -32,7 +31,16 @@ _SECONDS = attrgetter("seconds")
 AnyHarness = TypeVar("AnyHarness", bound="Harness")
 
 
-class Harness(ABC):
+@dataclass(frozen=True)
+class Program:
+    """An executable of a package, and its arguments."""
+
+    package: str
+    executable: str
+    arguments: tuple[str, ...] = ()
+
+
+class Harness(ExitStack, ABC):
     """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
     Name what the grader publishes and listens to, then enter::
@@ -78,6 +86,7 @@ class Harness(ABC):
         arguments: tuple[str, ...] = (),
         clock_rate: float = 1.0,
     ) -> None:
+        super().__init__()
         self._clock_rate = clock_rate
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
@@ -135,22 +144,18 @@ class Harness(ABC):
     # What they share.
 
     def __enter__(self: AnyHarness) -> AnyHarness:
+        self.callback(self._domain.close)
         self._grader_node = GraderNode(self._domain.number)
+        self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
         try:
             self._start()
             self._match()
         except BaseException:
-            self.__exit__(None, None, None)
+            self.close()
             raise
         return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._grader_node.close()
-        self._domain.close()
 
     @property
     def output(self) -> str:
@@ -259,6 +264,12 @@ class Harness(ABC):
     def _arrival_seconds(self, arrived_ns: int) -> float:
         """Return the ROS time, in seconds since the start, of an arrival at `arrived_ns` since the epoch."""
         return self.seconds
+
+    def _error_of(self, program: Program, error: StudentError) -> StudentError:
+        """Return a program's error, which names the program where several run."""
+        if len(self.processes) == 1:
+            return error
+        return StudentError(replace(error.diagnosis, sentence=f"{program.executable}: {error.diagnosis.sentence}"))
 
     def _await(self, condition: Callable[[], bool]) -> None:
         matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)

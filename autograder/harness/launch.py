@@ -13,7 +13,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from rcl_interfaces.srv import GetParameters
@@ -80,7 +79,7 @@ def sandbox(workspace: Workspace) -> Sandbox:
     return replace(plain, mounts=(*plain.mounts, Mount(package)), environment={**plain.environment, "PYTHONPATH": path})
 
 
-class LaunchHarness:
+class LaunchHarness(contextlib.ExitStack):
     """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS; a context manager.
 
         with LaunchHarness(workspace, "my_robot_bringup", "robot.launch.py", {"speed": "0.3"},
@@ -99,6 +98,9 @@ class LaunchHarness:
         arguments: launch arguments by name.
         listens: topics that the grader subscribes to from the start, with their types.
         environment: variables that are set for the launch.
+
+    Attributes:
+        another: makes a new harness for the same launch, not yet entered.
     """
 
     def __init__(
@@ -111,7 +113,8 @@ class LaunchHarness:
         listens: Mapping[str, type] | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
-        self._make_again = partial(
+        super().__init__()
+        self.another = partial(
             LaunchHarness, workspace, package, file, arguments, listens=listens, environment=environment
         )
         self._domain = Domain(workspace.domain + next(_NUMBERS))
@@ -125,26 +128,23 @@ class LaunchHarness:
         self._status_text = b""
 
     def __enter__(self) -> LaunchHarness:
+        self.callback(self._domain.close)
         self._grader_node = GraderNode(self._domain.number)
+        self.callback(self._grader_node.close)
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._listens.items():
             self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
         self._pipe, theirs = os.pipe()
+        self.callback(os.close, self._pipe)
         os.set_blocking(self._pipe, False)
         try:
-            self.process: Process = start(self._words, self._sandbox, theirs)
+            self.process = self.enter_context(start(self._words, self._sandbox, theirs))
         except BaseException:
-            self._leave()
+            self.close()
             raise
         finally:
             os.close(theirs)
         return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.process.__exit__(kind, error, trace)
-        self._leave()
 
     @property
     def output(self) -> str:
@@ -233,10 +233,8 @@ class LaunchHarness:
         """Send a signal to every program called `name`; return to how many."""
         chosen = [program for program in self.programs() if program.name == name]
         for program in chosen:
-            try:
+            with contextlib.suppress(ProcessLookupError):
                 os.kill(program.pid, number)
-            except ProcessLookupError:
-                continue
         return len(chosen)
 
     def interrupt(self, seconds: float) -> Stop:
@@ -246,20 +244,11 @@ class LaunchHarness:
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
 
-    def another(self) -> LaunchHarness:
-        """Return a new harness for the same launch, not yet entered."""
-        return self._make_again()
-
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""
         holder = self.process.innermost()
         pids = [pid for pid in measure(holder).pids if pid != holder and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
-
-    def _leave(self) -> None:
-        os.close(self._pipe)
-        self._grader_node.close()
-        self._domain.close()
 
 
 def _keep_in(received: list[Any]) -> OnMessage:

@@ -8,14 +8,12 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from types import TracebackType
 from typing import Any
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import cpu_starvation
-from autograder.harness.base import Harness
-from autograder.harness.programs import Program, error_of
+from autograder.harness.base import Harness, Program
 from autograder.lockstep.failures import diagnose_ending, diagnose_no_answer, diagnose_output
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
@@ -34,17 +32,11 @@ class RealTimeHarness(Harness):
         self._began = time.monotonic()
         for program, path in zip(self.programs, self._paths, strict=True):
             command = [sys.executable, str(path), *program.arguments]
-            self._running = [*self._running, (program, launch(command, self._sandbox))]
+            process = self.enter_context(launch(command, self._sandbox))
+            self._running = [*self._running, (program, process)]
         up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
         if not up and len(self.nodes()) < len(self.running - self.optional):
             raise StudentError(diagnose_no_answer(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        for process in self.processes:
-            process.__exit__(kind, error, trace)
-        super().__exit__(kind, error, trace)
 
     @property
     def processes(self) -> tuple[Process, ...]:
@@ -100,9 +92,8 @@ class RealTimeHarness(Harness):
             if process.ending is None:
                 continue
             if program.executable not in self.optional:
-                error = StudentError(diagnose_output(process) or diagnose_ending(process))
-                raise error_of(program, error, len(self._running))
-            process.__exit__(None, None, None)
+                raise self._error_of(program, StudentError(diagnose_output(process) or diagnose_ending(process)))
+            process.kill()
             self._running = [other for other in self._running if other[1] is not process]
         return True
 

@@ -6,14 +6,12 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from types import TracebackType
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
-from autograder.harness.base import Harness
+from autograder.harness.base import Harness, Program
 from autograder.harness.matching import connected
-from autograder.harness.programs import Program, error_of
 from autograder.harness.steps import next_instant, tick_of
 from autograder.lockstep import Description, Stepper, UnsteppableError
 from autograder.lockstep.lockstep_host import channels
@@ -71,18 +69,11 @@ class SteppedHarness(Harness):
         self.notes: dict[str, str] = {}
         self._delivery_seconds_left = DELIVERY_SECONDS
         for program, path in zip(self.programs, self._paths, strict=True):
-            stepper = Stepper(self._sandbox, path, program.arguments, self._clock_rate)
+            stepper = self.enter_context(Stepper(self._sandbox, path, program.arguments, self._clock_rate))
             self._stepped = [*self._stepped, SteppedProgram(program, stepper)]
         for stepped in self._stepped:
             with suppress(_OptionalProgramLost), self._attributing(stepped):
                 stepped.stepper.wait_ready()
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        for stepped in self._stepped:
-            stepped.stepper.__exit__(kind, error, trace)
-        super().__exit__(kind, error, trace)
 
     @property
     def processes(self) -> tuple[Process, ...]:
@@ -275,9 +266,9 @@ class SteppedHarness(Harness):
         except StudentError as error:
             if stepped.program.executable in self.optional:
                 self._stepped = [other for other in self._stepped if other is not stepped]
-                stepped.stepper.__exit__(None, None, None)
+                stepped.stepper.process.kill()
                 raise _OptionalProgramLost from None
-            raise error_of(stepped.program, error, len(self._stepped)) from None
+            raise self._error_of(stepped.program, error) from None
 
 
 def _sum(counts: Iterable[dict[str, int]]) -> Counter[str]:

@@ -6,8 +6,7 @@ every message that was sent to it and has run every timer that is due. So a run 
 every time.
 """
 
-from autograder.lockstep.exceptions import UnsteppableError
 from autograder.lockstep.protocol import Crash, Description, Reply
-from autograder.lockstep.stepper import Stepper
+from autograder.lockstep.stepper import Stepper, UnsteppableError
 
 __all__ = ["Crash", "Description", "Reply", "Stepper", "UnsteppableError"]

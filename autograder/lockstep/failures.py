@@ -112,22 +112,17 @@ def diagnose_too_much(output: str) -> Diagnosis:
     return Diagnosis(Kind.STUCK, sentence, tail(output))
 
 
-_UNSTEPPABLE = {  # by each of the protocol's `REASONS`
+UNSTEPPABLE = {  # why a program cannot be stepped, as a clause, by each of the protocol's `REASONS`
     "thread": "it uses rclpy in threads of its own",
     "clock": "it has a timer on a clock that is not the ROS clock",
     "sleep": "it sleeps in a loop instead of spinning",
 }
 
 
-def unsteppable_reason(reason: str) -> str:
-    """Return as a clause why a program cannot be stepped; `reason` is one of the protocol's `REASONS`."""
-    return _UNSTEPPABLE[reason]
-
-
 def diagnose_unsteppable(reason: str, output: str) -> Diagnosis:
     """Return the diagnosis of a program whose time cannot be stepped."""
     sentence = (
-        f"Your node's time cannot be stepped: {unsteppable_reason(reason)}. Let a timer of the node do the work, and "
+        f"Your node's time cannot be stepped: {UNSTEPPABLE[reason]}. Let a timer of the node do the work, and "
         "rclpy.spin(node) run it."
     )
     return Diagnosis(Kind.NEVER_STARTED, sentence, tail(output))

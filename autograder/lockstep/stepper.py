@@ -10,19 +10,18 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import protocol
-from autograder.lockstep.exceptions import UnsteppableError
 from autograder.lockstep.failures import (
     diagnose_crash,
     diagnose_deadlock,
     diagnose_ending,
     diagnose_no_answer,
     diagnose_too_much,
+    diagnose_unsteppable,
 )
 from autograder.lockstep.protocol import START_NS, Description, ProtocolError, Reply
 from autograder.sandbox import Process
@@ -47,10 +46,17 @@ class Timeout:
     cpu_seconds: float
 
 
-START_TIMEOUT = Timeout(
-    60.0, 15.0
-)  # from the start to the first wait for work, which takes half a second of processor time
+# From the start to the first wait for work, which takes half a second of processor time.
+START_TIMEOUT = Timeout(60.0, 15.0)
 STEP_TIMEOUT = Timeout(30.0, 10.0)
+
+
+class UnsteppableError(StudentError):
+    """A program's time cannot be stepped; it has to run in real time. `reason` is one of the protocol's `REASONS`."""
+
+    def __init__(self, reason: str, output: str) -> None:
+        super().__init__(diagnose_unsteppable(reason, output))
+        self.reason = reason
 
 
 class Stepper:
@@ -71,16 +77,8 @@ class Stepper:
     ) -> None:
         their_read, our_write = os.pipe()
         our_read, their_write = os.pipe()
-        command = [
-            sys.executable,
-            str(HOST),
-            str(their_read),
-            str(their_write),
-            str(START_NS),
-            str(clock_rate),
-            str(executable),
-            *arguments,
-        ]
+        words = (HOST, their_read, their_write, START_NS, clock_rate, executable)
+        command = [sys.executable, *map(str, words), *arguments]
         try:
             self.process: Process = launch(command, spec, pass_fds=(their_read, their_write), profile="lockstep")
         finally:
@@ -127,10 +125,8 @@ class Stepper:
     def __enter__(self) -> Stepper:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.process.__exit__(kind, error, trace)
+    def __exit__(self, *_: object) -> None:
+        self.process.__exit__()
         self._selector.close()
         os.close(self._read_fd)
         os.close(self._write_fd)

@@ -6,8 +6,7 @@ When pytest has ended, its report of JUnit XML goes to REPORT_FD and its exit st
 waits for the end of GO_FD. All of it is in the power of the tests that run here: the trusted side takes what it hears
 for their claim.
 
-Where this process was forked with the launch packages, what the tests launch is forked, too. The generator of messages
-is not imported, which a message's module does if it can.
+Where this process was forked with the launch packages, what the tests launch is forked, too.
 """
 
 from __future__ import annotations
@@ -18,8 +17,6 @@ import sys
 from pathlib import Path
 
 import pytest
-
-sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
 
 
 class Reversed:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import socket
 import struct
-from types import TracebackType
 
 from autograder.exceptions import GraderError
 
@@ -55,9 +54,7 @@ class RtpsSniffer:
     def __enter__(self) -> RtpsSniffer:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for each in self._sockets:
             each.close()
 

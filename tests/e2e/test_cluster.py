@@ -23,7 +23,7 @@ from autograder.cluster.exceptions import ClusterError
 from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading.request import Request
+from autograder.grading.batch import Request
 from autograder.grading.unchecked import refused
 from autograder.intake import detect_layout
 from autograder.proof.mutants import mutants, write_mutant, write_reference

@@ -13,8 +13,6 @@ TEXT = 8000  # characters of an exception's texts that are reported
 
 def main() -> None:
     """Run the program."""
-    # A message's module imports the generator of messages, if it can: that is an eighth of the start, and never used.
-    sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
     here = Path(__file__).resolve().parent
     sys.path.insert(0, str(here.parent))
     host_module, pipes_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "pipes"))

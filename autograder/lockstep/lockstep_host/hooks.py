@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from rclpy.action import ActionClient, ActionServer
@@ -61,19 +62,19 @@ class Hooks:
         _after(ActionClient, "__init__", self._made_action_client)
         _after(Timer, "__init__", self._made_timer)
         for method in ("publish", "publish_raw"):
-            _after(c.Publisher, method, self._wrote(""))
-        _after(c.Client, "send_request", self._asked(""))
-        _after(c.Client, "take_response", self._took(""))
-        _after(c.Service, "service_take_request", self._took(""))
-        _after(c.Service, "service_send_response", self._answered("", 1))
+            _after(c.Publisher, method, partial(self._wrote, ""))
+        _after(c.Client, "send_request", partial(self._asked, ""))
+        _after(c.Client, "take_response", partial(self._took, ""))
+        _after(c.Service, "service_take_request", partial(self._took, ""))
+        _after(c.Service, "service_send_response", partial(self._answered, "", 1))
         for part in _PARTS:
-            _after(c.ActionClient, f"send_{part}_request", self._asked(part))
-            _after(c.ActionClient, f"take_{part}_response", self._took(part))
-            _after(c.ActionServer, f"take_{part}_request", self._took(part))
-            _after(c.ActionServer, f"send_{part}_response", self._answered(part, 0))
+            _after(c.ActionClient, f"send_{part}_request", partial(self._asked, part))
+            _after(c.ActionClient, f"take_{part}_response", partial(self._took, part))
+            _after(c.ActionServer, f"take_{part}_request", partial(self._took, part))
+            _after(c.ActionServer, f"send_{part}_response", partial(self._answered, part, 0))
         for part in ("feedback", "status"):
-            _after(c.ActionServer, f"publish_{part}", self._wrote(part))
-        _after(c.ActionClient, "take_feedback", self._took("feedback"))
+            _after(c.ActionServer, f"publish_{part}", partial(self._wrote, part))
+        _after(c.ActionClient, "take_feedback", partial(self._took, "feedback"))
         c.Subscription.take_message = lambda handle, kind, raw: self._take_message(handle, kind, raw)
         ActionClient.is_ready = _is_ready_but_for_status
 
@@ -148,26 +149,17 @@ class Hooks:
 
     # What was sent.
 
-    def _wrote(self, part: str) -> Callable[..., None]:
-        def wrote(handle: Any, *_: Any, result: Any) -> None:
-            there = self._written.get((handle.pointer, part))
-            if there is not None:
-                self._sent(*there)
+    def _wrote(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+        there = self._written.get((handle.pointer, part))
+        if there is not None:
+            self._sent(*there)
 
-        return wrote
+    def _asked(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+        self._sent(channels.request(*self._served[(handle.pointer, part)]))
 
-    def _asked(self, part: str) -> Callable[..., None]:
-        def asked(handle: Any, *_: Any, result: Any) -> None:
-            self._sent(channels.request(*self._served[(handle.pointer, part)]))
-
-        return asked
-
-    def _answered(self, part: str, index: int) -> Callable[..., None]:
-        def answered(handle: Any, *arguments: Any, result: Any) -> None:
-            name, kind = self._served[(handle.pointer, part)]
-            self._sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
-
-        return answered
+    def _answered(self, part: str, index: int, handle: Any, *arguments: Any, result: Any) -> None:
+        name, kind = self._served[(handle.pointer, part)]
+        self._sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
 
     def _sent(self, channel: str, depth: int = 0) -> None:
         thread = threading.current_thread()
@@ -177,12 +169,9 @@ class Hooks:
 
     # What was taken.
 
-    def _took(self, part: str) -> Callable[..., None]:
-        def took(handle: Any, *_: Any, result: Any) -> None:
-            if result is not None and not (isinstance(result, tuple) and None in map(_nothing, result)):
-                self.counts.took(handle, part)
-
-        return took
+    def _took(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+        if result is not None and not (isinstance(result, tuple) and any(value is None for value in result)):
+            self.counts.took(handle, part)
 
     def _take_message(self, handle: Any, kind: Any, raw: bool) -> Any:
         taken = _take_message(handle, kind, raw)
@@ -193,10 +182,6 @@ class Hooks:
             return None  # it was on its way when the reader was matched, so whether it comes is up to chance
         self.counts.took(handle, "")
         return taken
-
-
-def _nothing(value: Any) -> Any:
-    return None if value is None else True
 
 
 def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
@@ -213,20 +198,12 @@ def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
 
 
 def _after(kind: Any, method: str, then: Callable[..., None]) -> None:
-    """Call `then` after each call of a method, with the call's arguments and, but for constructors, its result."""
+    """Call `then` after each call of a method, with the call's arguments and its result."""
     original = getattr(kind, method)
-    if method == "__init__":
 
-        def init(self: Any, *arguments: Any, **options: Any) -> None:
-            original(self, *arguments, **options)
-            then(self, *arguments, **options)
-
-        kind.__init__ = init
-        return
-
-    def call(self: Any, *arguments: Any) -> Any:
-        result = original(self, *arguments)
-        then(self, *arguments, result=result)
+    def call(self: Any, *arguments: Any, **options: Any) -> Any:
+        result = original(self, *arguments, **options)
+        then(self, *arguments, **options, result=result)
         return result
 
     setattr(kind, method, call)

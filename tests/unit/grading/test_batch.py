@@ -13,7 +13,7 @@ import pytest
 from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import UsageError
-from autograder.grading import request
+from autograder.grading import batch
 from autograder.grading.batch import Entry, discover, grade_all
 from autograder.result import Result, Status, write_json
 
@@ -116,7 +116,7 @@ def grade(
 
     def run(*, together: int = 1, **options: Any) -> list[str]:
         grader = Grader(make_result, together)
-        monkeypatch.setattr(request, "grade_submission", grader)
+        monkeypatch.setattr(batch, "grade_submission", grader)
         results = grade_all(entries, CHAPTER, **{"seed": 7, "out": tmp_path / "out", "jobs": 2, **options})
         assert [result.student for result in results] == ["alice", "bob"]
         return sorted(grader.graded)

@@ -20,7 +20,7 @@ from nbgrader.apps import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from traitlets.config import PyFileConfigLoader
 
-import autograder.grading.request
+import autograder.grading.batch
 from autograder.checks import Check, Outcome
 from autograder.grading.pipeline import NOTEBOOK
 from autograder.result import CheckResult, Result
@@ -138,7 +138,7 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
             nbformat.write(graded.notebook, out / NOTEBOOK)
         return graded.result
 
-    monkeypatch.setattr(autograder.grading.request, "grade_submission", grade)
+    monkeypatch.setattr(autograder.grading.batch, "grade_submission", grade)
     return made
 
 
