@@ -28,7 +28,6 @@ class Workspace:
         root: the workspace's folder, with `src` and `install`.
         ros: the ROS 2 that it was built with.
         scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
-        underlays: install folders of workspaces below this one, such as given message packages.
         domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
         memory: where the proof keeps what it has found; None where anybody gets marks.
         time_record: what harnesses find out about time; copies of a workspace share it.
@@ -37,7 +36,6 @@ class Workspace:
     root: Path
     ros: RosEnvironment
     scratch: Path
-    underlays: tuple[Path, ...] = ()
     domain: int = 0
     memory: Path | None = None
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
@@ -48,11 +46,8 @@ class Workspace:
         return self.root / "install"
 
     def prefixes(self) -> tuple[Path, ...]:
-        """Return the prefix of each installed package, this workspace's before the underlays'."""
-        spaces = (self.install, *self.underlays)
-        return tuple(
-            prefix for space in spaces if space.is_dir() for prefix in sorted(space.iterdir()) if prefix.is_dir()
-        )
+        """Return the prefix of each installed package."""
+        return tuple(filter(Path.is_dir, sorted(self.install.iterdir()))) if self.install.is_dir() else ()
 
     def executable(self, package: str, name: str) -> Path:
         """Return the path of an installed executable.
@@ -96,11 +91,11 @@ class Workspace:
 
     def sandbox(self, limits: Limits = NODE) -> Sandbox:
         """Describe the sandbox of a node of this workspace: it reads the install space and reaches peers over DDS."""
-        spaces = tuple(Mount(space) for space in (self.install, *self.underlays) if space.is_dir())
+        installed = (Mount(self.install),) if self.install.is_dir() else ()
         system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
         return Sandbox(
             workdir=self.scratch,
-            mounts=(*system, *spaces, Mount(self.scratch, writable=True), Mount(HOST)),
+            mounts=(*system, *installed, Mount(self.scratch, writable=True), Mount(HOST)),
             environment=self.environment(),
             network=True,
             limits=limits,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from autograder.building import cmake_overlay
@@ -12,7 +13,7 @@ from autograder.building.build_log import first_error, readable
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.failures import tail
-from autograder.sandbox import Ending, Mount, Sandbox
+from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
@@ -37,25 +38,16 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
     """
-    environment = workspace.environment()
+    plain = workspace.sandbox(BUILD)
     faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
-    environment |= {
-        "CMAKE_PREFIX_PATH": os.pathsep.join([str(faster), environment["CMAKE_PREFIX_PATH"]]),
+    environment = {
+        **plain.environment,
+        "CMAKE_PREFIX_PATH": os.pathsep.join([str(faster), plain.environment["CMAKE_PREFIX_PATH"]]),
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
-    system = tuple(Mount(prefix) for prefix in workspace.ros.prefixes if workspace.ros.kind == "sourced")
-    spec = Sandbox(
-        workdir=workspace.root,
-        mounts=(
-            *system,
-            *map(Mount, (HOST, *workspace.underlays)),
-            Mount(workspace.root, writable=True),
-            Mount(workspace.scratch, writable=True),
-        ),
-        environment=environment,
-        limits=BUILD,
-    )
+    mounts = (*plain.mounts, Mount(HOST), Mount(workspace.root, writable=True))
+    spec = replace(plain, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
     with launch(colcon_command(workspace, "build", *choice), spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         output, ending, status = process.output, process.ending, process.returncode

@@ -80,7 +80,6 @@ def _relocate(prefix: Path, old: str, new: str) -> None:
 
 def _key(bundle: dict[str, Path], workspace: Workspace) -> str:
     digest = hashlib.sha256(json.dumps([VERSION, identity(workspace.ros)], sort_keys=True).encode())
-    digest.update(json.dumps([str(space) for space in workspace.underlays]).encode())
     for name, folder in sorted(bundle.items()):
         for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             where = f"{name}/{path.relative_to(folder)}"

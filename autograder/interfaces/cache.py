@@ -53,8 +53,6 @@ class Cache:
             key: 16 to 64 hexadecimal digits.
             make: fills the new folder that it is given. If it raises, there is no entry.
         """
-        if not _KEY.fullmatch(key):
-            raise ValueError(f"a key is 16 to 64 hexadecimal digits, not {key!r}")
         self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
         entry = self.root / key
         with self._alone(key):  # whoever else wants it waits here, and then finds it made

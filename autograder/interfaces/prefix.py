@@ -9,11 +9,11 @@ import subprocess
 import sys
 import sysconfig
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 from autograder.interfaces.cache import Cache
-from autograder.interfaces.definitions import Definition, packages_used, read, require_uses
+from autograder.interfaces.definitions import packages_used, read, require_uses
 from autograder.interfaces.exceptions import GenerationError
 from autograder.ros import RosEnvironment, activate
 from autograder.ros.environment import without_wheel_bootstrap
@@ -46,12 +46,17 @@ def build(
     definitions = read(package, files)
     prefixes = (*underlays, *ros.prefixes)
     require_uses(definitions, lambda name, message: _exists(prefixes, name, message))
-    own = tuple(prefix for prefix in underlays if _offers(prefix, {use[0] for d in definitions for use in d.uses}))
-
-    def make(prefix: Path) -> None:
-        _make(package, definitions, own, ros, prefix)
-
-    return (cache or Cache.default("interfaces")).get(_key(package, definitions, own, ros), make)
+    own = [prefix for prefix in underlays if _offers(prefix, {use[0] for d in definitions for use in d.uses})]
+    recipe = {
+        "package": package,
+        "texts": {definition.path: definition.text for definition in definitions},
+        "uses": sorted(set(packages_used(definitions)) - {package}),
+        "underlays": [str(path) for path in own],
+        "prefixes": [str(path) for path in (*own, *ros.prefixes)],
+    }
+    told = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
+    key = hashlib.sha256(told.encode()).hexdigest()[:40]
+    return (cache or Cache.default("interfaces")).get(key, partial(_make, package, json.dumps(recipe)))
 
 
 def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
@@ -62,17 +67,6 @@ def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bo
 def _offers(prefix: Path, packages: set[str]) -> bool:
     share = prefix / "share"
     return any((share / package / "package.xml").is_file() for package in packages)
-
-
-def _key(package: str, definitions: tuple[Definition, ...], own: tuple[Path, ...], ros: RosEnvironment) -> str:
-    parts = {
-        "package": package,
-        "texts": {definition.path: definition.text for definition in definitions},
-        "underlays": [str(prefix) for prefix in own],
-        "environment": identity(ros),
-        "builder": _own_version(),
-    }
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:40]
 
 
 def identity(ros: RosEnvironment) -> dict[str, object]:
@@ -99,17 +93,8 @@ def _own_version() -> str:
     return hashlib.sha256(b"".join((HERE / f"{name}.py").read_bytes() for name in OWN)).hexdigest()
 
 
-def _make(
-    package: str, definitions: tuple[Definition, ...], own: tuple[Path, ...], ros: RosEnvironment, prefix: Path
-) -> None:
-    recipe = {
-        "package": package,
-        "texts": {definition.path: definition.text for definition in definitions},
-        "uses": sorted(set(packages_used(definitions)) - {package}),
-        "underlays": [str(path) for path in own],
-        "prefixes": [str(path) for path in (*own, *ros.prefixes)],
-    }
-    (prefix / RECIPE).write_text(json.dumps(recipe, indent=1))
+def _make(package: str, recipe: str, prefix: Path) -> None:
+    (prefix / RECIPE).write_text(recipe)
     try:
         done = subprocess.run(
             [sys.executable, "-m", "autograder.interfaces.generate", str(prefix)],

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces.cache import Cache
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
 from autograder.interfaces.exceptions import DefinitionError, GenerationError
 from autograder.interfaces.loading import load
@@ -20,13 +19,8 @@ if TYPE_CHECKING:  # the generators' process imports this package, too, and no R
     from autograder.workspace import Workspace
 
 
-def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None) -> ModuleType:
+def load_from(workspace: Workspace, package: str) -> ModuleType:
     """Build and load an interface package of a workspace, and those of the workspace that it uses.
-
-    Args:
-        workspace: the student's.
-        package: the package's name.
-        cache: where built packages are kept; this user's own cache by default.
 
     Raises:
         StudentError: the package or its definitions are missing, or wrong; the sentence says where.
@@ -37,12 +31,12 @@ def load_from(workspace: Workspace, package: str, *, cache: Cache | None = None)
     try:
         if package not in packages and broken:
             raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
-        return load(_build(packages, package, cache, ()))
+        return load(_build(packages, package, ()))
     except StudentError as error:
         raise StudentError(explain(error.diagnosis, source, package)) from None
 
 
-def _build(packages: dict[str, Path], package: str, cache: Cache | None, above: tuple[str, ...]) -> Path:
+def _build(packages: dict[str, Path], package: str, above: tuple[str, ...]) -> Path:
     folder = packages.get(package)
     if folder is None:
         sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
@@ -53,8 +47,8 @@ def _build(packages: dict[str, Path], package: str, cache: Cache | None, above: 
     try:
         texts = _texts(folder)
         used = {name for definition in read(package, texts) for name, _, _ in definition.uses}
-        below = [_build(packages, name, cache, (*above, package)) for name in sorted(used & set(packages))]
-        return build(package, texts, cache=cache, underlays=tuple(below))
+        below = [_build(packages, name, (*above, package)) for name in sorted(used & set(packages))]
+        return build(package, texts, underlays=tuple(below))
     except DefinitionError as error:
         sentence = f"src/{folder.name}: {error}."
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None

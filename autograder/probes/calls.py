@@ -14,7 +14,8 @@ import json
 import math
 import os
 import sys
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +51,7 @@ class Step:
 
     name: str
     args: tuple[Any, ...] = ()
-    kwargs: tuple[tuple[str, Any], ...] = ()
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
     on: int | None = None
     module: str | None = None
     called: bool = True
@@ -64,8 +65,7 @@ class Outcome:
     Attributes:
         value: what was returned, as JSON; None when there is none.
         type: the name of the returned value's type when JSON cannot hold it; empty otherwise.
-        raised: the name of the exception; empty without one.
-        message: the exception's text.
+        raised: the name of the exception, `message` its text; empty without one.
         arguments: the arguments after the call, to see whether it changed them.
         printed: what it printed.
     """
@@ -79,16 +79,8 @@ class Outcome:
 
 
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
-    """Return the step that calls a function.
-
-    Args:
-        name: of the function or method.
-        args: positional arguments, JSON or `made(N)`.
-        on: the number of the step whose object has the method; None for a function.
-        module: another module that has the function; None for the student's.
-        kwargs: keyword arguments.
-    """
-    return Step(name, args, tuple(kwargs.items()), on, module)
+    """Return the step that calls a function; the arguments are as in `Step`."""
+    return Step(name, args, kwargs, on, module)
 
 
 def make(name: str, *args: Any, module: str | None = None, **kwargs: Any) -> Step:
@@ -120,7 +112,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     """
     spec = workspace.sandbox(CALLS)
     spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(CALLER)))
-    order = json.dumps({"module": module, "steps": [_plain(step) for step in steps]})
+    order = json.dumps({"module": module, "steps": [asdict(step) for step in steps]})
     with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
         given.write(order.encode())
         given.seek(0)
@@ -164,10 +156,6 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, int | float) and isinstance(other, int | float):
         return (math.isnan(one) and math.isnan(other)) or one == other or math.isclose(one, other, rel_tol=1e-9)
     return type(one) is type(other) and one == other
-
-
-def _plain(step: Step) -> dict[str, Any]:
-    return {**asdict(step), "kwargs": dict(step.kwargs)}
 
 
 def _parse(text: bytes) -> dict[str, Any] | None:

@@ -7,10 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.building.colcon import HOST, colcon_command
-from autograder.probes import junit
 from autograder.probes.installed import Installed
-from autograder.probes.junit import Claims
-from autograder.probes.test_reports import Report
+from autograder.probes.test_reports import Claims, Report, read_claims
 from autograder.probes.test_runs import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
@@ -21,12 +19,9 @@ TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
 def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
-    """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in the built workspace.
+    """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure ARGUMENTS...` in a built workspace.
 
-    Args:
-        workspace: the student's; its build and test folders are written to.
-        package: the package.
-        arguments: more for the command line.
+    Its build and test folders are written to.
 
     Returns:
         What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
@@ -42,10 +37,6 @@ def runs_pytest(workspace: Workspace, installed: Installed) -> bool:
     It does where `extras_require` names it, with every setuptools. Otherwise colcon itself answers, because the answer
     depends on the platform: a setuptools before 72.0, such as the 68.1.2 of Ubuntu 24.04, reads `tests_require`, too.
     The tests are collected and not run.
-
-    Args:
-        workspace: the built workspace; its build and test folders are written to.
-        installed: the package.
     """
     named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
     if "pytest" in named:
@@ -74,7 +65,7 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
-    claims = junit.read(report) if _inside(report, workspace.root) else None
+    claims = read_claims(report) if _inside(report, workspace.root) else None
     return Report(ending, status, claims or Claims(), 0, output)
 
 

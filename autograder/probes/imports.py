@@ -42,12 +42,7 @@ SET_UP = "setup.py"  # what it imports, colcon's own set-up provides
 
 @dataclass(frozen=True)
 class Import:
-    """One module that a package imports from outside.
-
-    Attributes:
-        module: its top-level name, such as `numpy`.
-        files: where it is imported, relative to the package, in order.
-    """
+    """A top-level module, such as `numpy`, that files of a package import from outside."""
 
     module: str
     files: tuple[str, ...]
@@ -101,8 +96,7 @@ def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[
 def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...]]:
     """Return what a package imports and does not declare, by the kind of dependency that would declare it.
 
-    `exec` is for what runs: the modules, the launch files. `test` is for what only test/ imports; there, what the
-    package needs to run counts as declared, too.
+    `exec` is for the modules and launch files. `test` is for what only test/ imports; there, `exec` counts, too.
     """
     runs = undeclared(imported(package, without=("test",)), manifest.needs("exec"))
     tests = undeclared(imported(package, within=("test",)), manifest.needs("exec", "test"))

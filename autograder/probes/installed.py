@@ -52,12 +52,7 @@ class Installed:
 
 
 def look(install: Path, package: str) -> Installed:
-    """Return what was installed of a package; a package that was not installed has nothing.
-
-    Args:
-        install: the workspace's install folder.
-        package: the package's name.
-    """
+    """Return what an install folder holds of a package; a package that was not installed has nothing."""
     prefix = install / package
     # Named for the Python that built it; there is one.
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import difflib
 import io
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -17,6 +17,7 @@ from autograder.exceptions import UsageError
 
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+READ_AS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
 _NEAR = 0.7  # of difflib's ratio: how alike two names must be to be one name, misspelt
 
 
@@ -110,10 +111,10 @@ def parse(package: str, path: str, text: str) -> Interface:
         raise Unreadable(f"{path} is far larger than a definition.")
     try:
         with contextlib.redirect_stderr(io.StringIO()):
-            specs = _specifications(parser, kind)(package, name, text)
+            whole = getattr(parser, f"parse_{READ_AS[kind]}_string")(package, name, text)
     except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
         raise Unreadable(f"{path} cannot be read: {_reason(error)}.") from None
-    return Interface(path, tuple(_part(package, spec) for spec in specs))
+    return Interface(path, tuple(_part(package, getattr(whole, part) if part else whole) for part in PARTS[kind]))
 
 
 def compare(wanted: Interface, found: Interface) -> tuple[Difference, ...]:
@@ -121,10 +122,8 @@ def compare(wanted: Interface, found: Interface) -> tuple[Difference, ...]:
 
     Further constants, and a default that says what a field without one holds anyway, are no differences.
     """
-    differences: list[Difference] = []
-    for index in range(len(wanted.parts)):
-        differences += _Comparison(wanted, found, index).differences()
-    return tuple(differences)
+    parts = range(len(wanted.parts))
+    return tuple(difference for index in parts for difference in _Comparison(wanted, found, index).differences())
 
 
 def share(wanted: Interface, differences: Sequence[Difference]) -> float:
@@ -214,14 +213,6 @@ class _Comparison:
 
     def _say(self, aspect: Aspect, sentence: str) -> Difference:
         return Difference(aspect, f"{self._where}: {sentence}.")
-
-
-def _specifications(parser: Any, kind: str) -> Callable[[str, str, str], tuple[Any, ...]]:
-    """Return what reads the parts of a definition of one kind."""
-    if kind == "msg":
-        return lambda *text: (parser.parse_message_string(*text),)
-    read = parser.parse_service_string if kind == "srv" else parser.parse_action_string
-    return lambda *text: tuple(getattr(read(*text), name) for name in PARTS[kind])
 
 
 def _names(part: Part) -> set[str]:

@@ -41,7 +41,6 @@ class Argument:
     """A launch argument, as `ros2 launch -s` shows it.
 
     Attributes:
-        name: its name.
         description: what is said of it; empty if nothing is.
         default: the text of its default, None if it has to be given or its default is worked out.
         choices: the values that are allowed; empty if any is.
@@ -66,12 +65,7 @@ def parse_arguments(text: str) -> dict[str, Argument]:
 
 
 def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
-    """Ask `ros2 launch -s` which arguments a launch file declares; return them by name.
-
-    Args:
-        workspace: the built workspace.
-        package: the package with the launch file.
-        file: its name.
+    """Ask `ros2 launch -s` which arguments an installed launch file of a package declares; return them by name.
 
     Raises:
         CheckFailed: the file is not installed, or cannot be read.
@@ -85,16 +79,7 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
 
 
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str) -> None:
-    """Fail the check unless an argument is declared with this default and any description.
-
-    Args:
-        arguments: from `shown_arguments`.
-        name: the argument.
-        default: the text of its default.
-
-    Raises:
-        CheckFailed: it is not; the message names what is declared instead.
-    """
+    """Fail the check unless `shown_arguments` has an argument with this default's text and any description."""
     there = ", ".join(arguments) or "none"
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
     found = arguments[name]
@@ -111,11 +96,8 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
     """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
 
     Returns early when nothing more is to be expected: the launch has ended, or each program that runs has been seen as
-    a node, and either these are the wanted ones or nothing has changed for a while.
-
-    Args:
-        harness: of the launch.
-        wanted: full names of the nodes; one that should be there twice comes twice.
+    a node, and either these are the wanted ones or nothing has changed for a while. A node that should be there twice
+    is wanted twice.
     """
     state: tuple[object, ...] = ()
     since = time.monotonic()
@@ -135,11 +117,7 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
 
 
 def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
-    """Fail the check unless exactly the wanted nodes run; waits for them.
-
-    Raises:
-        CheckFailed: others do, or some are missing; the message names near misses and what the launch said.
-    """
+    """Fail the check unless exactly the wanted nodes run; waits for them. The message names near misses."""
     nodes = settle(harness, wanted)
     if nodes == sorted(wanted):
         return
@@ -155,16 +133,7 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
 
 
 def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Value]) -> None:
-    """Fail the check unless a node has these parameters; numbers are compared to nine digits, types exactly.
-
-    Args:
-        harness: of the launch.
-        node: its full name.
-        wanted: values by name.
-
-    Raises:
-        CheckFailed: one differs, or the node does not answer.
-    """
+    """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly."""
     found = harness.parameters(node, list(wanted))
     if found is None:
         raise CheckFailed(
@@ -180,9 +149,6 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
 
     Where a process had to be killed, a second launch decides. Once in some two thousand launches on a busy machine, a
     right node ended neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does.
-
-    Raises:
-        CheckFailed: it does not.
     """
     nodes = harness.nodes()
     died = _died_of_ctrl_c(harness)
@@ -207,11 +173,7 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
 
 
 def expect_stopped(stop: Stop, status: int | None = 0) -> None:
-    """Fail the check unless the launch has ended, with this exit status (None: with any), and has left nothing.
-
-    Raises:
-        CheckFailed: it has not.
-    """
+    """Fail the check unless the launch has ended, with this exit status (None: with any), and has left nothing."""
     expect(stop.status is not None, f"After {STOP_SECONDS:.0f} s it still ran, and had to be killed.")
     expect(not stop.left, f"It ended, but left a process running: {', '.join(stop.left)[:200]}.")
     expect(status is None or stop.status == status, f"It ended with exit status {stop.status}, instead of {status}.")
@@ -240,10 +202,7 @@ def trouble(output: str) -> str:
 
 
 def unreadable(output: str) -> str:
-    """Return in a line why `ros2 launch` could not read a launch file, with the place in the student's file.
-
-    Its last line only says that there may be a syntax error.
-    """
+    """Return in a line why `ros2 launch` could not read a launch file, with the place in the student's file."""
     what = match["what"] if (match := _NOT_READ.search(output)) else _last_line(output)
     places = _PLACE.findall(with_source_paths(output))
     if not places or ", line " in what:
@@ -253,11 +212,7 @@ def unreadable(output: str) -> str:
 
 
 def require_written(output: str) -> None:
-    """Require that a launch did not reach a part of the exercise that is still to be written.
-
-    Raises:
-        StudentError: it did.
-    """
+    """Raise a StudentError if a launch reached a part of the exercise that is still to be written."""
     lines = output.splitlines()
     first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
     if first is not None:

@@ -1,7 +1,7 @@
 """What the linters say of a student's package, asked by the grader itself.
 
 A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
-the student's, and no conftest.py is read, which could change what they say.
+the student's, and no conftest.py is read.
 """
 
 from __future__ import annotations
@@ -23,16 +23,7 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, fraction: float = 0.0) -> None:
-    """Fail the check if a linter finds what its own test has not reported.
-
-    Args:
-        workspace: the built workspace.
-        source: the package.
-        fraction: of the check's points, from 0 to 1, that remain.
-
-    Raises:
-        CheckFailed: the message names the linter's test, and the first that it should have found.
-    """
+    """Fail the check if a linter finds what its own test has not reported; `fraction` of the points remains."""
     for name, finding in objections(workspace, source).items():
         sentence = f"{name} passes, but its linter finds something in the package: {finding}"
         raise CheckFailed(sentence, fraction=fraction)

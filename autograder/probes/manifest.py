@@ -23,12 +23,10 @@ class Manifest:
     """A parsed package.xml.
 
     Attributes:
-        format: of the file, 1 to 3.
         licences: each <license>, as written.
         maintainers: each (name, e-mail).
         build_type: what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one.
-        depends: the names by kind: build, build_export, buildtool, exec, test, doc. A <depend> is in the first two and
-            in exec.
+        depends: the names by kind, one of `KINDS`.
         groups: of which dependency groups it is a member.
     """
 

@@ -11,7 +11,7 @@ SEEN_SECONDS = 5.0  # of real time until a name is seen in the graph; only a wro
 
 
 def left_behind(workspace: Workspace, package: str, executable: str, names: Iterable[str]) -> str:
-    """Return which topics and services a program does not have in the namespace in which it is started, in a sentence.
+    """Return which relative names a program does not have in the namespace in which it is started, in a sentence.
 
     Args:
         workspace: the student's, built.

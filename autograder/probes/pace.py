@@ -18,11 +18,5 @@ def mean_period(messages: Sequence[Stamped]) -> float:
 
 
 def is_paced(seen: float, wanted: float, time: str) -> bool:
-    """Return whether a period (s) is the one that is wanted.
-
-    Args:
-        seen: the mean period.
-        wanted: the contract's.
-        time: the harness's, "lockstep" or "real".
-    """
+    """Return whether a mean period in s is the wanted one; `time` is the harness's, "lockstep" or "real"."""
     return abs(seen - wanted) <= TOLERANCES[time] * wanted

@@ -41,12 +41,7 @@ TYPES = {
 
 @dataclass(frozen=True)
 class Answer:
-    """A node's answer to a request to change parameters.
-
-    Attributes:
-        accepted: whether it carried it out.
-        reason: its words when it did not, shortened.
-    """
+    """A node's answer to a request to change parameters; `reason` is its words when it refused, shortened."""
 
     accepted: bool
     reason: str = ""
@@ -54,12 +49,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class NodeParameters:
-    """The parameter services of one node.
-
-    Attributes:
-        harness: where the node runs.
-        node: its fully qualified name.
-    """
+    """The parameter services of one node, by its fully qualified name."""
 
     harness: Harness | AutoHarness
     node: str
@@ -192,12 +182,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
-    """Return a parameter file's values for a node, by wildcards or by its name in any form.
-
-    Args:
-        file: from `read_file`.
-        name: the node's, without a namespace.
-    """
+    """Return what `read_file` found for a node, by wildcards or by its name without a namespace, in any form."""
     keys = ("/**", f"/**/{name}", name, f"/{name}")
     return {parameter: value for key in keys for parameter, value in file.get(key, {}).items()}
 

@@ -2,8 +2,7 @@
 
 A new participant announces itself at once to the multicast port of its domain or, if it is to stay on this machine, to
 the first unicast ports. The announcement stays in the sniffer's socket, however busy the machine is and however soon
-the participant leaves. A second participant would not do: measured with the wheels, one discovery in seven takes until
-the next announcement, up to 3 s, and a test is over sooner.
+the participant leaves. A second participant would not do: one discovery in seven takes up to 3 s.
 
 Source of ports and address: DDS Interoperability Wire Protocol (RTPS) 2.5, section 9.6.2.3.
 """
@@ -22,18 +21,10 @@ _MAGIC = b"RTPS"
 
 
 class RtpsSniffer:
-    """Listens in a domain that has no participant.
-
-    Attributes:
-        domain: its `ROS_DOMAIN_ID`.
-    """
+    """Listens in a domain that has no participant; `domain` is its `ROS_DOMAIN_ID`."""
 
     def __init__(self) -> None:
-        """Find a free domain.
-
-        Raises:
-            GraderError: each of `DOMAINS` has participants.
-        """
+        """Find a free domain; raise a GraderError if each of `DOMAINS` has participants."""
         for domain in DOMAINS:
             base = 7400 + 250 * domain
             first = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -3,13 +3,12 @@
     source = take(workspace, "speed_guard")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
 
-Tests are programs of the student's. A run is in their power: what it reports is taken for a claim, "passes" or
-"fails", and the points come from claiming the right thing of each version. So a run must not be able to tell which
-version it has before it: every run gets a sandbox of its own with no network but its own loopback, a path drawn at
-random, the same times and environment, and nothing that it can write to but a /tmp that ends with it. It sees its
-version and nothing of the others, the suites or earlier runs. `versions` says how versions are kept alike, and what
-remains. Only a run that is sniffed shares the grader's loopback, which no other program uses. The run can notice that,
-so it has to get a right version.
+A run is in the power of the student's tests: what it reports is a claim, "passes" or "fails", and the points come from
+claiming the right thing of each version. So a run must not be able to tell which version it has before it: every run
+gets a sandbox of its own with no network but its own loopback, a path drawn at random, the same times and environment,
+and nothing that it can write to but a /tmp that ends with it. It sees its version and nothing of the others, the suites
+or earlier runs. `versions` says how versions are kept alike, and what remains. Only a run that is sniffed shares the
+grader's loopback, which no other program uses. The run can notice that, so it has to get a right version.
 """
 
 from __future__ import annotations
@@ -32,11 +31,9 @@ import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.intake import read_packages
-from autograder.probes import junit
-from autograder.probes.junit import Claims
 from autograder.probes.memory import Memory
 from autograder.probes.rtps_sniffer import RtpsSniffer
-from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.probes.test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
@@ -198,7 +195,7 @@ def _host(spec: Sandbox, wanted: TestRun, arguments: list[str], launches: bool) 
             process.wait(spec.limits.wall_seconds)
             ending = process.ending
         report.seek(0)
-        claims = None if status is None else junit.parse(report.read(junit.MAX_BYTES + 1))
+        claims = None if status is None else parse_claims(report.read(MAX_BYTES + 1))
     if claims is None:
         return Report(ending, None, Claims(), left, process.output)
     return Report(ending, status, claims, left, process.output)

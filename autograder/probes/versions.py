@@ -5,8 +5,8 @@ byte code, by names, paths or times. So every version, the reference too, goes t
 docstrings, local names and private attributes drawn anew for each run. Versions of different styles, right and faulty
 ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
 
-What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault; that earns
-what a test earns. A test that fails at random may be lucky; it has to pass on every right version, and more than once.
+What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault. A test that
+fails at random has to pass on every right version, and more than once.
 """
 
 from __future__ import annotations

@@ -61,8 +61,9 @@ def talk(scratch: Path) -> dict[str, Any]:
     (outer / "msg").mkdir(parents=True)
     (outer / "package.xml").write_text(f"<package format='3'><name>{OUTER}</name></package>")
     (outer / "msg" / "Fleet.msg").write_text(f"{PACKAGE}/RobotStatus[] robots\n")
-    fleet = load_from(workspace, OUTER, cache=Cache(scratch / "cache")).msg.Fleet
-    module = load_from(workspace, PACKAGE, cache=Cache(scratch / "cache"))
+    os.environ["XDG_CACHE_HOME"] = str(scratch / "cache")
+    fleet = load_from(workspace, OUTER).msg.Fleet
+    module = load_from(workspace, PACKAGE)
     kind, heard = module.msg.RobotStatus, []
     rclpy.init()
     node = rclpy.create_node("grader")
@@ -116,18 +117,18 @@ def test_a_wrong_definition_is_the_students_to_mend(tmp_path: Path, line: str, w
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
     with pytest.raises(StudentError) as caught:
-        load_from(workspace, PACKAGE, cache=Cache(tmp_path / "cache"))
+        load_from(workspace, PACKAGE)
     assert caught.value.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
     assert all(word in caught.value.diagnosis.sentence for word in words), caught.value.diagnosis.sentence
 
 
 def test_a_missing_package_is_named(tmp_path: Path) -> None:
     with pytest.raises(StudentError, match=r"ghost_msgs is missing: src holds my_robot_interfaces\."):
-        load_from(_workspace(tmp_path), "ghost_msgs", cache=Cache(tmp_path / "cache"))
+        load_from(_workspace(tmp_path), "ghost_msgs")
 
 
 def test_a_definition_that_is_still_to_be_written_is_said_to_be_so(tmp_path: Path) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(CODE_STUB)
     with pytest.raises(StudentError, match=r"msg/RobotStatus\.msg is still to be written"):
-        load_from(workspace, PACKAGE, cache=Cache(tmp_path / "cache"))
+        load_from(workspace, PACKAGE)

@@ -37,10 +37,10 @@ def write_workspace(scratch: Path, **texts: str) -> Any:
     if not folder.is_dir():
         folder.mkdir(parents=True)
         (scratch / "home").mkdir()
-        shutil.copytree(interfaces(), scratch / "under" / "lockstep_interfaces")
+        shutil.copytree(interfaces(), scratch / "ws" / "install" / "lockstep_interfaces")
     for name, text in texts.items():
         (folder / name).write_text(f"#!/usr/bin/env python3\n{programs.HEAD}{text}")
-    return Workspace(scratch / "ws", activate(), scratch / "home", underlays=(scratch / "under",))
+    return Workspace(scratch / "ws", activate(), scratch / "home")
 
 
 def said(harness: Any, topic: str = "/said") -> list[Any]:

@@ -17,8 +17,7 @@ from autograder.checks.ch06_testing.support.assertions import (
 )
 from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
 from autograder.harness import Workspace
-from autograder.probes.junit import ClaimedOutcome, Claims
-from autograder.probes.test_reports import Report, Source
+from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
 

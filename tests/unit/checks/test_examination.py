@@ -14,8 +14,7 @@ from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
 from autograder.harness import Workspace
 from autograder.probes import test_runs
-from autograder.probes.junit import ClaimedOutcome, Claims
-from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source, TestRun
 from autograder.ros import environment
 
 ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for number in range(8)}), 0, "")

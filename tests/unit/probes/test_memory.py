@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.probes.junit import ClaimedOutcome, Claims
 from autograder.probes.memory import Memory
-from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source, TestRun
 from autograder.probes.versions import Version
 from autograder.sandbox import Ending
 

@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import LEAST
 from autograder.harness import Workspace
 from autograder.probes import linters
-from autograder.probes.junit import ClaimedOutcome
+from autograder.probes.test_reports import ClaimedOutcome
 
 check = group("craft")
 LINTERS = ("test_flake8", "test_pep257")

@@ -10,8 +10,7 @@ from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import colcon_test
-from autograder.probes.junit import ClaimedOutcome
-from autograder.probes.test_reports import Report
+from autograder.probes.test_reports import ClaimedOutcome, Report
 from autograder.probes.test_runs import take
 
 check = group("step_7", doc=contract.TESTING_DOC)

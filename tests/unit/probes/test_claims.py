@@ -7,7 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder.probes.junit import MAX_BYTES, MAX_MESSAGE, ClaimedOutcome, Claims, parse, read
+from autograder.probes.test_reports import (
+    MAX_BYTES,
+    MAX_MESSAGE,
+    ClaimedOutcome,
+    Claims,
+    parse_claims,
+    read_claims,
+)
 
 REPORT = """<?xml version="1.0" encoding="utf-8"?><testsuites><testsuite name="pytest">
 <testcase classname="test.test_limits" name="test_a[0.5]" />
@@ -20,7 +27,7 @@ REPORT = """<?xml version="1.0" encoding="utf-8"?><testsuites><testsuite name="p
 
 
 def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
-    claims = parse(REPORT.encode())
+    claims = parse_claims(REPORT.encode())
     assert claims is not None
     assert claims.verdicts == {
         "test_limits::test_a[0.5]": ClaimedOutcome.PASSED,
@@ -34,13 +41,13 @@ def test_each_test_has_a_verdict_and_the_first_line_of_its_message() -> None:
 
 
 def test_a_test_in_a_class_belongs_to_its_module() -> None:
-    claims = parse(b'<testsuite><testcase classname="p.test.test_limits.Speed" name="test_a"/></testsuite>')
+    claims = parse_claims(b'<testsuite><testcase classname="p.test.test_limits.Speed" name="test_a"/></testsuite>')
     assert claims == Claims({"test_limits::Speed::test_a": ClaimedOutcome.PASSED}, {"test_limits::Speed::test_a": ""})
 
 
 def test_a_message_is_cut_to_its_bound() -> None:
     text = f'<testsuite><testcase classname="t" name="a"><failure message="{"x" * 9999}"/></testcase></testsuite>'
-    claims = parse(text.encode())
+    claims = parse_claims(text.encode())
     assert claims is not None
     assert len(claims.messages["t::a"]) == MAX_MESSAGE
 
@@ -58,13 +65,13 @@ def test_a_message_is_cut_to_its_bound() -> None:
     ids=["empty", "text", "bytes", "large", "entities", "encoding"],
 )
 def test_what_is_no_small_plain_report_is_nothing(data: bytes) -> None:
-    assert parse(data) is None
+    assert parse_claims(data) is None
 
 
 def test_a_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "report.xml"
     path.write_text('<testsuite><testcase classname="t" name="a"/></testsuite>')
-    assert read(path) == Claims({"t::a": ClaimedOutcome.PASSED}, {"t::a": ""})
+    assert read_claims(path) == Claims({"t::a": ClaimedOutcome.PASSED}, {"t::a": ""})
 
 
 def test_links_pipes_and_folders_are_not_read(tmp_path: Path) -> None:
@@ -73,4 +80,4 @@ def test_links_pipes_and_folders_are_not_read(tmp_path: Path) -> None:
     (tmp_path / "link.xml").symlink_to(real)
     os.mkfifo(tmp_path / "pipe.xml")
     for name in ("link.xml", "pipe.xml", ".", "missing.xml"):
-        assert read(tmp_path / name) is None
+        assert read_claims(tmp_path / name) is None
