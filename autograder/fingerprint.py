@@ -49,13 +49,7 @@ def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT)
 
 
 def files(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> list[Path]:
-    """Return the sorted paths of the files that a grading of the assignment reads.
-
-    Args:
-        assignment: name of the assignment.
-        reads: files and folders that its checks read beside their own, as paths below `root`.
-        root: folder of the course.
-    """
+    """Return the sorted paths of the files that a grading of the assignment reads; the arguments are as in `digest`."""
     chapter = root / "chapters" / assignment
     shared = [root / name for name in ("autograder", "sim", "assets/worlds", *reads)]
     own = [*_check_folders(assignment, root), chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]

@@ -76,10 +76,7 @@ class Submission:
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
-    """Read the packages in `root`/src, a workspace that a student's code may have changed.
-
-    Returns:
-        The files, with paths relative to `src`.
+    """Read the files in `root`/src, a workspace that a student's code may have changed, with paths relative to it.
 
     Raises:
         StudentError: `src` is not a folder, or holds something unsafe.
@@ -96,11 +93,7 @@ def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
 
 
 def read_submission(path: Path, assignment: str) -> Submission:
-    """Read a submission from disk.
-
-    Args:
-        path: a folder, a zip archive or a notebook.
-        assignment: name of the assignment.
+    """Read a submission of an assignment from disk: a folder, a zip archive or a notebook.
 
     Raises:
         UsageError: `path` does not exist.
@@ -122,11 +115,7 @@ def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
 
 
 def detect_layout(entries: list[SubmittedFile], assignment: str) -> Submission:
-    """Find the notebook and the packages among the files of a submission.
-
-    Args:
-        entries: all files, with paths below the root of the submission.
-        assignment: name of the assignment.
+    """Find the notebook and the packages among a submission's files, whose paths are below its root.
 
     Raises:
         StudentError: there is neither the notebook nor a package, or a file and a folder have the same path.

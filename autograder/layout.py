@@ -23,11 +23,7 @@ def check_folders() -> tuple[Path, ...]:
 
 
 def chapter(assignment: str) -> Path:
-    """Return an assignment's source folder.
-
-    Raises:
-        UsageError: it does not exist; the message lists the existing ones.
-    """
+    """Return an assignment's source folder; a UsageError lists the existing ones."""
     folder = CHAPTERS / assignment
     if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
         raise UsageError(f"there is no assignment {assignment!r}; there are: {', '.join(assignments()) or 'none'}")
@@ -35,11 +31,7 @@ def chapter(assignment: str) -> Path:
 
 
 def world(name: str) -> Path:
-    """Return the path of a world of the course.
-
-    Raises:
-        UsageError: it does not exist; the message lists the existing ones.
-    """
+    """Return the path of a world of the course; a UsageError lists the existing ones."""
     path = WORLDS / f"{name}.yaml"
     if not path.is_file():
         there = ", ".join(sorted(file.stem for file in WORLDS.glob("*.yaml")))

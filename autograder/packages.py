@@ -13,13 +13,7 @@ DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buil
 
 @dataclass(frozen=True)
 class PackageTexts:
-    """The names in a package.xml. They are not validated here; `probes.manifest` does that.
-
-    Attributes:
-        name: name of the package.
-        depends: names of the packages that it needs, to be built or to run.
-        groups: names of the dependency groups of which it is a member.
-    """
+    """The name, dependencies and groups in a package.xml. `probes.manifest` validates, this does not."""
 
     name: str
     depends: tuple[str, ...]
@@ -27,11 +21,7 @@ class PackageTexts:
 
 
 def read_texts(manifest: Path) -> PackageTexts:
-    """Read a package.xml of at most `MAX_MANIFEST` bytes.
-
-    Raises:
-        xml.etree.ElementTree.ParseError: it is not well-formed XML.
-    """
+    """Read a package.xml of at most `MAX_MANIFEST` bytes; an `ElementTree.ParseError` if it is not well-formed."""
     root = ET.fromstring(manifest.read_bytes())
     return PackageTexts(
         name=root.findtext("name", "").strip(),
@@ -41,17 +31,12 @@ def read_texts(manifest: Path) -> PackageTexts:
 
 
 def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
-    """Find the packages below a folder.
-
-    Returns:
-        The folder of each package by its name, and an error sentence for each folder with an unreadable package.xml.
-    """
+    """Find the packages below a folder: each one's folder by its name, and an error by each unreadable one's folder."""
     found: dict[str, Path] = {}
     broken: dict[Path, str] = {}
     for manifest in sorted(source.rglob(MANIFEST)):
-        if (
-            manifest.is_symlink() or not manifest.is_file()
-        ):  # reading a named pipe, which a set-up script may have made, would never end
+        # To read a named pipe, which a set-up script may have made, would never end.
+        if manifest.is_symlink() or not manifest.is_file():
             continue
         where = manifest.relative_to(source)
         if manifest.stat().st_size > MAX_MANIFEST:

@@ -29,12 +29,7 @@ class TimeRecord:
         self.longest_wait = max(self.longest_wait, seconds)
 
     def add_real_time(self, executables: Iterable[str], reasons: dict[str, str]) -> None:
-        """Note that programs run in real time together.
-
-        Args:
-            executables: all of them.
-            reasons: by executable, for those that cause it, one of `UNSTEPPABLE` or `REAL`.
-        """
+        """Note that programs run in real time together; `reasons` are of those that cause it, as in `UNSTEPPABLE`."""
         for executable in executables:
             self.real_time[executable] = reasons.get(executable) or self.real_time.get(executable, "")
 

@@ -19,13 +19,7 @@ _DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^>]*>\s*([\w.-]+)")
 
 @dataclass(frozen=True)
 class Stub:
-    """The first stub in a file.
-
-    Attributes:
-        path: the file, such as `src/robot/setup.py`.
-        line: its number from 1.
-        text: the line.
-    """
+    """The first stub in a file such as `src/robot/setup.py`: the line's number from 1, and its text."""
 
     path: str
     line: int
@@ -39,12 +33,9 @@ def find_stub(text: str, path: str) -> Stub | None:
 
 
 def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
-    """Return why packages were not built: a file that is still to be written, or else the given diagnosis.
+    """Return why packages in `source` were not built: a file that is still to be written, or else the diagnosis.
 
-    Args:
-        diagnosis: what building the packages came to.
-        source: the workspace's `src` folder.
-        packages: their names; the packages of `src` that these depend on are looked at, too.
+    The packages of `source` that these depend on are looked at, too.
     """
     stubs = list(_stubs(source, packages))
     if not stubs:

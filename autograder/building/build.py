@@ -15,15 +15,9 @@ from autograder.workspace import Workspace
 
 
 def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> None:
-    """See that the wanted packages are there and whole enough for colcon to build.
+    """Raise a StudentError unless the wanted packages in `source` are there and whole enough for colcon to build.
 
-    Args:
-        source: the workspace's `src` folder.
-        wanted: the packages' names.
-        whole: whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
-
-    Raises:
-        StudentError: one is missing, cannot be read, or lacks such a file.
+    `whole` says whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
     """
     found, broken = find_packages(source)
     for name in wanted:

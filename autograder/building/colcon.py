@@ -31,9 +31,7 @@ def colcon_command(workspace: Workspace, verb: str, *words: str) -> list[str]:
 def colcon_build(workspace: Workspace, *choice: str) -> str:
     """Run `colcon build` on a workspace, without a network; return the end of its output.
 
-    Args:
-        workspace: it is writable for the build, and nothing else is.
-        choice: colcon's own options for choosing packages.
+    The workspace alone is writable for the build. `choice` are colcon's own options for choosing packages.
 
     Raises:
         StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
@@ -60,10 +58,9 @@ def colcon_build(workspace: Workspace, *choice: str) -> str:
 
 
 def require_contained(install: Path) -> None:
-    """See that no link leads out of the install space: it is mounted for nodes, and a mount would follow the link.
+    """Raise a StudentError if a link leads out of the install space, or its folders are nested too deep to look at.
 
-    Raises:
-        StudentError: one does, or the folders are nested too deep to look at.
+    It is mounted for nodes, and a mount would follow the link.
     """
     pending = [install]
     while pending:

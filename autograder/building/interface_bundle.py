@@ -39,11 +39,7 @@ def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[st
 
 
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> str:
-    """Put a bundle's built packages into a workspace's install space; return the end of colcon's output.
-
-    Raises:
-        StudentError: it did not build.
-    """
+    """Put a bundle's built packages into a workspace's install space; return the end of colcon's output."""
     entry = Cache.default("bundles").get(_key(bundle, workspace), partial(_make, bundle, workspace))
     note = json.loads((entry / NOTE).read_text())
     for name in bundle:

@@ -18,12 +18,7 @@ from autograder.workspace import Workspace
 
 @dataclass(frozen=True)
 class Observed:
-    """What became of the packages of a suite.
-
-    Attributes:
-        build: how building them went, all together.
-        diagnoses: by package; OK for one that was built.
-    """
+    """How building a suite's packages went all together, and by package; OK for one that was built."""
 
     build: Build
     diagnoses: Mapping[str, Diagnosis]
@@ -39,11 +34,6 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
 
     Where a build may fail, and does, each package is built by itself, so that one's error is not the other's. Colcon
     alone judges then whether a package is whole.
-
-    Args:
-        workspace: with the sources in its `src` folder.
-        packages: which to build.
-        may_fail: whether a package that is missing or does not build is seen, rather than the end.
 
     Raises:
         StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.

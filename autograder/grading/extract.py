@@ -42,9 +42,6 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
         folder: folder of the assignment, with `ws/`. The notebook may write there.
         workspace: workspace whose ROS 2 and scratch folder are used.
         out: path of the executed notebook.
-
-    Raises:
-        StudentError: the submission is not a notebook, or its files keep the kernel from starting.
     """
     source = nbformat.read(original, as_version=4)
     notebook = submitted_notebook.restore(submitted_notebook.read(submitted, original.name), source)
@@ -54,17 +51,9 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
 
 
 def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:
-    """Run a notebook in a sandboxed kernel, and write the outputs into its cells.
+    """Run a restored notebook in a sandboxed kernel in `folder`, write the outputs into its cells, and return it.
 
     A cell that raises does not end the run. A kernel that dies ends it, and the files written before it count.
-
-    Args:
-        notebook: the restored notebook.
-        folder: folder of the assignment, with `ws/`, in which the kernel runs. The notebook may write there.
-        workspace: workspace whose ROS 2 and scratch folder are used.
-
-    Returns:
-        The same notebook.
 
     Raises:
         StudentError: a file of the submission keeps the kernel from starting.
@@ -86,12 +75,7 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 
 
 class _SandboxedKernel(AsyncKernelManager):
-    """A kernel of the grader's own Python in a sandbox; Jupyter connects to it by Unix sockets, and does not start it.
-
-    Args:
-        sandbox: where it runs.
-        connections: the folder of the sockets, which the sandbox can write to.
-    """
+    """A kernel of the grader's own Python in a sandbox; Jupyter connects to it by Unix sockets in a folder."""
 
     def __init__(self, sandbox: Sandbox, connections: Path) -> None:
         super().__init__(transport="ipc", connection_file=str(connections / "k.json"), ip=str(connections / "k"))

@@ -20,11 +20,7 @@ STUB = "YOUR CODE HERE"
 
 
 def read(data: bytes, name: str) -> NotebookNode:
-    """Read a submitted notebook.
-
-    Args:
-        data: content of the file.
-        name: file name, for the error.
+    """Read a submitted notebook; `name` is the file's, for the error.
 
     Raises:
         StudentError: the file is not JSON, not a notebook or one of another format, or it has too many cells.

@@ -15,15 +15,7 @@ LOG = "grader.log"
 
 
 def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str) -> Result:
-    """Return the result of a submission on which the grader failed. It is no zero.
-
-    Args:
-        suite: the checks that were not run.
-        student: whose the submission is.
-        seed: the seed of the grading.
-        isolation: the sandbox's tier.
-        why: a sentence that says what failed.
-    """
+    """Return the result of a submission on which the grader failed: `why` says what failed. It is no zero."""
     sentence = (
         f"{why} This is no zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
     )
@@ -33,15 +25,7 @@ def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str)
 
 
 def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis) -> Result:
-    """Return the result of a submission that intake refused, as a worker would record it.
-
-    Args:
-        suite: the checks that were not run.
-        student: whose the submission is.
-        seed: the seed of the grading.
-        isolation: the sandbox's tier.
-        diagnosis: why it was refused.
-    """
+    """Return the result of a submission that intake refused, with the reason, as a worker would record it."""
     message = f"not checked: {diagnosis.sentence}"
     return Result(
         assignment=suite.assignment,

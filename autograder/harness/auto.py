@@ -35,11 +35,9 @@ AnyHarness = TypeVar("AnyHarness", bound=Harness)
 
 
 class AutoHarness:
-    """A `SteppedHarness` for programs that can be stepped, else a `RealTimeHarness`; made like these, used like these.
+    """A `SteppedHarness` for programs that can be stepped, else a `RealTimeHarness`; made and used like these.
 
-    Attributes:
-        time: "lockstep" or "real".
-        optional: executables that may fail: the others run on without them.
+    `time` is "lockstep" or "real".
     """
 
     # What it has of the harness that was chosen, by `__getattr__`.

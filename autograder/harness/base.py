@@ -179,13 +179,7 @@ class Harness(ExitStack, ABC):
             left -= self.tick_ns
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
-        """Return what was published on a topic of `listens`.
-
-        Args:
-            topic: its name.
-            since: only messages after it, in seconds of ROS time since the start.
-            until: only messages up to it, likewise.
-        """
+        """Return what was published on a topic of `listens` after `since` and up to `until`, in s since the start."""
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
         return received[first : bisect_right(received, until, first, key=_SECONDS)]
@@ -197,14 +191,8 @@ class Harness(ExitStack, ABC):
     def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
         """Call a service of the student's programs, which run on meanwhile.
 
-        Args:
-            service_type: its class.
-            name: the service.
-            request: of that class.
-            seconds: of ROS time until the answer.
-
         Returns:
-            The response; None if there is no such service of that type, or it does not answer in time.
+            The response; None if there is no such service of that type, or no answer within `seconds` of ROS time.
         """
         answers: list[Any] = []
         began = self.seconds
@@ -217,14 +205,7 @@ class Harness(ExitStack, ABC):
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
         """Send a goal to an action server of the student's; it advances while the programs run on.
 
-        Args:
-            action_type: its class.
-            name: the action.
-            goal: of that class.
-            seconds: of ROS time for a server that is not there yet.
-
-        Returns:
-            The goal; its `accepted` stays None if no server comes.
+        Its `accepted` stays None if no server comes within `seconds` of ROS time.
         """
         clients = self._actions.prepare(action_type, name)
         if not all(client is not None and self._reach(client, seconds) for client in clients):

@@ -16,12 +16,9 @@ from autograder.sandbox.procfs import waited_ns
 
 @contextmanager
 def watch(pids: Iterable[int], seconds: float, report: Callable[[float], None]) -> Iterator[None]:
-    """Measure how long processes could not run during this block.
+    """Measure how long processes could not run during this block, which takes `seconds` on an idle machine.
 
-    Args:
-        pids: the processes.
-        seconds: how long the block takes on an idle machine.
-        report: gets the longest time in s for which one of the processes, or this one, was ready and could not run.
+    `report` gets the longest time in s for which one of them, or this one, was ready and could not run.
     """
     pids = tuple(pids)
     before, began = waited_ns(pids), time.monotonic()

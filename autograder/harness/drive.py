@@ -29,13 +29,7 @@ ScanFilter = Callable[[Scan, float], Scan | None]
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive.
-
-    Attributes:
-        recording: the robot's run.
-        commands: the program's messages on /cmd_vel.
-        output: what the program printed and logged.
-    """
+    """A robot's run, the program's messages on /cmd_vel, and what the program printed and logged."""
 
     recording: Recording
     commands: tuple[Stamped, ...]

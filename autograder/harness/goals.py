@@ -15,10 +15,7 @@ from autograder.harness.grader_node import requested_qos
 
 @dataclass(frozen=True)
 class Stamped:
-    """A message that the student's program published.
-
-    `seconds` is when it arrived, in seconds of ROS time since the program started.
-    """
+    """A message of the student's program, and when it came, in s of ROS time since the program started."""
 
     seconds: float
     message: Any
@@ -76,13 +73,7 @@ class Actions:
         return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in services.items()]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
-        """Send a goal, and ask for its result once it is accepted.
-
-        Args:
-            kind: the action class.
-            name: the action, which was prepared.
-            goal: of that class.
-        """
+        """Send a goal to an action that was prepared, and ask for its result once it is accepted."""
         sent = Goal(_goal_id(next(self._numbers)))
         self._goals[bytes(sent.id.uuid)] = sent
         request = kind.Impl.SendGoalService.Request(goal_id=sent.id, goal=goal)

@@ -88,12 +88,7 @@ class GraderNode:
         self.context.try_shutdown()
 
     def offer(self, topic: str, kind: Any) -> None:
-        """Make a publisher that is compatible with each subscription that is seen, unless one has another type.
-
-        Args:
-            topic: its name; nothing happens if this node publishes on it.
-            kind: the message class.
-        """
+        """Make a publisher that suits each subscription that is seen, unless there is one or the type is another."""
         peers = self.subscriptions_of(topic)
         if topic in self.publishers or not _have_type(kind, peers):
             return
@@ -102,26 +97,13 @@ class GraderNode:
         self.written[topic] = channels.written(topic, kind, qos)
 
     def listen(self, topic: str, kind: Any, receive: OnMessage) -> None:
-        """Make a subscription that is compatible with each publisher that is seen, unless one has another type.
-
-        Args:
-            topic: its name; nothing happens if this node subscribes to it.
-            kind: the message class.
-            receive: called with each message.
-        """
+        """Make a subscription that suits each publisher that is seen, unless there is one or the type is another."""
         peers = self.publishers_of(topic)
         if topic not in self.subscribed() and _have_type(kind, peers):
             self.subscribe(topic, kind, receive, requested_qos(peers))
 
     def subscribe(self, topic: str, kind: Any, receive: OnMessage, qos: QoSProfile) -> None:
-        """Make a subscription.
-
-        Args:
-            topic: its name.
-            kind: the message class.
-            receive: called with each message.
-            qos: its profile.
-        """
+        """Make a subscription with a profile; `receive` is called with each message."""
         subscription = self.node.create_subscription(kind, topic, receive, qos)
 
         def take() -> bool:
@@ -166,14 +148,7 @@ class GraderNode:
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Send a request to a service.
-
-        Args:
-            kind: its class.
-            name: the service, to which there is a client.
-            request: of that class.
-            then: called with the response.
-        """
+        """Send a request to a service to which there is a client; `then` is called with the response."""
         client = self.client(kind, name)
         sequence = client.handle.send_request(request)
         self._waiting[(id(client), sequence)] = then

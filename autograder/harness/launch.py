@@ -48,12 +48,7 @@ class RunningProgram:
 
 @dataclass(frozen=True)
 class Stop:
-    """How a launch ended after Ctrl-C.
-
-    Attributes:
-        status: the exit status, or None if it was still running when the time was up.
-        left: the commands that it left running.
-    """
+    """How a launch ended after Ctrl-C: its exit status, None if it still ran, and the commands that it left running."""
 
     status: int | None
     left: tuple[str, ...]
@@ -161,10 +156,7 @@ class LaunchHarness(contextlib.ExitStack):
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Take messages until `condition` holds, at most `seconds` of real time; return whether it does.
 
-        It does not wait for a launch that has ended.
-
-        Raises:
-            StudentError: the launch went over a limit of its sandbox.
+        It does not wait for a launch that has ended. It raises a StudentError if the launch went over a limit.
         """
         deadline = time.monotonic() + seconds
         while True:
@@ -198,12 +190,7 @@ class LaunchHarness(contextlib.ExitStack):
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:
-        """Ask a node for parameters.
-
-        Args:
-            node: its full name.
-            names: of the parameters.
-            seconds: of real time for the answer.
+        """Ask a node, by its full name, for parameters; each answer has `seconds` of real time.
 
         Returns:
             Values by name, None for one that the node has not declared; or None if it does not answer.

@@ -94,8 +94,7 @@ class SteppedHarness(Harness):
     def step(self, dt_ns: int) -> None:
         """Let the programs take what was published, then run the timers that are due.
 
-        Raises:
-            GraderError: messages were lost on the way, which loopback does not do by itself.
+        A message that is lost on the way is a GraderError: loopback loses none by itself.
         """
         end = self._now_ns + dt_ns
         while True:

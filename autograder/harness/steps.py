@@ -11,12 +11,7 @@ SLACK_NS = 1_000_000  # a program that wants to wake so shortly before the end o
 
 
 def tick_of(tick_ns: int, timers: Iterable[int]) -> int:
-    """Return the longest step that hits every firing of timers.
-
-    Args:
-        tick_ns: the present step, an upper bound.
-        timers: their periods in ns.
-    """
+    """Return the longest step up to `tick_ns` that hits every firing of timers, by their periods in ns."""
     return max(FINEST_TICK_NS, math.gcd(tick_ns, *timers))
 
 

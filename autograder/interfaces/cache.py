@@ -1,8 +1,8 @@
 """A content-addressed cache of built trees: built once, put in place whole, bounded in size.
 
-Each entry is a folder named by its key, beside a lock file. Whoever looks for an entry holds its lock; whoever builds
-or evicts one does, too. The kernel lets go of locks when a process dies, so that nothing is left locked, and a
-half-built folder is never under an entry's name. An entry that was asked for within `IN_USE` is not evicted.
+Each entry is a folder named by its key, beside a lock file that is held by whoever looks for, builds or evicts it. The
+kernel lets go of locks when a process dies, and a half-built folder is never under an entry's name. An entry that was
+asked for within `IN_USE` is not evicted.
 """
 
 from __future__ import annotations
@@ -25,12 +25,7 @@ _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
 class Cache:
-    """A cache in a folder of its own.
-
-    Args:
-        root: the folder; it is made, readable for this user alone.
-        limit: bytes that the entries may use together; those unused for longest go first.
-    """
+    """A cache in a folder of its own, which this user alone can read; `limit` bounds the bytes of its entries."""
 
     def __init__(self, root: Path, limit: int = LIMIT) -> None:
         self.root, self._limit = root, limit

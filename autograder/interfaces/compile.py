@@ -35,9 +35,6 @@ def compile_package(
         work: the folder with the generated code.
         prefixes: where other packages are found.
         dependencies: all interface packages below this one.
-
-    Raises:
-        RuntimeError: the compiler refused; its words are on stderr.
     """
     names = ("rosidl_generator_c", "rosidl_typesupport_c", FAST, INTROSPECTION)
     include = [f"-I{work / name}" for name in names]

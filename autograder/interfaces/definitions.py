@@ -61,11 +61,7 @@ class Definition:
 
 
 def require_package_name(name: str) -> None:
-    """See that a package's name is one that ROS takes for interfaces.
-
-    Raises:
-        DefinitionError: it is not.
-    """
+    """Raise a DefinitionError unless a package's name is one that ROS takes for interfaces."""
     if not _PACKAGE.fullmatch(name) or keyword.iskeyword(name):
         raise DefinitionError(
             "package.xml", f"{name[:80]!r} is no package name: begin with a letter, use a-z, 0-9 and single underscores"
@@ -73,11 +69,7 @@ def require_package_name(name: str) -> None:
 
 
 def read(package: str, files: Mapping[str, str]) -> tuple[Definition, ...]:
-    """Read the definitions of a package.
-
-    Args:
-        package: its name.
-        files: texts by their path in the package, such as `msg/RobotStatus.msg`.
+    """Read the definitions of a package, texts by their path such as `msg/RobotStatus.msg`.
 
     Raises:
         DefinitionError: the first thing that is wrong, by file and line.
@@ -229,14 +221,9 @@ class _Reader:
 
 
 def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:
-    """See that each message of another package is there.
+    """Raise a DefinitionError unless each message of another package is there.
 
-    Args:
-        definitions: what `read` returned.
-        exists: says whether a package is there (`None`), or has a message of a name.
-
-    Raises:
-        DefinitionError: one is not.
+    `exists` says whether a package is there (`None`), or has a message of a name.
     """
     for definition in definitions:
         for package, name, line in definition.uses:

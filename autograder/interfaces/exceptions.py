@@ -1,10 +1,4 @@
-"""Errors of building and loading interface packages.
-
-InterfaceError
-├── DefinitionError      a .msg, .srv or .action text is wrong; its author can mend it
-├── GenerationError      the definitions read well, but the generators or the compiler would not have them
-└── AlreadyLoadedError   another version of the package is in this process
-"""
+"""Errors of building and loading interface packages."""
 
 from __future__ import annotations
 
@@ -14,12 +8,7 @@ class InterfaceError(Exception):
 
 
 class DefinitionError(InterfaceError):
-    """A definition is wrong.
-
-    Attributes:
-        file: the file's path in its package.
-        line: the text of the line that is wrong, empty if it is the whole file.
-    """
+    """A definition is wrong, and its author can mend it; names the file and, if it is one, the line's text."""
 
     def __init__(self, file: str, problem: str, line: str = "") -> None:
         where = f"{file}, line “{line[:120]}”" if line else file

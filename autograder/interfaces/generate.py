@@ -70,13 +70,7 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
 
 
 def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
-    """Write the definitions and their .idl into the share folder; return the .idl paths.
-
-    Args:
-        prefix: of the package.
-        package: its name.
-        texts: the definitions by path, such as `msg/RobotStatus.msg`.
-    """
+    """Write definitions, texts by path, and their .idl into the share folder; return the .idl paths."""
     from rosidl_adapter.action import convert_action_to_idl
     from rosidl_adapter.msg import convert_msg_to_idl
     from rosidl_adapter.srv import convert_srv_to_idl

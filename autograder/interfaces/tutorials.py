@@ -35,15 +35,7 @@ def missing(prefix: Path) -> dict[str, dict[str, str]]:
 
 
 def install(prefix: Path) -> list[str]:
-    """Build the packages that are missing in `prefix`; return their names.
-
-    Args:
-        prefix: the virtual environment, in which the ROS wheels are.
-
-    Raises:
-        InterfaceError: one cannot be built.
-        RosError: there is no ROS 2 Jazzy.
-    """
+    """Build the packages that are missing in the virtual environment `prefix`; return their names."""
     lacking = missing(prefix)
     with tempfile.TemporaryDirectory() as scratch:
         for name, files in lacking.items():
@@ -61,10 +53,7 @@ def _installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
 
 
 def main() -> int:
-    """Install them into this environment; return the exit status.
-
-    Without a compiler it is told how to do that later: much of the course needs neither.
-    """
+    """Install them into this environment; without a compiler, say how to do that later: much needs neither."""
     prefix = Path(sys.prefix)
     try:
         if find().kind != "wheels" or not (lacking := missing(prefix)):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # the generators' process imports this package, too, and no R
 
 
 def load_from(workspace: Workspace, package: str) -> ModuleType:
-    """Build and load an interface package of a workspace, and those of the workspace that it uses.
+    """Build and load an interface package of a student's workspace, and those of it that it uses.
 
     Raises:
         StudentError: the package or its definitions are missing, or wrong; the sentence says where.

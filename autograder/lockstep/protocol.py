@@ -121,12 +121,9 @@ def answers(request: str, prefix: str) -> str:
 
 
 def parse(line: bytes) -> tuple[str, Any]:
-    """Return which event a line is, and its record.
+    """Return which event a line is, and its record, or raise a ProtocolError.
 
-    That is a `Description`, `Reply`, `Crash` or `Deadlock`, for `unsteppable` one of `REASONS`, for others None.
-
-    Raises:
-        ProtocolError: the line is no event of this protocol.
+    The record is a `Description`, `Reply`, `Crash` or `Deadlock`, for `unsteppable` one of `REASONS`, for others None.
     """
     if len(line) > MAX_LINE or not line.endswith(b"\n"):
         raise ProtocolError("the line is too long, or was cut short")

@@ -35,14 +35,9 @@ _TICK = 0.5  # s between two looks at how much a silent program has computed
 
 @dataclass(frozen=True)
 class Timeout:
-    """How long a program may take for an answer.
+    """How long a program may take for an answer: real time, and processor time, which finds an endless loop."""
 
-    Attributes:
-        seconds: of real time, generous for a machine that is busy.
-        cpu_seconds: of processor time, which does not depend on the machine's load: it finds an endless loop.
-    """
-
-    seconds: float
+    seconds: float  # generous for a machine that is busy
     cpu_seconds: float
 
 
@@ -102,21 +97,19 @@ class Stepper:
         return description
 
     def match(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
-        """Tell the program that its endpoints are matched, and what their peers sent before.
+        """Tell the program that its endpoints are matched, and what others sent before, by channel.
 
         Args:
-            kept: messages that latched writers of others hold, by channel.
-            early: requests and responses that others sent before the first step, by channel.
+            kept: messages that latched writers hold.
+            early: requests and responses.
         """
         self._send({"op": "match", "kept": dict(kept), "early": dict(early)})
         self._expect("matched", STEP_TIMEOUT, Kind.STUCK)
 
     def step(self, instants: Sequence[int], pending: Mapping[str, int]) -> Reply:
-        """Run the program at instants of ROS time.
+        """Run the program at instants of ROS time in ns, ascending, at least one.
 
-        Args:
-            instants: in ns, ascending; at least one.
-            pending: messages that were sent to the program since the last step, by channel.
+        `pending` are the messages that were sent to it since the last step, by channel.
         """
         self._send({"op": "step", "instants": list(instants), "pending": dict(pending)})
         reply: Reply = self._expect("done", STEP_TIMEOUT, Kind.STUCK)

@@ -41,13 +41,10 @@ _PLAIN |= dict.fromkeys(("executable", "gid", "gids", "uid"))
 
 
 def fork_children(own: Sequence[str]) -> None:
-    """Let what this program starts be forked from now on.
+    """Let what this program starts be forked from now on; it does not return in the processes of what it starts.
 
-    It is to be called while the program has one thread, and has read nothing of the student's. It does not return in
-    the processes of what the program starts.
-
-    Args:
-        own: first words of the names of packages that the program has, and what it starts does not.
+    It is to be called while the program has one thread, and has read nothing of the student's. `own` are first words of
+    the names of packages that the program has, and what it starts does not.
     """
     before = getattr(subprocess.Popen, "_execute_child", None)
     if before is None or list(inspect.signature(before).parameters)[: len(_PARAMETERS)] != _PARAMETERS:

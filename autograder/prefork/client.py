@@ -50,14 +50,11 @@ class ForkServer:
         return self._popen.pid
 
     def spawn(self, request: Request, status: int) -> int:
-        """Fork a program into a sandbox that stands; return its process id.
+        """Fork a program into a sandbox that stands; return its process id, or raise a ForkError.
 
         Args:
             request: the program; it gets the descriptors `request.fds`, under the same numbers.
             status: the descriptor that gets its exit status, as a line.
-
-        Raises:
-            ForkError: it could not be done.
         """
         with self._lock:
             try:

@@ -28,9 +28,6 @@ def join(holder: int) -> int:
 
     This process becomes the master of the user namespace that owns the others, which the kernel grants to the user who
     has made it. Its next child is in the pid namespace, too.
-
-    Raises:
-        OSError: the kernel does not let this process in.
     """
     theirs, ours = Path(f"/proc/{holder}/ns"), Path("/proc/self/ns")
     others = [_open(theirs / name) for name in _NAMESPACES if not (theirs / name).samefile(ours / name)]

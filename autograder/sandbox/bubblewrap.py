@@ -35,14 +35,9 @@ def rlimits(limits: Limits) -> list[str]:
 
 
 def cell(command: list[str], *, scratch: Path, size: int) -> list[str]:
-    """Return the command line of a cell: own user, network and ipc namespace, `scratch` a sized file system.
+    """Return the command line of a cell: own user, network and ipc namespace, `scratch` a file system of `size` bytes.
 
     The cell has no pid namespace of its own: a bubblewrap inside it could not mount /proc otherwise.
-
-    Args:
-        command: what runs in the cell.
-        scratch: the folder that becomes the file system.
-        size: of it, in bytes.
     """
     return [
         *("bwrap", "--die-with-parent", "--unshare-user", "--unshare-net", "--unshare-ipc"),

@@ -47,12 +47,9 @@ def in_cell(
 
     Args:
         make_command: gets the cell's scratch folder, returns the command.
-        tier: how strongly the cell is kept apart.
+        tier: how strongly the cell is kept apart; an IsolationError where this machine cannot give it.
         limits: a bound on the whole cell, students' processes included.
         pass_fds: descriptors that the command inherits.
-
-    Raises:
-        IsolationError: this machine cannot give the tier.
     """
     require(tier)
     scratch = Path(tempfile.mkdtemp(prefix="cell-"))

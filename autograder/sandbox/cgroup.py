@@ -82,9 +82,8 @@ def bounded() -> bool:
 def homes(mountinfo: str, own: str) -> list[Path]:
     """Return the folders in which a group with the pids controller can be made, nearest to this process first.
 
-    Args:
-        mountinfo: what `/proc/self/mountinfo` says, see proc_pid_mountinfo(5).
-        own: what `/proc/self/cgroup` says, see cgroups(7).
+    `mountinfo` and `own` are what `/proc/self/mountinfo` and `/proc/self/cgroup` say, see proc_pid_mountinfo(5) and
+    cgroups(7).
     """
     found = []
     for line in mountinfo.splitlines():

@@ -42,11 +42,7 @@ def namespaces_failure() -> str | None:
 
 
 def require(tier: Tier) -> Tier:
-    """Return `tier` if this machine can give it.
-
-    Raises:
-        IsolationError: it cannot; the message says why and what mends it.
-    """
+    """Return `tier` if this machine can give it, or raise an IsolationError that says why not and what mends it."""
     failure = namespaces_failure() if tier is Tier.BUBBLEWRAP else None
     if failure is not None:
         raise IsolationError(

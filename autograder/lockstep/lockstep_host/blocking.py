@@ -66,9 +66,7 @@ class Blocking:
     def check(self, executor: Executor, end: int | None) -> None:
         """Report a callback that waits for ever because its own callback group holds back what it waits for.
 
-        Args:
-            executor: which has found nothing to do.
-            end: the ROS time in ns at which its wait times out; None for never.
+        `executor` has found nothing to do; `end` is the ROS time in ns at which its wait times out, None for never.
         """
         for reader in self._host.counts.behind:
             client = reader.entity

@@ -1,8 +1,8 @@
 """Callback threads: callbacks that may block, of which one runs at a time.
 
-A callback may wait for what only another callback brings: `client.call()`, `rate.sleep()`, an event. rclpy's
-MultiThreadedExecutor allows that if the callback groups do. Here each callback of such an executor has a thread as
-well, but one thread runs until it is done or waits, and then the next, in the same order every time.
+A callback may wait for what only another callback brings: `client.call()`, `rate.sleep()`, an event. In rclpy's
+MultiThreadedExecutor it may. Here each callback of such an executor has a thread as well, but one thread runs until it
+is done or waits, and then the next, in the same order every time.
 """
 
 from __future__ import annotations

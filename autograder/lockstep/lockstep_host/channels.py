@@ -25,26 +25,14 @@ def type_name(kind: Any) -> str:
 
 
 def written(topic: str, kind: Any, qos: Any) -> str:
-    """Return the channel that a publisher writes.
-
-    Args:
-        topic: its resolved name.
-        kind: the message class.
-        qos: the publisher's profile.
-    """
+    """Return the channel that a publisher with a profile writes; the topic's name is resolved."""
     reliability = BEST_EFFORT if qos.reliability.name == "BEST_EFFORT" else RELIABLE
     durability = LATCHED if qos.durability.name == "TRANSIENT_LOCAL" else VOLATILE
     return _topic(topic, kind, reliability, durability)
 
 
 def read(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
-    """Return the channels that a subscription reads: all that offer at least what it requests.
-
-    Args:
-        topic: its resolved name.
-        kind: the message class.
-        qos: the subscription's profile.
-    """
+    """Return the channels that a subscription reads: all that offer at least what its profile requests."""
     reliabilities = (RELIABLE,) if qos.reliability.name == "RELIABLE" else (RELIABLE, BEST_EFFORT)
     durabilities = (LATCHED,) if qos.durability.name == "TRANSIENT_LOCAL" else (LATCHED, VOLATILE)
     return tuple(_topic(topic, kind, one, two) for one in reliabilities for two in durabilities)
@@ -71,13 +59,7 @@ def is_topic(channel: str) -> bool:
 
 
 def response(service: str, kind: Any, prefix: str) -> str:
-    """Return the channel of a service's responses to one process.
-
-    Args:
-        service: its resolved name.
-        kind: its class.
-        prefix: of the process's GUIDs.
-    """
+    """Return the channel of a service's responses to one process, by the prefix of its GUIDs."""
     return f"{service} {type_name(kind)} response {prefix}"
 
 

@@ -38,14 +38,7 @@ class CallbackThreadsExecutor(SingleThreadedExecutor):
 def spin_until_future_complete(
     executor: Executor, future: Any, timeout_sec: float | None, ros_time: Callable[[], int]
 ) -> None:
-    """Spin until a future is done, as rclpy's function of this name, with a time-out in ROS time.
-
-    Args:
-        executor: whose callbacks run.
-        future: what is waited for.
-        timeout_sec: in seconds of ROS time; None or a negative number for none.
-        ros_time: returns ROS time in ns.
-    """
+    """Spin until a future is done, as rclpy's function of this name, with a time-out in s of ROS time."""
     future.add_done_callback(lambda _: executor.wake())
     end = None if timeout_sec is None or timeout_sec < 0 else ros_time() + round(timeout_sec * 1e9)
     left = None if end is None else TimeoutObject(timeout_sec or 0.0)

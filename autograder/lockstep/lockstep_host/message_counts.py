@@ -150,14 +150,7 @@ class MessageCounts:
 
 
 def wait_for(reader: Reader, entity: Any, context: Any, seconds: float) -> bool:
-    """Wait until a message has arrived for a reader; return whether one has.
-
-    Args:
-        reader: who waits.
-        entity: its rclpy object.
-        context: rclpy's context of that object.
-        seconds: of real time, at most.
-    """
+    """Wait at most `seconds` of real time until a message has arrived for a reader; return whether one has."""
     try:
         with entity.handle if hasattr(entity, "handle") else entity, context.handle:
             return _wait_for(reader, entity, context, int(max(0.0, seconds) * 1e9))
