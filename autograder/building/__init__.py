@@ -1,5 +1,5 @@
 """Building: a student's packages by colcon, in a sandbox that has no network.
 
-`build` builds what a suite wants. `interface_bundle` takes a submission's message packages from the cache of builds.
-`observed` tells checks what became of each package where a failed build does not end the grading.
+`build` builds what a suite wants, and tells checks what became of each package where a failed build does not end the
+grading. `interface_bundle` takes a submission's message packages from the cache of builds.
 """

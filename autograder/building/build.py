@@ -1,17 +1,35 @@
-"""Building a student's packages: colcon, in a sandbox that has no network."""
+"""Building what a suite wants: a build that fails ends the grading, or is something that the checks see."""
 
 from __future__ import annotations
 
+import math
+import subprocess
 import time
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.building.colcon import colcon_build
+from autograder.building.colcon import colcon_build, require_contained
 from autograder.building.interface_bundle import install_bundle, interface_bundle
-from autograder.diagnosis import Diagnosis, Kind
+from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.packages import find_packages
 from autograder.result import Build
+from autograder.unwritten import explain
 from autograder.workspace import Workspace
+
+
+@dataclass(frozen=True)
+class Observed:
+    """How building a suite's packages went all together, and by package; OK for one that was built."""
+
+    build: Build
+    diagnoses: Mapping[str, Diagnosis]
+
+    @property
+    def diagnosis(self) -> Diagnosis:
+        """The first package's that was not built, or OK."""
+        return next((found for found in self.diagnoses.values() if found is not OK), OK)
 
 
 def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = True) -> None:
@@ -51,6 +69,40 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
         skipped = ["--packages-skip", *bundle] if bundle else []
         logs.append(colcon_build(workspace, "--packages-up-to", *wanted, *skipped))
     return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)), "\n".join(filter(None, logs)))
+
+
+def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> Observed:
+    """Build packages of a workspace.
+
+    Where a build may fail, and does, each package is built by itself, so that one's error is not the other's. Colcon
+    alone judges then whether a package is whole.
+
+    Raises:
+        StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.
+    """
+    source = workspace.root / "src"
+    try:
+        require_packages(source, packages, whole=not may_fail)
+        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+    except StudentError as error:
+        if not may_fail:
+            raise StudentError(explain(error.diagnosis, source, *packages)) from None
+    subprocess.run(["rm", "-rf", "--", workspace.root / "build", workspace.install], check=True)
+    builds: list[Build] = []
+    diagnoses: dict[str, Diagnosis] = {}
+    for name in packages:
+        try:
+            require_packages(source, (name,), whole=False)
+            builds.append(build(workspace, (name,)))
+            diagnoses[name] = OK
+        except StudentError as error:
+            builds.append(Build(False, 0.0, log=error.diagnosis.detail))
+            diagnoses[name] = explain(error.diagnosis, source, name)
+    require_contained(workspace.install)  # a build that failed was not looked at yet
+    seen = tuple(sorted({name for each in builds for name in each.packages}))
+    log = "\n".join(filter(None, (each.log for each in builds)))
+    seconds = round(math.fsum(each.seconds for each in builds), 2)
+    return Observed(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
 
 
 def _missing(source: Path, name: str, found: dict[str, Path]) -> str:

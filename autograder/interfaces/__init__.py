@@ -7,9 +7,8 @@ content-addressed cache.
 
 from autograder.interfaces.cache import Cache
 from autograder.interfaces.exceptions import AlreadyLoadedError, DefinitionError, GenerationError, InterfaceError
-from autograder.interfaces.loading import load
+from autograder.interfaces.loading import load, load_from
 from autograder.interfaces.prefix import build
-from autograder.interfaces.workspace_packages import load_from
 
 __all__ = [
     "AlreadyLoadedError",

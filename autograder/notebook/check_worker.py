@@ -56,7 +56,7 @@ def _drive(
     options: list[str],
     parameter_file: str,
 ) -> dict[str, Any]:
-    from autograder.building.observed import build_workspace
+    from autograder.building.build import build_workspace
     from autograder.harness import SteppedHarness, drive
     from autograder.harness.drive import LISTENS, OFFERS
     from sim.codec import from_json
@@ -80,7 +80,7 @@ def _drive(
 
 
 def _check(workspace: Workspace, out: Path, assignment: str) -> dict[str, Any]:
-    from autograder.building.observed import build_workspace
+    from autograder.building.build import build_workspace
     from autograder.checks import Outcome, suites
     from autograder.gallery import Gallery
     from autograder.grading.plugin import GradingPlugin, run

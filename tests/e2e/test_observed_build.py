@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building.observed import build_workspace
+from autograder.building.build import build_workspace
 from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
