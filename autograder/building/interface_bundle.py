@@ -1,8 +1,8 @@
 """A submission's interface packages as one bundle: built alone by colcon, and kept for whoever brings the same ones.
 
 Building messages takes ten times as long as building nodes, and most of a class brings the same messages. The bundle is
-built in a workspace of its own that holds nothing else of the submission, so that what is kept depends on nothing but
-the content that it is kept under. What student's build files made is used in sandboxes only.
+built in a workspace of its own, so what is kept depends on nothing but the content that it is kept under. What
+student's build files made is used in sandboxes only.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Grading one submission: a worker in a cell, and one retry when the grader itself failed.
 
-A program that cannot be stepped runs in real time and may lose a point that it deserves on a busy machine. Where the
-machine was seen to hold it up and it lost a point, the submission is graded once more while this process grades nothing
-else.
+A program that cannot be stepped may lose a point that it deserves on a busy machine. Where the machine was seen to hold
+it up and it lost a point, the submission is graded once more while this process grades nothing else.
 """
 
 from __future__ import annotations

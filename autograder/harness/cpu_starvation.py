@@ -1,8 +1,7 @@
 """How long a busy machine kept programs in real time from running.
 
-Only the kernel can tell a program that is late from one that the machine did not let run: it counts how long each
-thread was ready and waited for a processor. What stops the whole machine stops the grader as well, and the grader's own
-clock shows it.
+Only the kernel can tell a program that is late from one that the machine did not let run. What stops the whole machine
+stops the grader as well, and the grader's own clock shows it.
 """
 
 from __future__ import annotations

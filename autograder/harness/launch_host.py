@@ -4,7 +4,6 @@
 
 When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
 first child; whatever loses its parent becomes another one. If DESCRIPTOR is a dash, this process becomes `ros2` itself.
-Where it was forked, the Python programs that a launch starts are forked, too.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Message packages from their texts alone, for the trusted process: no line of CMake or Python of a student's runs.
 
-`build` turns the texts of a package (`msg/*.msg`, `srv/*.srv`, `action/*.action`) into a prefix that `load` makes
-importable in this process; `load_from` does both for a package in a student's workspace. Built prefixes are kept in a
-content-addressed cache.
+`build` turns the texts of a package into a prefix, which a content-addressed cache keeps, and `load` makes it
+importable in this process. `load_from` does both for a package in a student's workspace.
 """
 
 from autograder.interfaces.cache import Cache

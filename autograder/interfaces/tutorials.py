@@ -1,8 +1,7 @@
 """Installs the interface packages of ROS's own tutorials beside the wheels, which lack them.
 
-`example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs` are built from `tutorials.yaml` into the prefix of
-this environment. They are for Python programs: they lack what a CMake package that uses them would need. Set-up runs
-this module. A sourced ROS 2 has the real packages, and nothing happens.
+They are built from `tutorials.yaml` into the prefix of this environment, for Python programs: they lack what a CMake
+package that uses them would need. Set-up runs this module. A sourced ROS 2 has the real packages, and nothing happens.
 """
 
 from __future__ import annotations

@@ -1,9 +1,7 @@
 """Python programs are forked into their sandboxes from a process that has imported what they share.
 
-Most of what a small ROS program computes is its imports, and a submission is graded by dozens of programs. A fork
-server (`server.py`) is a trusted process outside every sandbox. It has imported a profile's modules (`profiles.py`),
-and reads no file of a student's. Bubblewrap makes the sandbox, as for any command. The server forks a process, which
-enters the sandbox and gives up its rights there (`confinement.py`), and then becomes the program (`emulation.py`).
-
-What a forked program starts can be forked as well: `children.py`. `client.py` is the grader's end.
+A fork server (`server.py`) is a trusted process outside every sandbox. It has imported a profile's modules
+(`profiles.py`), and reads no file of a student's. Bubblewrap makes the sandbox, as for any command. The server forks a
+process, which enters the sandbox and gives up its rights there (`confinement.py`), and then becomes the program
+(`emulation.py`). What that starts can be forked as well: `children.py`. `client.py` is the grader's end.
 """

@@ -1,10 +1,10 @@
 """What a forked program starts is forked, too: a child fork server.
 
-What `ros2 launch` starts are ROS programs, each of which would import all that the launch was forked with. What colcon
-starts runs setup.py, and would import setuptools. Neither can fork them itself: it has threads, and things of its own
-in memory. So before it does anything else it forks the child fork server, which stays as it is, and forks for each
-command that `subprocess` is given. Scripts of this Python are forked. Any other command is started as ever, and so is
-every command where this Python's `subprocess` is another than this knows.
+What `ros2 launch` starts would import all that the launch was forked with, and what colcon starts would import
+setuptools. Neither can fork them itself: it has threads, and things of its own in memory. So before it does anything
+else it forks the child fork server, which stays as it is, and forks for each command that `subprocess` is given.
+Scripts of this Python are forked. Any other command is started as ever, and so is every command where this Python's
+`subprocess` is another than this knows.
 
 A program's parent is the one who asked: the server's child makes it and ends, and then it is adopted (`prctl(2)`,
 PR_SET_CHILD_SUBREAPER). All of it runs inside the sandbox, and is no less the student's to harm.

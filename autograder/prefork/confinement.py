@@ -1,8 +1,7 @@
 """Going into a sandbox that bubblewrap has made, and giving up what bubblewrap would not have given.
 
-A process that it starts has the sandbox's namespaces, no capability and no way to any, three standard streams and the
-descriptors meant for it, limits, and an environment of its own. A forked one has to come to the very same by itself.
-See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2).
+A forked process has to come by itself to what bubblewrap gives: the sandbox's namespaces, no capability and no way to
+any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2).
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 """Running students' code where it can do no harm.
 
-A submission is handled in a *cell* (`cell.py`): a trusted worker process in a user and network namespace that no
-other submission is in, with a scratch file system of limited size. Inside it every piece of student code runs in a
-*sandbox* (`bubblewrap.py`): its own process tree that sees a read-only system, the workspace and nothing else,
-watched while it runs (`process.py`, `procfs.py`) against `Limits`. Most programs are not started there but forked
-into it, from an interpreter that has done their imports (`autograder.prefork`).
+A submission is handled in a *cell* (`cell.py`): a trusted worker in a user and network namespace that no other
+submission is in, with a scratch file system of limited size. In it every piece of student code runs in a *sandbox*
+(`bubblewrap.py`): its own process tree that sees a read-only system and the workspace, watched (`process.py`) against
+`Limits`. Most programs are forked into it, from an interpreter that has done their imports (`autograder.prefork`).
 
 Both exist in two tiers (`tiers.py`): `bubblewrap`, and the weaker `process` for machines that have no namespaces.
 """

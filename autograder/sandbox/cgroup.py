@@ -1,9 +1,8 @@
 """A bound that the kernel keeps on how many processes a sandbox has, where the grader runs as root.
 
-`prlimit --nproc` bounds everybody else. The kernel never applies it to the machine's root, whatever namespaces root's
-processes are in (setrlimit(2), RLIMIT_NPROC), and a fork bomb outgrows anything that only watches it: thousands of
-forks hold each other, and the one that is to be killed, up for minutes. So root's sandboxes get a control group with
-the kernel's pids controller (cgroups(7); version 1 and version 2).
+`prlimit --nproc` bounds everybody else. The kernel never applies it to the machine's root (setrlimit(2),
+RLIMIT_NPROC), and a fork bomb outgrows anything that only watches it. So root's sandboxes get a control group with the
+kernel's pids controller (cgroups(7); version 1 and version 2).
 """
 
 from __future__ import annotations

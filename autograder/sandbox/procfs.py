@@ -60,8 +60,7 @@ def cpu_seconds(pids: Iterable[int]) -> float:
 def waited_ns(pids: Iterable[int]) -> dict[int, int]:
     """Return by thread for how many nanoseconds it has waited for a processor, ready to run.
 
-    See schedstat in the Linux kernel's Documentation/scheduler/sched-stats.rst. Threads that vanish are left out, and
-    all of them where a kernel does not count.
+    See schedstat in the kernel's Documentation/scheduler/sched-stats.rst. Threads that vanish are left out.
     """
     waited: dict[int, int] = {}
     for pid in pids:
