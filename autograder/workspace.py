@@ -29,7 +29,6 @@ class Workspace:
         ros: the ROS 2 that it was built with.
         scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
         domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
-        memory: where the proof keeps what it has found; None where anybody gets marks.
         time_record: what harnesses find out about time; copies of a workspace share it.
     """
 
@@ -37,7 +36,6 @@ class Workspace:
     ros: RosEnvironment
     scratch: Path
     domain: int = 0
-    memory: Path | None = None
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
 
     @property

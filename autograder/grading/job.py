@@ -8,8 +8,6 @@ from pathlib import Path
 
 from autograder.sandbox import Tier
 
-MEMORY = "memory"  # the folder of a lane's scratch that outlives its jobs
-
 
 @dataclass(frozen=True)
 class Scope:
@@ -44,7 +42,6 @@ class Job:
         scratch: the cell's own file system; nothing in it outlives the cell.
         tier: how the submission is isolated.
         scope: how much of the suite is run.
-        memory: what outlives the job, for the next one of the proof.
     """
 
     path: Path
@@ -55,7 +52,6 @@ class Job:
     scratch: Path
     tier: Tier
     scope: Scope = ALL
-    memory: Path | None = None
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""
@@ -65,6 +61,6 @@ class Job:
     def from_json(cls, text: str) -> Job:
         """Read a job from its JSON."""
         data = json.loads(text)
-        paths = {name: Path(data[name]) for name in ("path", "out", "scratch", "memory") if data[name] is not None}
+        paths = {name: Path(data[name]) for name in ("path", "out", "scratch")}
         scope = Scope(**{**data["scope"], "only": tuple(data["scope"]["only"])})
         return cls(**{**data, **paths, "tier": Tier(data["tier"]), "scope": scope})

@@ -48,7 +48,7 @@ class Grading:
         home.mkdir(parents=True)
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
-        self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain, memory=job.memory)
+        self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._gallery = Gallery(job.out, closed=not job.scope.pictures, recordings=job.scope.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST

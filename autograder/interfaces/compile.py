@@ -7,8 +7,9 @@ import subprocess
 import sys
 import sysconfig
 from concurrent.futures import ThreadPoolExecutor
-from importlib.util import find_spec
 from pathlib import Path
+
+import numpy
 
 FAST = "rosidl_typesupport_fastrtps_c"
 INTROSPECTION = "rosidl_typesupport_introspection_c"
@@ -40,7 +41,7 @@ def compile_package(
     include = [f"-I{work / name}" for name in names]
     for root in prefixes:
         include += [f"-I{folder}" for folder in sorted((root / "include").glob("*/"))] + [f"-I{root / 'include'}"]
-    include += [f"-I{sysconfig.get_paths()['include']}", *_numpy()]
+    include += [f"-I{sysconfig.get_paths()['include']}", f"-I{numpy.get_include()}"]
     flags = ["-O0", "-fPIC", "-w", "-fvisibility=default", f'-DROS_PACKAGE_NAME="{package}"', *include]
 
     def sources(name: str, pattern: str) -> list[Path]:
@@ -75,14 +76,6 @@ def compile_package(
     _link(fast, [objects[path] for path in main], [*common, *own])
     extension = site(prefix) / package / f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
     extension.symlink_to(os.path.relpath(fast, extension.parent))
-
-
-def _numpy() -> list[str]:
-    """Return where numpy's headers are, as options; to import it would take longer than to compile some files."""
-    spec = find_spec("numpy")
-    if spec is None or spec.origin is None:
-        raise RuntimeError("numpy is not installed")
-    return [f"-I{Path(spec.origin).parent / core / 'include'}" for core in ("_core", "core")]
 
 
 def _library(prefixes: tuple[Path, ...], package: str, kind: str) -> bool:

@@ -31,7 +31,6 @@ import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.intake import read_packages
-from autograder.probes.memory import Memory
 from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
@@ -81,21 +80,15 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jo
         StudentError: there is no room left on the disk.
         GraderError: there is no domain left to listen in.
     """
-    memory = Memory(workspace.memory)
-    recalled = [memory.recall(source, wanted) for wanted in wanted_runs]
-    new_runs = [wanted for wanted, report in zip(wanted_runs, recalled, strict=True) if report is None]
     with ThreadPoolExecutor(jobs) as pool:
         once = partial(_run, workspace, source)
-        made = list(pool.map(once, new_runs))
-        stopped = [place for place, report in enumerate(made) if report.ending is Ending.WALL_TIME]
-        files = Counter(new_runs[place].files for place in stopped)
-        again = [place for place in stopped if files[new_runs[place].files] == 1]
-        for place, report in zip(again, pool.map(once, [new_runs[place] for place in again]), strict=True):
-            made[place] = report
-    for wanted, report in zip(new_runs, made, strict=True):
-        memory.keep(source, wanted, report)
-    new = iter(made)
-    return [report or next(new) for report in recalled]
+        reports = list(pool.map(once, wanted_runs))
+        stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]
+        files = Counter(wanted_runs[place].files for place in stopped)
+        again = [place for place in stopped if files[wanted_runs[place].files] == 1]
+        for place, report in zip(again, pool.map(once, [wanted_runs[place] for place in again]), strict=True):
+            reports[place] = report
+    return reports
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:

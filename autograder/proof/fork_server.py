@@ -24,7 +24,7 @@ from pathlib import Path
 from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.grading import worker
-from autograder.grading.job import MEMORY, Job
+from autograder.grading.job import Job
 from autograder.prefork.profiles import PROFILES
 from autograder.sandbox.launcher import warm_up
 
@@ -32,7 +32,7 @@ OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
 
 
 def serve(scratch: Path, client: Connection) -> None:
-    """Do jobs until the client ends, each in a child of its own that leaves no file but MEMORY's."""
+    """Do jobs until the client ends, each in a child of its own that leaves no file."""
     said = scratch / "said.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
@@ -43,7 +43,7 @@ def serve(scratch: Path, client: Connection) -> None:
             _work(job, suite, said)
         _, status = os.waitpid(child, 0)
         reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
-        for left in (left for left in scratch.iterdir() if left.name != MEMORY):
+        for left in scratch.iterdir():
             subprocess.run(["rm", "-rf", "--", left], check=True)
         client.send_bytes(json.dumps(reply).encode())
 

@@ -9,11 +9,10 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from dataclasses import replace
 from multiprocessing import Pipe
 from pathlib import Path
 
-from autograder.grading.job import MEMORY, Job
+from autograder.grading.job import Job
 from autograder.sandbox.cell import CellReport, in_cell
 from autograder.sandbox.limits import GRADING_CELL, PROOF_CELL
 from autograder.sandbox.process import Ending
@@ -57,7 +56,7 @@ class Lanes:
         lane = self._idle.get()
         try:
             lane = lane or self._starter.submit(_Lane, self.tier).result()
-            report = lane.grade(replace(job_in(lane.scratch / "job"), memory=lane.scratch / MEMORY))
+            report = lane.grade(job_in(lane.scratch / "job"))
             if report.ending is not Ending.EXITED:
                 lane.close()
                 lane = None
