@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
 from autograder import layout
@@ -51,38 +51,32 @@ def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT)
 def files(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> list[Path]:
     """Return the sorted paths of the files that a grading of the assignment reads; the arguments are as in `digest`."""
     chapter = root / "chapters" / assignment
-    shared = [root / name for name in ("autograder", "sim", "assets/worlds", *reads)]
-    own = [*_check_folders(assignment, root), chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]
-    return sorted({path for top in shared + own for path in _files_below(top, root / "autograder")})
+    tops = [root / name for name in ("autograder", "sim", "assets/worlds", *reads)]
+    tops += [chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]
+    chapters = _chapters(assignment, root / "autograder" / "checks")
+    found = {path for top in tops for path in (top, *top.rglob("*")) if path.is_file()}
+    return sorted(path for path in found if _is_read(path.relative_to(root).parts, chapters))
 
 
-def _check_folders(assignment: str, root: Path) -> set[Path]:
-    """Return the folder of the assignment's checks, and those of the chapters from which they import."""
-    home = root / "autograder" / "checks"
-    pending = [home / f"ch{assignment}"]
-    found: set[Path] = set()
+def _chapters(assignment: str, checks: Path) -> set[str]:
+    """Return the name of the folder of the assignment's checks, and of those from which they import."""
+    pending = [f"ch{assignment}"]
+    found: set[str] = set()
     while pending:
-        folder = pending.pop()
-        if folder not in found:
-            found.add(folder)
-            texts = (path.read_text(encoding="utf-8") for path in folder.rglob("*.py") if not _is_proof(path, home))
-            pending += [home / name for text in texts for name in CHECKS_IMPORT.findall(text)]
+        name = pending.pop()
+        if name not in found:
+            found.add(name)
+            sources = (
+                path for path in (checks / name).rglob("*.py") if PROOF.isdisjoint(path.relative_to(checks).parts)
+            )
+            pending += [other for path in sources for other in CHECKS_IMPORT.findall(path.read_text(encoding="utf-8"))]
     return found
 
 
-def _is_proof(path: Path, home: Path) -> bool:
-    """Return whether a path below `home`, the folder of all checks, is for the proof only."""
-    return not PROOF.isdisjoint(path.relative_to(home).parts)
-
-
-def _files_below(path: Path, grader: Path) -> Iterator[Path]:
-    """Yield a file, or the files of a folder that a grading reads, without the checks of chapters."""
-    if path.is_file():
-        yield path
-    for child in path.iterdir() if path.is_dir() else ():
-        not_read = path == grader and child.name in NOT_READ
-        home = grader / "checks"
-        proof = child.is_relative_to(home) and _is_proof(child, home)
-        checks = path == home and CHAPTER.match(child.name)
-        if not (not_read or proof or checks or child.name.startswith(".") or child.name == "__pycache__"):
-            yield from _files_below(child, grader)
+def _is_read(parts: tuple[str, ...], chapters: set[str]) -> bool:
+    """Return whether a grading reads a file by its path below the root, if these chapters' checks are read."""
+    if "__pycache__" in parts or any(part.startswith(".") for part in parts):
+        return False
+    if parts[:2] == ("autograder", "checks"):
+        return PROOF.isdisjoint(parts) and (parts[2] in chapters or not CHAPTER.match(parts[2]))
+    return parts[0] != "autograder" or parts[1] not in NOT_READ

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import UnionType
+from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
 
 from autograder.checks import Check, Outcome, Visibility
-from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import UsageError
 
 if TYPE_CHECKING:
@@ -224,39 +225,23 @@ def from_json(data: Any, *, source: str = "result") -> Result:
     if error is not None:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
         raise UsageError(f"{source}: not a grading result: {field}: {error.message}")
-    assert isinstance(data, dict)
-    fields = _known_fields(Result, data)
-    fields["status"] = Status(fields["status"])
-    diagnosis = _known_fields(Diagnosis, fields["diagnosis"])
     try:
-        fields["diagnosis"] = Diagnosis(**{**diagnosis, "kind": Kind(diagnosis["kind"])})
+        result: Result = structure(Result, data)
     except ValueError as error:
-        raise UsageError(f"{source}: not a grading result of this version: diagnosis.kind: {error}") from None
-    fields["checks"] = tuple(_check_from_json(item) for item in fields["checks"])
-    if fields["build"] is not None:
-        fields["build"] = Build(
-            **{**_known_fields(Build, fields["build"]), "packages": tuple(fields["build"]["packages"])}
-        )
-    fields["artifacts"] = tuple(Artifact(**_known_fields(Artifact, item)) for item in fields["artifacts"])
-    return Result(**fields)
+        raise UsageError(f"{source}: not a grading result of this version: {error}") from None
+    return result
 
 
-def _known_fields(kind: type, item: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields that this version knows. A later version may have added others."""
-    names = {field.name for field in dataclasses.fields(kind)}
-    return {name: value for name, value in item.items() if name in names}
-
-
-def _check_from_json(item: dict[str, Any]) -> CheckResult:
-    return CheckResult(
-        **{
-            **_known_fields(CheckResult, item),
-            "outcome": Outcome(item["outcome"]),
-            "visibility": Visibility(item["visibility"]),
-            "hints": tuple(item["hints"]),
-            "holds": tuple(item.get("holds", ())),
-        }
-    )
+def structure(kind: Any, data: Any) -> Any:
+    """Return the value of a type that JSON describes; fields that this version does not know are left out."""
+    if dataclasses.is_dataclass(kind):
+        known = get_type_hints(kind)
+        return kind(**{name: structure(known[name], value) for name, value in data.items() if name in known})  # type: ignore[operator]
+    if get_origin(kind) is UnionType:  # with None
+        return None if data is None else structure(get_args(kind)[0], data)
+    if get_origin(kind) is tuple:
+        return tuple(structure(get_args(kind)[0], item) for item in data)
+    return kind(data) if isinstance(kind, type) and issubclass(kind, (Enum, Path)) else data
 
 
 def write_json(path: Path, data: object) -> None:

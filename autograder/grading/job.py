@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from autograder.result import structure
 from autograder.sandbox import Tier
 
 
@@ -60,7 +61,5 @@ class Job:
     @classmethod
     def from_json(cls, text: str) -> Job:
         """Read a job from its JSON."""
-        data = json.loads(text)
-        paths = {name: Path(data[name]) for name in ("path", "out", "scratch")}
-        scope = Scope(**{**data["scope"], "only": tuple(data["scope"]["only"])})
-        return cls(**{**data, **paths, "tier": Tier(data["tier"]), "scope": scope})
+        job: Job = structure(cls, json.loads(text))
+        return job

@@ -25,6 +25,7 @@ MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that 
 FOREIGN_ELEMENTS = 128  # what a message of another package counts for
 KINDS = ("msg", "srv", "action")
 SECTIONS = {"msg": 1, "srv": 2, "action": 3}
+PARTS = {"msg": "a message has none", "srv": "request --- response", "action": "goal --- result --- feedback"}
 
 _PATH = re.compile(r"(msg|srv|action)/([A-Z][A-Za-z0-9]{0,79})\.(msg|srv|action)")
 _PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]{0,78}[a-z0-9]")
@@ -118,7 +119,7 @@ class _Reader:
     def weigh(self, messages: Mapping[str, _Reader], above: tuple[str, ...]) -> int:
         """Count the elements that a fresh message of this type makes room for."""
         if self._path in above:
-            raise DefinitionError(self._path, "the message contains itself: take the field out that leads back to it")
+            raise self._error("the message contains itself: take the field out that leads back to it")
         total = 1
         for count, inner, line in self._arrays:
             each = FOREIGN_ELEMENTS if inner == "" else 1
@@ -126,21 +127,23 @@ class _Reader:
                 each = messages[inner].weigh(messages, (*above, self._path))
             total += count * each
             if total > MAX_ELEMENTS:
-                raise DefinitionError(
-                    self._path,
+                raise self._error(
                     f"arrays of more than {MAX_ELEMENTS} elements in all: use fewer, or an unbounded array",
                     line,
                 )
         return total
 
+    def _error(self, problem: str, line: str = "") -> DefinitionError:
+        return DefinitionError(self._path, problem, line)
+
     def _clean(self, line: str) -> str:
         code = line.replace("\t", " ").partition("#")[0].rstrip()
         if not _PRINTABLE.fullmatch(code):
-            raise DefinitionError(self._path, "outside comments only plain ASCII characters can stand", ascii(code))
+            raise self._error("outside comments only plain ASCII characters can stand", ascii(code))
         if "\\" in code:
-            raise DefinitionError(self._path, "a backslash cannot stand in a definition: take it out", code)
+            raise self._error("a backslash cannot stand in a definition: take it out", code)
         if code == "---" and line != "---":
-            raise DefinitionError(self._path, "the separator --- stands alone, without comment or space", line)
+            raise self._error("the separator --- stands alone, without comment or space", line)
         return code
 
     def _sections(self) -> list[list[str]]:
@@ -152,27 +155,21 @@ class _Reader:
                 sections[-1].append(line)
         wanted = SECTIONS[self._kind]
         if len(sections) != wanted:
-            parts = {
-                "msg": "a message has none",
-                "srv": "request --- response",
-                "action": "goal --- result --- feedback",
-            }
-            raise DefinitionError(
-                self._path, f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {parts[self._kind]}"
-            )
+            said = f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {PARTS[self._kind]}"
+            raise self._error(said)
         return sections
 
     def _read_section(self, lines: list[str]) -> None:
         if len(lines) > MAX_FIELDS:
-            raise DefinitionError(self._path, f"more than {MAX_FIELDS} fields: use an array")
+            raise self._error(f"more than {MAX_FIELDS} fields: use an array")
         names: set[str] = set()
         for line in lines:
             if line.startswith(" "):
-                raise DefinitionError(self._path, "the line begins with a space: take it out", line)
+                raise self._error("the line begins with a space: take it out", line)
             spec = self._parse(line)
             for element in (*spec.fields, *spec.constants):
                 if element.name in names:
-                    raise DefinitionError(self._path, f"{element.name} is there twice: rename one", line)
+                    raise self._error(f"{element.name} is there twice: rename one", line)
                 names.add(element.name)
             for constant in spec.constants:
                 self._check_value(constant.value, line)
@@ -188,23 +185,21 @@ class _Reader:
         except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
             what = "a field is written `type name`, a constant `type NAME=value`"
             reason = str(error)
-            raise DefinitionError(self._path, what if reason == line else f"{reason} ({what})", line) from None
+            raise self._error(what if reason == line else f"{reason} ({what})", line) from None
 
     def _check_field(self, field: Any, line: str) -> None:
         if field.name in _C_WORDS or keyword.iskeyword(field.name):
-            raise DefinitionError(
-                self._path, f"{field.name} is a word of C or Python: give the field another name", line
-            )
+            raise self._error(f"{field.name} is a word of C or Python: give the field another name", line)
         kind = field.type
         if kind.type in ("time", "duration") and kind.pkg_name is None:
             new = kind.type.capitalize()
-            raise DefinitionError(self._path, f"ROS 2 has no {kind.type}: use builtin_interfaces/{new}", line)
+            raise self._error(f"ROS 2 has no {kind.type}: use builtin_interfaces/{new}", line)
         count = kind.array_size if kind.is_array and kind.array_size and not kind.is_upper_bound else 1
         inner = None
         if kind.pkg_name == self._package:
             if kind.type not in self._own:
-                raise DefinitionError(
-                    self._path, f"there is no msg/{kind.type}.msg in {self._package}: write it, or mend the name", line
+                raise self._error(
+                    f"there is no msg/{kind.type}.msg in {self._package}: write it, or mend the name", line
                 )
             inner = kind.type
         elif kind.pkg_name is not None:
@@ -217,7 +212,7 @@ class _Reader:
     def _check_value(self, value: object, line: str) -> None:
         for single in value if isinstance(value, list) else [value]:
             if isinstance(single, float) and not math.isfinite(single):
-                raise DefinitionError(self._path, "a value must be a finite number", line)
+                raise self._error("a value must be a finite number", line)
 
 
 def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:

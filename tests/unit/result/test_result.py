@@ -108,7 +108,7 @@ def test_fields_that_a_later_version_added_are_read_over(make_result: MakeResult
 def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: MakeResult) -> None:
     plain = make_result().to_json()
     plain["diagnosis"]["kind"] = "struck_by_lightning"
-    with pytest.raises(UsageError, match=r"of this version: diagnosis\.kind: 'struck_by_lightning'"):
+    with pytest.raises(UsageError, match=r"of this version: 'struck_by_lightning' is not a valid Kind"):
         from_json(plain)
 
 
