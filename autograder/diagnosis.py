@@ -36,12 +36,9 @@ class Kind(str, Enum):
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The outcome of reading, building and starting one submission.
+    """The outcome of reading, building and starting one submission: what happened, and what the student can do.
 
-    Attributes:
-        kind: name of the outcome.
-        sentence: what happened and what the student can do.
-        detail: relevant lines of output or traceback, already shortened. It may be empty.
+    `detail` is relevant lines of output or traceback, already shortened. It may be empty.
     """
 
     kind: Kind

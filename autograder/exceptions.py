@@ -21,11 +21,7 @@ class UsageError(AutograderError):
 
 
 class StudentError(AutograderError):
-    """The submission is wrong, and the student can correct it.
-
-    Attributes:
-        diagnosis: name of the outcome, and a sentence for the student.
-    """
+    """The submission is wrong, and the student can correct it: `diagnosis` says how."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         super().__init__(diagnosis.sentence)

@@ -45,13 +45,7 @@ _DAMAGED = (
 
 @dataclass(frozen=True)
 class SubmittedFile:
-    """A file of a submission.
-
-    Attributes:
-        path: path below the root of the submission, or below a folder of it.
-        data: content.
-        executable: whether its owner may execute it.
-    """
+    """A file of a submission, by its path below the root or a folder of it."""
 
     path: PurePosixPath
     data: bytes

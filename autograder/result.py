@@ -64,14 +64,9 @@ class CheckResult:
     def of(
         cls, check: Check, outcome: Outcome, message: str = "", *, fraction: float = 0.0, seconds: float = 0.0
     ) -> CheckResult:
-        """Return the result of a check.
+        """Return the result of a check, which took `seconds` of wall time.
 
-        Args:
-            check: the check.
-            outcome: its outcome. A check that was not checked has no points.
-            message: what is wrong.
-            fraction: share of the points, 0 to 1, that the check earns if it failed.
-            seconds: wall time of the check.
+        If it failed, it earns the share `fraction` of its points, 0 to 1. If it was not checked, it earns none.
         """
         share = {Outcome.PASSED: 1.0, Outcome.FAILED: fraction, Outcome.NOT_CHECKED: 0.0}[outcome]
         hints = () if outcome is Outcome.PASSED else check.hints
@@ -108,8 +103,7 @@ class Artifact:
     Attributes:
         name: path of the file, below the folder of the result.
         kind: kind of the artifact, such as "track".
-        sha256: digest of the file. For a track it is the digest of the recording, because the bytes of a picture may
-            differ from run to run.
+        sha256: digest of the file; of the recording for a track, as the bytes of a picture may differ from run to run.
         check: id of the check that saved it.
         caption: alternative text of the picture.
         run: path of the file with the run that the picture shows, for the player, or an empty string.
@@ -210,11 +204,7 @@ def _validator() -> Validator:
 
 
 def from_json(data: Any, *, source: str = "result") -> Result:
-    """Return the result that a JSON form describes.
-
-    Args:
-        data: the JSON form, as `json.loads` returns it.
-        source: name of the file, for the error.
+    """Return the result that a JSON form describes; `source` is the name of its file, for the error.
 
     Raises:
         UsageError: `data` does not match the schema. The message names `source` and the field.

@@ -21,8 +21,6 @@ class Finding:
     """What was looked at, and how it stands.
 
     Attributes:
-        name: what was looked at, in a word or two.
-        status: how it stands.
         found: what was found, in a sentence without its full stop.
         mend: the one command that mends it; empty when nothing has to be mended.
     """

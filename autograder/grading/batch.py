@@ -30,17 +30,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Request:
-    """One submission of a class to grade.
-
-    Attributes:
-        student: whose it is.
-        path: where it lies.
-        assignment: which assignment it answers.
-        seed: every hidden input is drawn from it.
-        isolation: the sandbox's tier.
-        out: the folder that gets its result and pictures.
-        resume: whether a stored result counts.
-    """
+    """One submission of a class to grade into the folder `out`; `resume` says whether a stored result counts."""
 
     student: str
     path: Path

@@ -126,15 +126,11 @@ class RealTimeHarness(Harness):
 
 
 def usual_rate(instants: Sequence[float], seconds: float) -> float:
-    """Return how many times a second something usually happens.
+    """Return how many times in `seconds` something usually happens; `instants` are in s, ascending.
 
     A busy machine keeps a program from running now and then, and what it would have done then never happens. A count
     would blame the program; the median interval does not. Where less than half as much happened as the median interval
     promises, the count is right.
-
-    Args:
-        instants: when it happened, in s, ascending.
-        seconds: the whole time.
     """
     count = len(instants) / seconds
     if len(instants) < 3:

@@ -26,10 +26,9 @@ C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection
 
 @dataclass(frozen=True)
 class Job:
-    """What is built from what.
+    """A package that is built.
 
     Attributes:
-        package: its name.
         prefix: where it goes.
         work: a folder for generated code.
         files: the interfaces' paths as .idl.

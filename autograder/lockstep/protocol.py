@@ -101,13 +101,10 @@ class Crash:
 
 @dataclass(frozen=True)
 class Deadlock:
-    """A call that will never return.
+    """A call that will never return; `name` is the service or action that it asks, or empty.
 
-    Attributes:
-        what: the call.
-        name: the service or action that it asks, or an empty string.
-        reason: what keeps the answer from being taken: thread (the only one is in the call), group (the callback group)
-            or spin (nothing spins yet).
+    `reason` is what keeps the answer from being taken: thread (the only one is in the call), group (the callback group)
+    or spin (nothing spins yet).
     """
 
     what: str

@@ -13,14 +13,7 @@ SEEN_SECONDS = 5.0  # of real time until a name is seen in the graph; only a wro
 def left_behind(workspace: Workspace, package: str, executable: str, names: Iterable[str]) -> str:
     """Return which relative names a program does not have in the namespace in which it is started, in a sentence.
 
-    Args:
-        workspace: the student's, built.
-        package: the program's package.
-        executable: the program.
-        names: its topics and services, relative.
-
-    Returns:
-        An empty string if it has all of them there.
+    The names are its topics and services. The sentence is empty if it has all of them there.
     """
     wanted = [f"{SPACE}/{name}" for name in names]
     with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={SPACE}")) as harness:

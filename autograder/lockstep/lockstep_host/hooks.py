@@ -37,12 +37,8 @@ _FEEDBACK = QoSProfile(depth=10)
 class Hooks:
     """The hooks that keep one `MessageCounts`.
 
-    Args:
-        counts: gets all that is made, sent and taken.
-        note: gets the reason why steps are not all that moves the program.
-
-    Attributes:
-        changed: True when there are endpoints or timers that the grader does not know yet.
+    `note` gets the reason why steps are not all that moves the program. `changed` is True when there are endpoints or
+    timers that the grader does not know yet.
     """
 
     def __init__(self, counts: MessageCounts, note: Callable[[str], None]) -> None:

@@ -43,11 +43,6 @@ _init_time_source = rclpy.time_source.TimeSource.__init__
 class Host:
     """One program in lockstep.
 
-    Args:
-        pipes: to the grader.
-        start_ns: the ROS time at which the program starts.
-        clock_rate: seconds that the machine's clocks count in a second of ROS time.
-
     Attributes:
         time: ROS time in nanoseconds.
         phase: how far the program has come: import, start or spin.
