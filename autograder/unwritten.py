@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.diagnosis import Diagnosis, Kind
@@ -17,36 +16,22 @@ _BUILT_FROM = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.
 _DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^>]*>\s*([\w.-]+)")
 
 
-@dataclass(frozen=True)
-class Stub:
-    """The first stub in a file such as `src/robot/setup.py`: the line's number from 1, and its text."""
-
-    path: str
-    line: int
-    text: str
-
-
-def find_stub(text: str, path: str) -> Stub | None:
-    """Return the first stub in a file's text, or None; `path` names the file in what is said about it."""
-    numbered = enumerate(text.splitlines(), 1)
-    return next((Stub(path, number, line.strip()) for number, line in numbered if STILL_TO_BE_WRITTEN in line), None)
-
-
 def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
     """Return why packages in `source` were not built: a file that is still to be written, or else the diagnosis.
 
     The packages of `source` that these depend on are looked at, too.
     """
-    stubs = list(_stubs(source, packages))
+    stubs = dict(_stubs(source, packages))
     if not stubs:
         return diagnosis
-    paths = [stub.path for stub in stubs]
+    paths = list(stubs)
     named = f"{paths[0]} is" if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]} are"
-    detail = "\n".join(f"{stub.path}, line {stub.line}: {stub.text}" for stub in stubs)
+    detail = "\n".join(f"{path}, {line}" for path, line in stubs.items())
     return Diagnosis(Kind.UNFINISHED, f"{named} still to be written: put your lines in place of the raise.", detail)
 
 
-def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[Stub]:
+def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """Yield each file that holds a stub, such as `src/robot/setup.py`, with the first one's line."""
     seen: set[str] = set()
     pending = [*reversed(packages)]
     while pending:
@@ -57,9 +42,10 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[Stub]:
         pending += _DEPENDENCY.findall(_read(source / name / "package.xml"))
         for pattern in _BUILT_FROM:
             for path in sorted((source / name).glob(pattern)):
-                stub = find_stub(_read(path), f"src/{path.relative_to(source)}")
-                if stub is not None:
-                    yield stub
+                lines = enumerate(_read(path).splitlines(), 1)
+                found = [f"line {number}: {line.strip()}" for number, line in lines if STILL_TO_BE_WRITTEN in line]
+                if found:
+                    yield f"src/{path.relative_to(source)}", found[0]
 
 
 def _read(path: Path) -> str:

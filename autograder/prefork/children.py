@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 from autograder.prefork.emulation import become, forget, set_command_line
-from autograder.prefork.protocol import MAX_BYTES
+from autograder.prefork.request import MAX_BYTES
 
 _PR_SET_CHILD_SUBREAPER = 36
 _PIPES = ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")

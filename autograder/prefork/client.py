@@ -10,7 +10,7 @@ import threading
 from collections.abc import Mapping
 from typing import Any
 
-from autograder.prefork.protocol import Request
+from autograder.prefork.request import Request
 
 # The command in a program's place: says that the sandbox stands, and ends with the program's exit status.
 HOLDER = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']

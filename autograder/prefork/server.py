@@ -24,7 +24,7 @@ from autograder.prefork import confinement
 from autograder.prefork.children import fork_children
 from autograder.prefork.emulation import Program, become, forget
 from autograder.prefork.profiles import PROFILES
-from autograder.prefork.protocol import MAX_BYTES, MAX_FDS, Request
+from autograder.prefork.request import MAX_BYTES, MAX_FDS, Request
 
 
 def main() -> Program:

@@ -10,7 +10,7 @@ from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ign
 
 from autograder.checks import CheckFailed
 from autograder.packages import MANIFEST, MAX_MANIFEST
-from autograder.unwritten import find_stub
+from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 PLACEHOLDER = "TODO"
 
@@ -70,7 +70,7 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
     Raises:
         CheckFailed: it is still to be written, or ROS would refuse it; says why.
     """
-    if find_stub(text, where):
+    if STILL_TO_BE_WRITTEN in text:
         raise CheckFailed(f"{where} is still to be written.")
     # No manifest needs a document type, and one can make a small file huge.
     if "<!DOCTYPE" in text or "<!ENTITY" in text:

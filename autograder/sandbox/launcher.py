@@ -11,7 +11,7 @@ import subprocess
 import threading
 
 from autograder.prefork.client import HOLDER, TIMEOUT, ForkError, ForkServer
-from autograder.prefork.protocol import Request
+from autograder.prefork.request import Request
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import bubblewrap, cgroup
 from autograder.sandbox.cgroup import ControlGroup

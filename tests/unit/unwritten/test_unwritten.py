@@ -9,7 +9,7 @@ import pytest
 
 from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.unwritten import explain, find_stub
+from autograder.unwritten import explain
 
 FAILED = Diagnosis(Kind.BUILD_FAILED, "colcon build failed.", "CMake Error at CMakeLists.txt:4:")
 DEPENDS = '<package format="3"><name>robot</name><exec_depend>interfaces</exec_depend></package>'
@@ -24,15 +24,15 @@ def write(source: Path, **files: str) -> Path:
     return source
 
 
-def test_the_released_stub_is_found_with_its_line() -> None:
-    stub = find_stub(f"cmake_minimum_required(VERSION 3.8)\n{CODE_STUB}\n", "src/robot/CMakeLists.txt")
-    assert stub is not None
-    assert (stub.path, stub.line) == ("src/robot/CMakeLists.txt", 3)
-    assert stub.text.startswith("raise NotImplementedError(")
+def test_the_released_stub_is_found_with_its_line(tmp_path: Path) -> None:
+    write(tmp_path, robot__CMakeLists_txt=f"cmake_minimum_required(VERSION 3.8)\n{CODE_STUB}\n")
+    detail = explain(FAILED, tmp_path, "robot").detail
+    assert detail.startswith("src/robot/CMakeLists.txt, line 3: raise NotImplementedError(")
 
 
-def test_a_written_file_has_no_stub() -> None:
-    assert find_stub("raise NotImplementedError('not for this robot')\n", "src/robot/setup.py") is None
+def test_a_written_file_has_no_stub(tmp_path: Path) -> None:
+    write(tmp_path, robot__setup_py="raise NotImplementedError('not for this robot')\n")
+    assert explain(FAILED, tmp_path, "robot") == FAILED
 
 
 @pytest.mark.parametrize("name", ["package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/A.msg", "srv/B.srv"])
