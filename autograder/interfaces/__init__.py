@@ -5,9 +5,9 @@ importable in this process. `load_from` does both for a package in a student's w
 """
 
 from autograder.interfaces.cache import Cache
-from autograder.interfaces.exceptions import AlreadyLoadedError, DefinitionError, GenerationError, InterfaceError
-from autograder.interfaces.loading import load, load_from
-from autograder.interfaces.prefix import build
+from autograder.interfaces.definitions import DefinitionError, InterfaceError
+from autograder.interfaces.loading import AlreadyLoadedError, load, load_from
+from autograder.interfaces.prefix import GenerationError, build
 
 __all__ = [
     "AlreadyLoadedError",

@@ -16,8 +16,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from autograder.interfaces.exceptions import DefinitionError
-
 MAX_FILES = 64
 MAX_BYTES = 64 * 1024
 MAX_FIELDS = 512
@@ -44,6 +42,19 @@ _C_WORDS = frozenset(
     """,
     )
 )
+
+
+class InterfaceError(Exception):
+    """Base of every error about an interface package."""
+
+
+class DefinitionError(InterfaceError):
+    """A definition is wrong, and its author can mend it; names the file and, if it is one, the line's text."""
+
+    def __init__(self, file: str, problem: str, line: str = "") -> None:
+        where = f"{file}, line “{line[:120]}”" if line else file
+        super().__init__(f"{where}: {problem}")
+        self.file, self.line = file, line
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces.compile import site
-from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, read
-from autograder.interfaces.exceptions import AlreadyLoadedError, DefinitionError, GenerationError
-from autograder.interfaces.prefix import RECIPE, build
+from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, DefinitionError, InterfaceError, read
+from autograder.interfaces.prefix import RECIPE, GenerationError, build
 from autograder.packages import find_packages
 from autograder.unwritten import explain
 
@@ -23,6 +22,10 @@ if TYPE_CHECKING:  # the generators' process imports this package, too, and no R
     from autograder.workspace import Workspace
 
 _loaded: dict[str, Path] = {}
+
+
+class AlreadyLoadedError(InterfaceError):
+    """Another version of the package is in this process, which can hold one."""
 
 
 def load(prefix: Path) -> ModuleType:

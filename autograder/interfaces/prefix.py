@@ -13,8 +13,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from autograder.interfaces.cache import Cache
-from autograder.interfaces.definitions import packages_used, read, require_uses
-from autograder.interfaces.exceptions import GenerationError
+from autograder.interfaces.definitions import InterfaceError, packages_used, read, require_uses
 from autograder.ros import RosEnvironment, activate
 from autograder.ros.environment import without_wheel_bootstrap
 
@@ -22,6 +21,10 @@ HERE = Path(__file__).parent
 SECONDS = 120.0
 RECIPE = "recipe.json"
 OWN = ("generate", "compile")  # the modules that make a prefix
+
+
+class GenerationError(InterfaceError):
+    """The definitions read well, but the generators or the compiler would not have them."""
 
 
 def build(

@@ -14,7 +14,7 @@ from pathlib import Path
 import yaml
 
 from autograder.interfaces.cache import Cache
-from autograder.interfaces.exceptions import InterfaceError
+from autograder.interfaces.definitions import InterfaceError
 from autograder.interfaces.prefix import build
 from autograder.ros import RosError, find
 

@@ -63,7 +63,7 @@ def _ros() -> None:
 def _lockstep() -> None:
     """Import what the host of programs in lockstep imports."""
     _ros()
-    _import("lockstep_host.host", "lockstep_host.pipes", folder=AUTOGRADER / "lockstep")
+    _import("lockstep_host.host", folder=AUTOGRADER / "lockstep")
 
 
 def _tests() -> None:

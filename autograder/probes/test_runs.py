@@ -63,24 +63,18 @@ def take(workspace: Workspace, package: str) -> Source:
     return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
 
 
-def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun], jobs: int = JOBS) -> list[Report]:
-    """Run tests; return a report for each run, in the given order.
+def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) -> list[Report]:
+    """Run a package's tests in a built workspace; return a report for each wanted run, in the given order.
 
     A run that had to be stopped is made again if it is the only stopped one of its files, and the second run counts.
     rclpy can miss the end of an executor that spins in a thread: `Executor.shutdown` destroys the guard condition with
     which it has just woken the executor.
 
-    Args:
-        workspace: the built workspace.
-        source: the package with the tests.
-        wanted_runs: what to run.
-        jobs: how many runs are made at a time.
-
     Raises:
         StudentError: there is no room left on the disk.
         GraderError: there is no domain left to listen in.
     """
-    with ThreadPoolExecutor(jobs) as pool:
+    with ThreadPoolExecutor(JOBS) as pool:
         once = partial(_run, workspace, source)
         reports = list(pool.map(once, wanted_runs))
         stopped = [place for place, report in enumerate(reports) if report.ending is Ending.WALL_TIME]

@@ -15,12 +15,12 @@ def main() -> None:
     """Run the program."""
     here = Path(__file__).resolve().parent
     sys.path.insert(0, str(here.parent))
-    host_module, pipes_module = (importlib.import_module(f"{here.name}.{name}") for name in ("host", "pipes"))
+    module = importlib.import_module(f"{here.name}.host")
     read_fd, write_fd, start_ns = map(int, sys.argv[1:4])
     clock_rate, program = float(sys.argv[4]), sys.argv[5]
     sys.argv = sys.argv[5:]
     sys.path[:2] = [str(Path(program).parent)]  # as Python sets it for a program that is started by its path
-    host = host_module.Host(pipes_module.Pipes(read_fd, write_fd), start_ns, clock_rate)
+    host = module.Host(module.Pipes(read_fd, write_fd), start_ns, clock_rate)
     host.install()
     try:
         runpy.run_path(program, run_name="__main__")

@@ -50,7 +50,7 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
 
 
 def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
-    return run(workspace, take(workspace, "half"), orders, jobs=2)
+    return run(workspace, take(workspace, "half"), orders)
 
 
 def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
@@ -201,8 +201,7 @@ def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
         "    assert not mark.exists()\n    mark.touch()\n",
     )
     assert all(
-        report.passed
-        for report in run(workspace, take(workspace, "half"), [TestRun(("test_half.py",), RIGHT)] * 3, jobs=1)
+        report.passed for report in run(workspace, take(workspace, "half"), [TestRun(("test_half.py",), RIGHT)] * 3)
     )
 
 
@@ -212,7 +211,7 @@ def test_two_versions_are_seen_at_places_that_differ_in_a_random_word_only(works
     )
     write(workspace, f"import os, re, sys\n\nimport half\n\n\ndef test_place():\n    assert not hash({place})\n")
     versions = [TestRun(("test_half.py",), version) for version in (RIGHT, WRONG)]
-    reports = run(workspace, take(workspace, "half"), versions, jobs=1)
+    reports = run(workspace, take(workspace, "half"), versions)
     messages = {report.claims.messages["test_half::test_place"] for report in reports}
     assert len(messages) == 1
     assert messages.pop().startswith("assert not ")
