@@ -74,7 +74,9 @@ class Actions:
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
         """Send a goal to an action that was prepared, and ask for its result once it is accepted."""
-        sent = Goal(_goal_id(next(self._numbers)))
+        sent = Goal(GoalInfo().goal_id)
+        # It is counted and not drawn at random, so every run is the same.
+        sent.id.uuid = list(next(self._numbers).to_bytes(16, "big"))
         self._goals[bytes(sent.id.uuid)] = sent
         request = kind.Impl.SendGoalService.Request(goal_id=sent.id, goal=goal)
 
@@ -110,10 +112,3 @@ class Actions:
             goal = self._goals.get(bytes(status.goal_info.goal_id.uuid))
             if goal is not None and goal.result is None:
                 goal.status = status.status
-
-
-def _goal_id(number: int) -> Any:
-    """Return a goal's id. It is counted and not drawn at random, so every run is the same."""
-    info = GoalInfo()
-    info.goal_id.uuid = list(number.to_bytes(16, "big"))
-    return info.goal_id

@@ -27,7 +27,7 @@ from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import LAUNCH
-from autograder.sandbox.procfs import measure
+from autograder.sandbox.procfs import children, measure
 from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("launch_host.py")
@@ -227,7 +227,8 @@ class LaunchHarness(contextlib.ExitStack):
     def interrupt(self, seconds: float) -> Stop:
         """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
         if self.status is None:
-            os.kill(_first_child(self.process.innermost()), signal.SIGINT)
+            holder = self.process.innermost()  # of `ros2`, its first child
+            os.kill(children(holder)[0], signal.SIGINT)
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
 
@@ -252,7 +253,3 @@ def _command_of(pid: int) -> list[str]:
     except OSError:
         return []
     return text.split("\0") if text else []
-
-
-def _first_child(pid: int) -> int:
-    return int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])

@@ -98,6 +98,7 @@ def _own_version() -> str:
 
 def _make(package: str, recipe: str, prefix: Path) -> None:
     (prefix / RECIPE).write_text(recipe)
+    path = [str(HERE.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]  # it imports what this process does
     try:
         done = subprocess.run(
             [sys.executable, "-m", "autograder.interfaces.generate", str(prefix)],
@@ -106,15 +107,10 @@ def _make(package: str, recipe: str, prefix: Path) -> None:
             text=True,
             errors="replace",
             timeout=SECONDS,
-            env={**without_wheel_bootstrap(os.environ), "PYTHONPATH": _import_path()},
+            env={**without_wheel_bootstrap(os.environ), "PYTHONPATH": os.pathsep.join(path)},
         )
     except subprocess.TimeoutExpired:
         raise GenerationError(f"{package}: building its interfaces took more than {SECONDS:.0f} s") from None
     if done.returncode != 0:
         end = "\n".join(done.stderr.strip().splitlines()[-12:])
         raise GenerationError(f"{package}: its interfaces cannot be built. {end[:2000]}")
-
-
-def _import_path() -> str:
-    """Let the child import what this process does, wherever it stands."""
-    return os.pathsep.join([str(HERE.parents[1]), *filter(None, [os.environ.get("PYTHONPATH", "")])])

@@ -53,7 +53,8 @@ def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping
         file, folder = (path / "__main__.py", str(path)) if path.is_dir() else (path, str(path.parent))
         source = file.read_bytes()
     _find_modules(command, folder, base)
-    _seed_anew()
+    if numbers := sys.modules.get("numpy.random"):
+        numbers.seed()  # its global generator; Python's `random` gets a seed of its own at each fork
     set_command_line([sys.executable, *command])
     sys.argv[:] = words
     sys.orig_argv[:] = [sys.executable, *command]
@@ -64,12 +65,6 @@ def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping
         main.__dict__.update(__file__=str(file), __cached__=None)
     code = compile(source, str(file or "<string>"), "exec", dont_inherit=True)
     return code, main.__dict__
-
-
-def _seed_anew() -> None:
-    """Give numpy's global generator a seed of its own; Python's `random` gets one at each fork."""
-    if numbers := sys.modules.get("numpy.random"):
-        numbers.seed()
 
 
 def forget(words: Iterable[str]) -> None:

@@ -77,7 +77,9 @@ def serve(requests: socket.socket) -> Request:
         os.close(taken)
         if not received:
             os._exit(0)
-        _reap()
+        with suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
 
 
 @contextmanager
@@ -88,12 +90,6 @@ def _reporting(requests: socket.socket) -> Iterator[None]:
     except BaseException as error:
         requests.send(json.dumps({"failed": f"{type(error).__name__}: {error}"}).encode())
         os._exit(1)
-
-
-def _reap() -> None:
-    with suppress(ChildProcessError):
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
 
 
 def _attend(requests: socket.socket, request: Request, status_fd: int) -> bool:

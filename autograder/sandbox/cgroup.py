@@ -43,7 +43,7 @@ class ControlGroup:
             except OSError:
                 if time.monotonic() > deadline:
                     return None
-            for pid in map(int, _read(str(self.folder / "cgroup.procs")).split()):
+            for pid in map(int, _read(self.folder / "cgroup.procs").split()):
                 with contextlib.suppress(OSError):
                     if pid > 0:  # 0 is one of another pid namespace, and to kill() the caller's whole group
                         os.kill(pid, signal.SIGKILL)
@@ -54,7 +54,7 @@ def make(most: int) -> ControlGroup | None:
     """Return a new group of at most `most` processes and threads; None where it is not needed, or cannot be had."""
     if os.geteuid() != 0:
         return None
-    for home in homes(_read("/proc/self/mountinfo"), _read("/proc/self/cgroup")):
+    for home in homes(_read(Path("/proc/self/mountinfo")), _read(Path("/proc/self/cgroup"))):
         folder = home / f"{_NAME}-{os.getpid()}-{next(_NUMBERS)}"
         try:
             folder.mkdir()
@@ -94,7 +94,8 @@ def homes(mountinfo: str, own: str) -> list[Path]:
             found += [folder for folder in _upwards(place, mount) if folder.is_dir()]
         elif kind == "cgroup2":
             place = mount / _own(own, "")
-            found += [folder for folder in _upwards(place, mount) if "pids" in _handed_down(folder)]
+            handed_down = "cgroup.subtree_control"
+            found += [folder for folder in _upwards(place, mount) if "pids" in _read(folder / handed_down).split()]
     return found
 
 
@@ -110,10 +111,6 @@ def _upwards(place: Path, mount: Path) -> list[Path]:
     return [folder for folder in (place, *place.parents) if folder.is_relative_to(mount)]
 
 
-def _handed_down(folder: Path) -> list[str]:
-    return _read(str(folder / "cgroup.subtree_control")).split()
-
-
 def _sweep(home: Path) -> None:
     for folder in home.glob(f"{_NAME}-*"):
         with contextlib.suppress(OSError):
@@ -121,8 +118,8 @@ def _sweep(home: Path) -> None:
                 folder.rmdir()
 
 
-def _read(path: str) -> str:
+def _read(path: Path) -> str:
     try:
-        return Path(path).read_text()
+        return path.read_text()
     except OSError:
         return ""

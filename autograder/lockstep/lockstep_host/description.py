@@ -46,9 +46,10 @@ def describe(nodes: list[Any]) -> dict[str, Any]:
             elif isinstance(waitable, ActionClient):
                 clients += [(channel, waitable.server_is_ready()) for channel in waitable.lockstep_requests]
                 readers.append((waitable.lockstep_feedback, None))
+    timers = [timer for node in nodes for timer in _alive(node.timers)]
     return {
         "nodes": [node.get_fully_qualified_name() for node in nodes],
-        "timers": [timer.timer_period_ns for node in nodes for timer in _alive(node.timers) if _is_stepped(timer)],
+        "timers": [timer.timer_period_ns for timer in timers if timer.clock.clock_type == ClockType.ROS_TIME],
         "writers": writers,
         "readers": readers,
         "clients": clients,
@@ -58,7 +59,3 @@ def describe(nodes: list[Any]) -> dict[str, Any]:
 
 def _alive(entities: Iterable[Any]) -> list[Any]:
     return [entity for entity in entities if is_alive(entity)]
-
-
-def _is_stepped(timer: Any) -> bool:
-    return bool(timer.clock.clock_type == ClockType.ROS_TIME)
