@@ -16,8 +16,7 @@ from autograder.cluster.exceptions import AnswerError
 from autograder.cluster.parcel import Answer
 from autograder.exceptions import UsageError
 from autograder.grading.batch import Request
-from autograder.grading.pipeline import NOTEBOOK, RESULT
-from autograder.grading.unchecked import LOG, not_graded
+from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, not_graded
 from autograder.result import Result, Status, from_json, write_atomically, write_json
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")

@@ -26,7 +26,7 @@ from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Parcel
 from autograder.exceptions import StudentError
 from autograder.grading.batch import OnResult, Request
-from autograder.grading.unchecked import refused
+from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout, read_files
 from autograder.result import Result
 

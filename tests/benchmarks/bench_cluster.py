@@ -20,7 +20,7 @@ from autograder.cluster.dispatch import grade_on
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.batch import Request
-from autograder.grading.unchecked import refused
+from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
 from autograder.sandbox import Tier
 

@@ -24,7 +24,7 @@ from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.batch import Request
-from autograder.grading.unchecked import refused
+from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
 from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import Status

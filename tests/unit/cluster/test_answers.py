@@ -19,7 +19,7 @@ from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.parcel import MAX_ANSWER, Answer, Parcel
 from autograder.exceptions import StudentError
 from autograder.grading.batch import Request
-from autograder.grading.unchecked import refused
+from autograder.grading.pipeline import refused
 from autograder.intake import SubmittedFile, read_submission
 from autograder.result import Artifact, CheckResult, Result, Status
 from autograder.sandbox import Tier
