@@ -174,11 +174,7 @@ class SetUp:
         return [name for name, key in self.wanted(dev=dev).items() if self.stamp().get(name) != key]
 
     def make(self, *, dev: bool) -> None:
-        """Bring the environment to the wanted state, from the start or by what it lacks.
-
-        Raises:
-            SetUpError: a step failed; nothing is stamped.
-        """
+        """Bring the environment to the wanted state, from the start or by what it lacks; nothing failed is stamped."""
         lacks, have = self.lacks(dev=dev), self.stamp()
         if not lacks:
             return

@@ -48,11 +48,7 @@ class Workspace:
         return tuple(filter(Path.is_dir, sorted(self.install.iterdir()))) if self.install.is_dir() else ()
 
     def executable(self, package: str, name: str) -> Path:
-        """Return the path of an installed executable.
-
-        Raises:
-            StudentError: the package does not install it; the sentence names what it installs instead.
-        """
+        """Return the path of an installed executable; a StudentError names what the package installs instead."""
         folder = self.install / package / "lib" / package
         path = folder / name
         if path.is_file():

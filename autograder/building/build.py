@@ -56,10 +56,8 @@ def require_packages(source: Path, wanted: tuple[str, ...], *, whole: bool = Tru
 def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     """Build the wanted packages of a workspace, and those that they depend on, with colcon.
 
-    Its interface packages come from the cache of builds, where the very same ones were built before.
-
-    Raises:
-        StudentError: it did not build; the detail holds the end of colcon's output.
+    Its interface packages come from the cache of builds, where the very same ones were built before. The detail of the
+    StudentError of a failed build holds the end of colcon's output.
     """
     started = time.monotonic()
     found, _ = find_packages(workspace.root / "src")

@@ -29,11 +29,7 @@ class AlreadyLoadedError(InterfaceError):
 
 
 def load(prefix: Path) -> ModuleType:
-    """Import the package of a prefix that `build` returned, and those that it uses.
-
-    Raises:
-        AlreadyLoadedError: this process has another package of that name.
-    """
+    """Import the package of a prefix that `build` returned, and those that it uses."""
     recipe = json.loads((prefix / RECIPE).read_text())
     package = recipe["package"]
     if _loaded.get(package) == prefix:

@@ -135,8 +135,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
 def value(outcome: Outcome, shown: str) -> Any:
     """Return an outcome's value; `shown` is the call as the student would write it.
 
-    Raises:
-        CheckFailed: it raised, or returned what is no plain value.
+    A CheckFailed says that it raised, or returned what is no plain value.
     """
     if outcome.raised == "NotImplementedError":
         raise CheckFailed(f"{shown} is still to be written.")

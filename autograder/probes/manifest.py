@@ -46,11 +46,7 @@ class Manifest:
 
 
 def read(package: Path) -> Manifest:
-    """Read the manifest of the package in a folder.
-
-    Raises:
-        CheckFailed: there is none, it is still to be written, or ROS would refuse it; says why.
-    """
+    """Read the manifest of the package in a folder; a CheckFailed says why there is none that ROS would take."""
     path = package / MANIFEST
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(f"{package.name} has no {MANIFEST}.")
@@ -65,11 +61,7 @@ def read(package: Path) -> Manifest:
 
 
 def parse(text: str, where: str = MANIFEST) -> Manifest:
-    """Read a manifest's text; `where` names it in messages.
-
-    Raises:
-        CheckFailed: it is still to be written, or ROS would refuse it; says why.
-    """
+    """Read a manifest's text; `where` names it in a CheckFailed, which says why ROS would refuse it."""
     if STILL_TO_BE_WRITTEN in text:
         raise CheckFailed(f"{where} is still to be written.")
     # No manifest needs a document type, and one can make a small file huge.

@@ -82,11 +82,7 @@ class NodeParameters:
         return Answer(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
-        """Call one of the node's services.
-
-        Raises:
-            CheckFailed: the node has no such service, or does not answer.
-        """
+        """Call one of the node's services; a CheckFailed says that there is none, or no answer."""
         service = f"{self.node}/{name}"
         response = self.harness.call(kind, service, request, SECONDS)
         if response is not None:
@@ -160,8 +156,7 @@ def said(value: Value) -> str:
 def read_file(path: Path) -> dict[str, dict[str, Value]]:
     """Read a parameter file: values by parameter, by the node or wildcard that they are for, in the file's order.
 
-    Raises:
-        CheckFailed: it is missing, still to be written, no YAML, or not nested as ROS reads it; says what to do.
+    A CheckFailed says what to do where it is missing, still to be written, no YAML, or not nested as ROS reads it.
     """
     if not path.is_file():
         raise CheckFailed(

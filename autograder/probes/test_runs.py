@@ -47,10 +47,9 @@ HOME = Path("/tmp")  # the sandbox's own
 
 
 def take(workspace: Workspace, package: str) -> Source:
-    """Read a package's source, which the student's code could write to while it was built: plain files only.
+    """Read a package's source, which the student's code could write to while it was built.
 
-    Raises:
-        StudentError: there is something else than plain files, or no folder of the package's name.
+    A StudentError says that there is something else than plain files, or no folder of the package's name.
     """
     entries = read_packages(workspace.root)
     folder = next(
