@@ -8,7 +8,7 @@ from enum import Enum
 import nbformat
 from nbformat import NotebookNode
 
-from autograder.course.solution_markers import strip_mark_schemes, strip_markers
+from autograder.course.solution_markers import strip_markers
 from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 # What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
@@ -27,20 +27,29 @@ class Form(str, Enum):
 def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     """Return a copy of a source notebook in the given form, without outputs.
 
-    The released form is made by nbgrader's own preprocessors, so it is the text that students get.
+    nbgrader's own preprocessors make the released form, so it is the text that students get.
     """
     made: NotebookNode = copy.deepcopy(notebook)
     if form is Form.SOLVED:
         for cell in made.cells:
-            cell.source = strip_mark_schemes(strip_markers(cell.source))
+            cell.source = strip_markers(cell.source)
+        made = _preprocessed(made, "ClearMarkScheme")
     elif form is Form.RELEASED:
-        made = _released(made)
+        made = _preprocessed(
+            made,
+            "LockCells",
+            "ClearSolutions",
+            "ClearOutput",
+            "CheckCellMetadata",
+            "ClearHiddenTests",
+            "ClearMarkScheme",
+        )
     nbformat.validate(made)
     return made
 
 
-def _released(notebook: NotebookNode) -> NotebookNode:
-    # Here because nbgrader takes a second to import, and only this form needs it.
+def _preprocessed(notebook: NotebookNode, *steps: str) -> NotebookNode:
+    # Here because nbgrader takes a second to import, and the source form does not need it.
     from nbgrader import preprocessors
     from traitlets.config import Config
 
@@ -51,14 +60,6 @@ def _released(notebook: NotebookNode) -> NotebookNode:
             "ClearMarkScheme": {"enforce_metadata": False},
         }
     )
-    steps = (
-        preprocessors.LockCells,
-        preprocessors.ClearSolutions,
-        preprocessors.ClearOutput,
-        preprocessors.CheckCellMetadata,
-        preprocessors.ClearHiddenTests,
-        preprocessors.ClearMarkScheme,
-    )
     for step in steps:
-        notebook, _ = step(config=config).preprocess(notebook, {})
+        notebook, _ = getattr(preprocessors, step)(config=config).preprocess(notebook, {})
     return notebook

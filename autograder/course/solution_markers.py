@@ -15,7 +15,6 @@ from autograder.course.exceptions import CourseError
 BEGIN = "# BEGIN SOLUTION"
 END = "# END SOLUTION"
 BEGIN_SCHEME = "### BEGIN MARK SCHEME"
-END_SCHEME = "### END MARK SCHEME"
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -72,16 +71,6 @@ def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
 def strip_markers(text: str) -> str:
     """Return the text without solution markers, as a student who solved it has it."""
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
-
-
-def strip_mark_schemes(text: str) -> str:
-    """Return the text without mark schemes, which students do not get."""
-    kept, inside = [], False
-    for line in text.split("\n"):
-        inside = inside or line.strip() == BEGIN_SCHEME
-        kept += [] if inside else [line]
-        inside = inside and line.strip() != END_SCHEME
-    return "\n".join(kept)
 
 
 def strip_licence(text: str) -> str:

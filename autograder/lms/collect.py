@@ -21,14 +21,10 @@ NOT_HANDED_IN = frozenset({"__MACOSX", ".DS_Store", METADATA})
 
 @dataclass(frozen=True)
 class Collected:
-    """What a download holds.
+    """What a download holds, in the order of the roster.
 
-    Attributes:
-        entries: the submission of each student who handed one in, in the order of the roster.
-        late: the students whose submission the system calls late.
-        older: names of files and folders that a newer one of the same student replaces.
-        unmatched: names of files and folders that fit no student, or that are no answer, with the reason.
-        missing: the students who handed nothing in.
+    Late are the students whom the system calls late. `older` names what a newer submission of a student replaces,
+    `unmatched` what fits no student or is no answer, with the reason. Missing are who handed nothing in.
     """
 
     entries: tuple[Entry, ...]

@@ -40,15 +40,10 @@ WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
 @dataclass(frozen=True)
 class Attack:
-    """A malicious submission.
+    """A malicious submission: the attacks that it combines, in words, and a function that writes it to a folder.
 
-    Attributes:
-        id: name of the attack.
-        description: the attacks that it combines, in words.
-        write: function that writes it to a folder.
-        loses: ids of the checks that it must lose, with or without the payload.
-        diagnosis: diagnoses that the result may have; any if empty.
-        exactly: whether it must lose no other checks, because the payload disturbs nothing.
+    `loses` holds the checks that it must lose, with or without the payload, and no others if it loses them `exactly`,
+    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none.
     """
 
     id: str

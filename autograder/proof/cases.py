@@ -25,16 +25,10 @@ UNSEEN = Scope(pictures=False)
 
 @dataclass(frozen=True)
 class Case:
-    """One submission of the proof.
+    """One submission of the proof: how it is written, how much of the suite grades it, and what its result must be.
 
-    Attributes:
-        assignment: whose suite grades it.
-        kind: what it is.
-        name: unique in its assignment.
-        write: writes it to a folder.
-        verify: returns how the result differs from the expected one, or an empty string.
-        reason: why it may survive, for a generated mutant.
-        scope: how much of the suite is run.
+    `name` is unique in the assignment. `verify` returns how a result differs from the expected one, or an empty string.
+    `reason` says why a generated mutant may survive.
     """
 
     assignment: str

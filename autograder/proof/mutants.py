@@ -37,16 +37,9 @@ class Edit:
 
 @dataclass(frozen=True)
 class Mutant:
-    """A flawed version of the reference solution.
+    """A flawed version of the reference solution: the error in words, its edits, and the checks that do not pass.
 
-    Attributes:
-        id: name of the mutant.
-        title: the error in words.
-        edits: changes of the reference.
-        loses: ids of the checks that do not pass.
-        diagnosis: diagnosis that the result has.
-        demo: whether `make demo` grades it.
-        slow: whether grading waits for a time-out.
+    `make demo` grades the ones for the demo. Grading a slow one waits for a time-out.
     """
 
     id: str
