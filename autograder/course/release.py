@@ -34,7 +34,19 @@ STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefi
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # Parts for instructors only, as paths in the bundle.
 _PACKAGES = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")
-_VERBS = ("cluster", "course", "demo", "export", "grade", "notebooks", "release", "replay", "verify")
+_VERBS = (
+    "cluster",
+    "compare",
+    "course",
+    "demo",
+    "export",
+    "grade",
+    "gradescope",
+    "notebooks",
+    "release",
+    "replay",
+    "verify",
+)
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
 
 

@@ -1,0 +1,82 @@
+"""The autograder for Gradescope, run in folders that are laid out as Gradescope lays them out."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from autograder import layout
+from autograder.checks import suites
+from autograder.cli import group
+from autograder.proof.mutants import write_reference
+
+ASSIGNMENT = "01_package_structure"
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """`/autograder` of an image that Gradescope has built; the packages are those of this environment."""
+    home = tmp_path_factory.mktemp("autograder")
+    ran = CliRunner().invoke(group, ["gradescope", ASSIGNMENT, "--out", str(home / "upload.zip")])
+    assert ran.exit_code == 0, ran.output
+    subprocess.run(["unzip", "-q", str(home / "upload.zip"), "-d", str(home / "source")], check=True)
+    (home / "source" / "course" / ".venv").symlink_to(sys.prefix)
+    return home
+
+
+def graded(home: Path) -> dict[str, object]:
+    """Run the autograder as Gradescope does, and return what it reports."""
+    script = home / "source" / "run_autograder"
+    assert os.access(script, os.X_OK)
+    subprocess.run([script], env={**os.environ, "GRADESCOPE_HOME": str(home)}, check=True, capture_output=True)
+    report: dict[str, object] = json.loads((home / "results" / "results.json").read_text())
+    return report
+
+
+def test_the_reference_has_all_points_and_an_empty_answer_has_none(home: Path) -> None:
+    submission = home / "submission"
+    write_reference(suites.hidden(ASSIGNMENT).sources, submission / "ws")
+    report = graded(home)
+    assert report["score"] == suites.hidden(ASSIGNMENT).max_score
+    assert {test["visibility"] for test in report["tests"]} == {"after_published"}  # type: ignore[attr-defined]
+
+    for path in sorted(submission.rglob("*"), reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
+    (submission / "notes.txt").write_text("later")
+    report = graded(home)
+    assert report["score"] == 0
+    assert "package" in str(report["output"])
+
+
+def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -> None:
+    names = set(zipfile.ZipFile(home / "upload.zip").namelist())
+    assert {"setup.sh", "run_autograder", "course/Makefile", "course/requirements.lock"} <= names
+    assert not [name for name in names if "__pycache__" in name or name.startswith("course/tests")]
+    script = (layout.ROOT / "assets" / "gradescope" / "setup.sh").read_text()
+    assert "make setup" in script
+    subprocess.run(["bash", "-n", str(home / "source" / "setup.sh")], check=True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["00_welcome"], "00_welcome has no hidden checks; there are: 01_package_structure"),
+        ([ASSIGNMENT], "exists already: name a file that does not exist yet"),
+    ],
+)
+def test_a_wrong_call_is_told(home: Path, arguments: list[str], message: str) -> None:
+    ran = subprocess.run(
+        [sys.executable, "-m", "autograder", "gradescope", *arguments, "--out", str(home / "upload.zip")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 2
+    assert message in ran.stderr
