@@ -18,20 +18,13 @@ DPI = 96
 
 @dataclass(frozen=True)
 class Gallery:
-    """Saves the pictures of one check.
+    """Saves the pictures of one check."""
 
-    Attributes:
-        folder: folder that gets the pictures.
-        check: id of the check, the first part of the file names.
-        closed: whether nothing is saved.
-        recordings: whether whole recordings are saved, too.
-        artifacts: records of the pictures that were saved. The galleries of all checks share this list.
-    """
-
-    folder: Path
-    check: str = ""
-    closed: bool = False
-    recordings: bool = False
+    folder: Path  # folder that gets the pictures
+    check: str = ""  # id of the check, the first part of the file names
+    closed: bool = False  # whether nothing is saved
+    recordings: bool = False  # whether whole recordings are saved, too
+    # Records of the pictures that were saved. The galleries of all checks share this list.
     artifacts: list[Artifact] = field(default_factory=list)
 
     def of(self, check: str) -> Gallery:

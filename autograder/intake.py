@@ -54,19 +54,13 @@ class SubmittedFile:
 
 @dataclass(frozen=True)
 class Submission:
-    """The files of a submission, in the layout that grading uses.
+    """The files of a submission, in the layout that grading uses."""
 
-    Attributes:
-        notebook: content of the assignment's notebook, or None.
-        source: files below `ws/src`, with paths relative to it.
-        extra: files beside the notebook that it may read, with paths relative to the assignment's folder.
-        sha256: digest of all files' paths and contents, in hexadecimal digits.
-    """
-
-    notebook: bytes | None
-    source: tuple[SubmittedFile, ...]
+    notebook: bytes | None  # content of the assignment's notebook, or None
+    source: tuple[SubmittedFile, ...]  # files below `ws/src`, with paths relative to it
+    # Files beside the notebook that it may read, with paths relative to the assignment's folder.
     extra: tuple[SubmittedFile, ...]
-    sha256: str
+    sha256: str  # digest of all files' paths and contents, in hexadecimal digits
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:

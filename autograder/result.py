@@ -37,28 +37,20 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The result of one check.
-
-    Attributes:
-        points: points that the check earned, of `max_points`.
-        message: what is wrong, or an empty string.
-        doc: address of a page to read, or None.
-        seconds: wall time of the check.
-        holds: ids of the sentences of the contract that it holds.
-    """
+    """The result of one check."""
 
     id: str
     title: str
     group: str
-    points: float
+    points: float  # points that the check earned, of `max_points`
     max_points: float
     outcome: Outcome
-    message: str
+    message: str  # what is wrong, or an empty string
     hints: tuple[str, ...]
-    doc: str | None
+    doc: str | None  # address of a page to read, or None
     visibility: Visibility
-    seconds: float
-    holds: tuple[str, ...] = ()
+    seconds: float  # wall time of the check
+    holds: tuple[str, ...] = ()  # ids of the sentences of the contract that it holds
 
     @classmethod
     def of(
@@ -98,37 +90,20 @@ class Build:
 
 @dataclass(frozen=True)
 class Artifact:
-    """A file beside the result, such as the picture of a track.
+    """A file beside the result, such as the picture of a track."""
 
-    Attributes:
-        name: path of the file, below the folder of the result.
-        kind: kind of the artifact, such as "track".
-        sha256: digest of the file; of the recording for a track, as the bytes of a picture may differ from run to run.
-        check: id of the check that saved it.
-        caption: alternative text of the picture.
-        run: path of the file with the run that the picture shows, for the player, or an empty string.
-    """
-
-    name: str
-    kind: str
+    name: str  # path of the file, below the folder of the result
+    kind: str  # kind of the artifact, such as "track"
+    # Digest of the file; of the recording for a track, as the bytes of a picture may differ from run to run.
     sha256: str
-    check: str
-    caption: str = ""
-    run: str = ""
+    check: str  # id of the check that saved it
+    caption: str = ""  # alternative text of the picture
+    run: str = ""  # path of the file with the run that the picture shows, for the player, or an empty string
 
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that is recorded of one graded submission.
-
-    Attributes:
-        started: start of the grading, in ISO 8601.
-        seconds: wall time of the grading.
-        phases: wall time of each phase, in seconds.
-        time: "lockstep", or "real" if a program's time could not be stepped.
-        time_note: the sentence that names that program and the reason.
-        held_up: the longest time, in seconds, for which a busy machine held up that program or the grader.
-    """
+    """Everything that is recorded of one graded submission."""
 
     assignment: str
     student: str
@@ -138,16 +113,16 @@ class Result:
     isolation: str
     checks: tuple[CheckResult, ...]
     max_score: float
-    started: str
-    seconds: float
+    started: str  # start of the grading, in ISO 8601
+    seconds: float  # wall time of the grading
     status: Status = Status.GRADED
     diagnosis: Diagnosis = OK
     build: Build | None = None
     artifacts: tuple[Artifact, ...] = ()
-    phases: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    time: str = "lockstep"
-    time_note: str = ""
-    held_up: float = 0.0
+    phases: Mapping[str, float] = dataclasses.field(default_factory=dict)  # wall time of each phase, in seconds
+    time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
+    time_note: str = ""  # the sentence that names that program and the reason
+    held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
 
     @property
     def score(self) -> float:

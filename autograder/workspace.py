@@ -22,20 +22,13 @@ _SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
 @dataclass(frozen=True)
 class Workspace:
-    """A colcon workspace after `colcon build`, in its isolated layout (`install/<package>/...`).
+    """A colcon workspace after `colcon build`, in its isolated layout (`install/<package>/...`)."""
 
-    Attributes:
-        root: the workspace's folder, with `src` and `install`.
-        ros: the ROS 2 that it was built with.
-        scratch: a writable folder for homes and logs, used where a sandbox has no /tmp of its own.
-        domain: the `ROS_DOMAIN_ID` in which its programs and the grader meet.
-        time_record: what harnesses find out about time; copies of a workspace share it.
-    """
-
-    root: Path
-    ros: RosEnvironment
-    scratch: Path
-    domain: int = 0
+    root: Path  # the workspace's folder, with `src` and `install`
+    ros: RosEnvironment  # the ROS 2 that it was built with
+    scratch: Path  # a writable folder for homes and logs, used where a sandbox has no /tmp of its own
+    domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
+    # What harnesses find out about time; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
 
     @property

@@ -18,17 +18,12 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """What was looked at, and how it stands.
-
-    Attributes:
-        found: what was found, in a sentence without its full stop.
-        mend: the one command that mends it; empty when nothing has to be mended.
-    """
+    """What was looked at, and how it stands."""
 
     name: str
     status: Status
-    found: str
-    mend: str = ""
+    found: str  # what was found, in a sentence without its full stop
+    mend: str = ""  # the one command that mends it; empty when nothing has to be mended
 
 
 def healthy(findings: Sequence[Finding]) -> bool:

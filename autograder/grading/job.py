@@ -12,19 +12,12 @@ from autograder.sandbox import Tier
 
 @dataclass(frozen=True)
 class Scope:
-    """How much of a suite is run. Anything but all of it is for the proof and for a replay, where nobody gets marks.
+    """How much of a suite is run. Anything but all of it is for the proof and for a replay, where nobody gets marks."""
 
-    Attributes:
-        only: the checks to run; all of them when empty.
-        first_loss: whether to stop at the first check that does not pass.
-        pictures: whether checks leave pictures.
-        recordings: whether they leave whole recordings, too.
-    """
-
-    only: tuple[str, ...] = ()
-    first_loss: bool = False
-    pictures: bool = True
-    recordings: bool = False
+    only: tuple[str, ...] = ()  # the checks to run; all of them when empty
+    first_loss: bool = False  # whether to stop at the first check that does not pass
+    pictures: bool = True  # whether checks leave pictures
+    recordings: bool = False  # whether they leave whole recordings, too
 
 
 ALL = Scope()
@@ -32,27 +25,16 @@ ALL = Scope()
 
 @dataclass(frozen=True)
 class Job:
-    """One submission to grade.
+    """One submission to grade."""
 
-    Attributes:
-        path: what was handed in.
-        assignment: which assignment it answers.
-        student: whose it is.
-        seed: every hidden input is drawn from it.
-        out: the folder that gets `result.json`, `notebook.ipynb` and the pictures.
-        scratch: the cell's own file system; nothing in it outlives the cell.
-        tier: how the submission is isolated.
-        scope: how much of the suite is run.
-    """
-
-    path: Path
-    assignment: str
-    student: str
-    seed: int
-    out: Path
-    scratch: Path
-    tier: Tier
-    scope: Scope = ALL
+    path: Path  # what was handed in
+    assignment: str  # which assignment it answers
+    student: str  # whose it is
+    seed: int  # every hidden input is drawn from it
+    out: Path  # the folder that gets `result.json`, `notebook.ipynb` and the pictures
+    scratch: Path  # the cell's own file system; nothing in it outlives the cell
+    tier: Tier  # how the submission is isolated
+    scope: Scope = ALL  # how much of the suite is run
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

@@ -30,27 +30,16 @@ OnMessage = Callable[[Any, int], None]
 
 @dataclass(eq=False)
 class Reader:
-    """A subscription or client of the grader's: something that takes messages.
+    """A subscription or client of the grader's: something that takes messages."""
 
-    Attributes:
-        kind: subscription or client.
-        channels: what it takes.
-        entity: rclpy's object.
-        take: takes one message and handles it; False when there is none.
-        count: how many it has taken.
-        expected: how many were sent to it, as far as is known.
-        latched: whether it gets what publishers hold for late subscriptions.
-        new: whether that is still to be counted.
-    """
-
-    kind: str
-    channels: tuple[str, ...]
-    entity: Any
-    take: Callable[[], bool]
-    count: int = 0
-    expected: int = 0
-    latched: bool = False
-    new: bool = True
+    kind: str  # subscription or client
+    channels: tuple[str, ...]  # what it takes
+    entity: Any  # rclpy's object
+    take: Callable[[], bool]  # takes one message and handles it; False when there is none
+    count: int = 0  # how many it has taken
+    expected: int = 0  # how many were sent to it, as far as is known
+    latched: bool = False  # whether it gets what publishers hold for late subscriptions
+    new: bool = True  # whether that is still to be counted
 
     def empty(self) -> None:
         """Take all that has arrived."""

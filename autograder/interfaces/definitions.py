@@ -59,17 +59,11 @@ class DefinitionError(InterfaceError):
 
 @dataclass(frozen=True)
 class Definition:
-    """One interface.
+    """One interface."""
 
-    Attributes:
-        path: `msg/RobotStatus.msg`.
-        text: the definition without comments.
-        uses: the messages of other packages in it, as (package, type, the line's text).
-    """
-
-    path: str
-    text: str
-    uses: tuple[tuple[str, str, str], ...]
+    path: str  # `msg/RobotStatus.msg`
+    text: str  # the definition without comments
+    uses: tuple[tuple[str, str, str], ...]  # the messages of other packages in it, as (package, type, the line's text)
 
 
 def require_package_name(name: str) -> None:

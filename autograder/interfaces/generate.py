@@ -26,22 +26,14 @@ C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection
 
 @dataclass(frozen=True)
 class Job:
-    """A package that is built.
-
-    Attributes:
-        prefix: where it goes.
-        work: a folder for generated code.
-        files: the interfaces' paths as .idl.
-        prefixes: where other packages are found, the nearest first.
-        dependencies: all interface packages below this one.
-    """
+    """A package that is built."""
 
     package: str
-    prefix: Path
-    work: Path
-    files: tuple[str, ...]
-    prefixes: tuple[Path, ...]
-    dependencies: tuple[str, ...]
+    prefix: Path  # where it goes
+    work: Path  # a folder for generated code
+    files: tuple[str, ...]  # the interfaces' paths as .idl
+    prefixes: tuple[Path, ...]  # where other packages are found, the nearest first
+    dependencies: tuple[str, ...]  # all interface packages below this one
 
     def share(self, package: str) -> Path:
         """Return the share folder of another package."""

@@ -40,29 +40,18 @@ class ProtocolError(Exception):
 
 @dataclass(frozen=True)
 class Description:
-    """What the host sees of the student's nodes.
+    """What the host sees of the student's nodes."""
 
-    Attributes:
-        nodes: fully qualified names.
-        timers: periods in nanoseconds.
-        writers: the channel of each publisher, and how many subscriptions it sees.
-        readers: the channels of each subscription, and how many publishers it sees (None: that cannot be told).
-        clients: the channel of each client's requests, and whether it sees a server.
-        servers: the channel of each service's requests.
-        early: messages that were sent before the first step, by channel.
-        kept: messages that latched publishers hold, by channel.
-        prefix: of the process's GUIDs.
-    """
-
-    nodes: tuple[str, ...] = ()
-    timers: tuple[int, ...] = ()
-    writers: tuple[tuple[str, int], ...] = ()
+    nodes: tuple[str, ...] = ()  # fully qualified names
+    timers: tuple[int, ...] = ()  # periods in nanoseconds
+    writers: tuple[tuple[str, int], ...] = ()  # the channel of each publisher, and how many subscriptions it sees
+    # The channels of each subscription, and how many publishers it sees (None: that cannot be told).
     readers: tuple[tuple[tuple[str, ...], int | None], ...] = ()
-    clients: tuple[tuple[str, bool], ...] = ()
-    servers: tuple[str, ...] = ()
-    early: dict[str, int] = field(default_factory=dict)
-    kept: dict[str, int] = field(default_factory=dict)
-    prefix: str = ""
+    clients: tuple[tuple[str, bool], ...] = ()  # the channel of each client's requests, and whether it sees a server
+    servers: tuple[str, ...] = ()  # the channel of each service's requests
+    early: dict[str, int] = field(default_factory=dict)  # messages that were sent before the first step, by channel
+    kept: dict[str, int] = field(default_factory=dict)  # messages that latched publishers hold, by channel
+    prefix: str = ""  # of the process's GUIDs
 
     def reads(self) -> frozenset[str]:
         """Return every channel that the program takes messages from."""
@@ -72,21 +61,13 @@ class Description:
 
 @dataclass(frozen=True)
 class Reply:
-    """A finished step.
+    """A finished step."""
 
-    Attributes:
-        sent: how many messages the nodes have sent in it, by channel.
-        lost: channels on which messages that were announced did not arrive in time.
-        changed: whether there are endpoints or timers that the last description did not name.
-        wake: the next instant at which something in the program continues, besides its timers.
-        notes: why steps are not all that moves the program; one of `REASONS`.
-    """
-
-    sent: dict[str, int] = field(default_factory=dict)
-    lost: tuple[str, ...] = ()
-    changed: bool = False
-    wake: int | None = None
-    notes: tuple[str, ...] = ()
+    sent: dict[str, int] = field(default_factory=dict)  # how many messages the nodes have sent in it, by channel
+    lost: tuple[str, ...] = ()  # channels on which messages that were announced did not arrive in time
+    changed: bool = False  # whether there are endpoints or timers that the last description did not name
+    wake: int | None = None  # the next instant at which something in the program continues, besides its timers
+    notes: tuple[str, ...] = ()  # why steps are not all that moves the program; one of `REASONS`
 
 
 @dataclass(frozen=True)

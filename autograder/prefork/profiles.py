@@ -26,17 +26,11 @@ KINDS = ("generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport
 
 @dataclass(frozen=True)
 class Profile:
-    """What is imported early for one kind of program.
+    """What is imported early for one kind of program."""
 
-    Attributes:
-        load: imports it.
-        forks: whether what such a program starts is forked, too (`children.py`).
-        own: first words of the names of packages that the programs it starts do not have.
-    """
-
-    load: Callable[[], None]
-    forks: bool = False
-    own: tuple[str, ...] = ()
+    load: Callable[[], None]  # imports it
+    forks: bool = False  # whether what such a program starts is forked, too (`children.py`)
+    own: tuple[str, ...] = ()  # first words of the names of packages that the programs it starts do not have
 
 
 def _import(*names: str, folder: Path | None = None) -> None:

@@ -14,25 +14,16 @@ MAX_FDS = 16
 
 @dataclass(frozen=True)
 class Request:
-    """One program to fork.
+    """One program to fork."""
 
-    Attributes:
-        command: its script and arguments.
-        environment: all its environment variables.
-        workdir: its working folder.
-        limits: the kernel's limits on it, soft and hard, by their names in `resource`.
-        holder: the process in the sandbox that holds the program's place.
-        group: the folder of the sandbox's control group; empty where it has none.
-        fds: the numbers of the descriptors that the program gets. The request comes with them, and before them with
-            the one on which the holder waits for the program's exit status.
-    """
-
-    command: list[str]
-    environment: dict[str, str]
-    workdir: str
-    limits: dict[str, tuple[int, int]]
-    holder: int
-    group: str
+    command: list[str]  # its script and arguments
+    environment: dict[str, str]  # all its environment variables
+    workdir: str  # its working folder
+    limits: dict[str, tuple[int, int]]  # the kernel's limits on it, soft and hard, by their names in `resource`
+    holder: int  # the process in the sandbox that holds the program's place
+    group: str  # the folder of the sandbox's control group; empty where it has none
+    # The numbers of the descriptors that the program gets. The request comes with them, and before them with
+    # the one on which the holder waits for the program's exit status.
     fds: list[int]
 
     def to_bytes(self) -> bytes:

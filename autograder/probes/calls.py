@@ -37,45 +37,27 @@ MAX_ANSWER = 1024 * 1024
 
 @dataclass(frozen=True)
 class Step:
-    """One thing to do.
+    """One thing to do."""
 
-    Attributes:
-        name: a function, class or attribute.
-        args: positional arguments, JSON or `made(N)`.
-        kwargs: keyword arguments likewise.
-        on: the number of the step whose object has `name`; None for the module.
-        module: another module that has `name`, such as `random`; None for the student's.
-        called: whether it is called, or only read.
-        keep: whether the value is kept for later steps and not answered.
-    """
-
-    name: str
-    args: tuple[Any, ...] = ()
-    kwargs: Mapping[str, Any] = field(default_factory=dict)
-    on: int | None = None
-    module: str | None = None
-    called: bool = True
-    keep: bool = False
+    name: str  # a function, class or attribute
+    args: tuple[Any, ...] = ()  # positional arguments, JSON or `made(N)`
+    kwargs: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments likewise
+    on: int | None = None  # the number of the step whose object has `name`; None for the module
+    module: str | None = None  # another module that has `name`, such as `random`; None for the student's
+    called: bool = True  # whether it is called, or only read
+    keep: bool = False  # whether the value is kept for later steps and not answered
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a step.
+    """What came of a step."""
 
-    Attributes:
-        value: what was returned, as JSON; None when there is none.
-        type: the name of the returned value's type when JSON cannot hold it; empty otherwise.
-        raised: the name of the exception, `message` its text; empty without one.
-        arguments: the arguments after the call, to see whether it changed them.
-        printed: what it printed.
-    """
-
-    value: Any = None
-    type: str = ""
-    raised: str = ""
+    value: Any = None  # what was returned, as JSON; None when there is none
+    type: str = ""  # the name of the returned value's type when JSON cannot hold it; empty otherwise
+    raised: str = ""  # the name of the exception, `message` its text; empty without one
     message: str = ""
-    arguments: tuple[Any, ...] = ()
-    printed: str = ""
+    arguments: tuple[Any, ...] = ()  # the arguments after the call, to see whether it changed them
+    printed: str = ""  # what it printed
 
 
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:

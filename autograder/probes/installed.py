@@ -20,31 +20,20 @@ INDEX = Path("share/ament_index/resource_index/packages")
 
 @dataclass(frozen=True)
 class Installed:
-    """A package's install prefix, `install/PACKAGE` in colcon's isolated layout.
+    """A package's install prefix, `install/PACKAGE` in colcon's isolated layout."""
 
-    Attributes:
-        package: its name.
-        prefix: the folder.
-        executables: names in lib/PACKAGE, where `ros2 run` and launch files look.
-        misplaced: names in bin/, where they do not.
-        modules: dotted names of the installed Python modules, packages included, of this package and any other.
-        marker: whether the ament index knows the package.
-        shared: paths below share/PACKAGE, without what colcon itself puts there.
-        recorded: what setup.py itself installed, below the prefix; colcon puts a marker and package.xml beside it.
-        extras: the requirements of each extra, such as `test`.
-        metadata: headers such as Version, License, Maintainer-email.
-    """
-
-    package: str
-    prefix: Path
-    executables: tuple[str, ...]
-    misplaced: tuple[str, ...]
+    package: str  # its name
+    prefix: Path  # the folder
+    executables: tuple[str, ...]  # names in lib/PACKAGE, where `ros2 run` and launch files look
+    misplaced: tuple[str, ...]  # names in bin/, where they do not
+    # Dotted names of the installed Python modules, packages included, of this package and any other.
     modules: frozenset[str]
-    marker: bool
-    shared: tuple[str, ...]
+    marker: bool  # whether the ament index knows the package
+    shared: tuple[str, ...]  # paths below share/PACKAGE, without what colcon itself puts there
+    # What setup.py itself installed, below the prefix; colcon puts a marker and package.xml beside it.
     recorded: frozenset[str]
-    extras: Mapping[str, tuple[str, ...]]
-    metadata: Mapping[str, str]
+    extras: Mapping[str, tuple[str, ...]]  # the requirements of each extra, such as `test`
+    metadata: Mapping[str, str]  # headers such as Version, License, Maintainer-email
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""

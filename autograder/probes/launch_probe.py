@@ -38,18 +38,12 @@ _RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re
 
 @dataclass(frozen=True)
 class Argument:
-    """A launch argument, as `ros2 launch -s` shows it.
-
-    Attributes:
-        description: what is said of it; empty if nothing is.
-        default: the text of its default, None if it has to be given or its default is worked out.
-        choices: the values that are allowed; empty if any is.
-    """
+    """A launch argument, as `ros2 launch -s` shows it."""
 
     name: str
-    description: str
-    default: str | None
-    choices: tuple[str, ...]
+    description: str  # what is said of it; empty if nothing is
+    default: str | None  # the text of its default, None if it has to be given or its default is worked out
+    choices: tuple[str, ...]  # the values that are allowed; empty if any is
 
 
 def parse_arguments(text: str) -> dict[str, Argument]:

@@ -20,25 +20,17 @@ KINDS = ("build", "build_export", "buildtool", "exec", "test", "doc")
 
 @dataclass(frozen=True)
 class Manifest:
-    """A parsed package.xml.
-
-    Attributes:
-        licences: each <license>, as written.
-        maintainers: each (name, e-mail).
-        build_type: what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one.
-        depends: the names by kind, one of `KINDS`.
-        groups: of which dependency groups it is a member.
-    """
+    """A parsed package.xml."""
 
     name: str
     version: str
     description: str
     format: int
-    licences: tuple[str, ...]
-    maintainers: tuple[tuple[str, str], ...]
-    build_type: str
-    depends: Mapping[str, frozenset[str]]
-    groups: frozenset[str]
+    licences: tuple[str, ...]  # each <license>, as written
+    maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
+    build_type: str  # what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one
+    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`
+    groups: frozenset[str]  # of which dependency groups it is a member
 
     def needs(self, *kinds: str) -> frozenset[str]:
         """Return the names of the dependencies of the given kinds; of all kinds if none is given."""

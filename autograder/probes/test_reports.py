@@ -28,58 +28,36 @@ class ClaimedOutcome(str, Enum):
 
 @dataclass(frozen=True)
 class Claims:
-    """What a run claims of its tests.
+    """What a run claims of its tests."""
 
-    Attributes:
-        verdicts: by test, `module::name` or `module::Class::name`, in the order in which they ran.
-        messages: the first line of what went wrong, by test.
-    """
-
+    # By test, `module::name` or `module::Class::name`, in the order in which they ran.
     verdicts: Mapping[str, ClaimedOutcome] = field(default_factory=dict)
-    messages: Mapping[str, str] = field(default_factory=dict)
+    messages: Mapping[str, str] = field(default_factory=dict)  # the first line of what went wrong, by test
 
 
 @dataclass(frozen=True)
 class TestRun:
-    """One run of a student's tests.
+    """One run of a student's tests."""
 
-    Attributes:
-        files: test files, by their paths below the package's folder `test`.
-        version: the package under test; None for the student's own, as it was built.
-        backwards: whether the tests run in the opposite order.
-        first_failure: whether the run ends with the first test that fails.
-        sniffed: whether an `RtpsSniffer` listens in the default domain.
-        conftest: whether pytest reads the conftest.py that is there.
-    """
-
-    files: tuple[str, ...]
-    version: Version | None = None
-    backwards: bool = False
-    first_failure: bool = False
-    sniffed: bool = False
-    conftest: bool = True
+    files: tuple[str, ...]  # test files, by their paths below the package's folder `test`
+    version: Version | None = None  # the package under test; None for the student's own, as it was built
+    backwards: bool = False  # whether the tests run in the opposite order
+    first_failure: bool = False  # whether the run ends with the first test that fails
+    sniffed: bool = False  # whether an `RtpsSniffer` listens in the default domain
+    conftest: bool = True  # whether pytest reads the conftest.py that is there
     __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
 
 
 @dataclass(frozen=True)
 class Report:
-    """The report of a run; all of it but `ending`, `left` and `joined_domain` is the run's own claim.
+    """The report of a run; all of it but `ending`, `left` and `joined_domain` is the run's own claim."""
 
-    Attributes:
-        ending: how its process ended; None when the grader ended it after pytest was done.
-        status: pytest's exit status, None when it never came to that.
-        claims: what it says of its tests.
-        left: UDP sockets that were still open after the last test: each ROS context that is not ended holds some.
-        output: what it printed.
-        joined_domain: whether a program joined the default domain, where the run was sniffed.
-    """
-
-    ending: Ending | None
-    status: int | None
-    claims: Claims
-    left: int
-    output: str
-    joined_domain: bool = False
+    ending: Ending | None  # how its process ended; None when the grader ended it after pytest was done
+    status: int | None  # pytest's exit status, None when it never came to that
+    claims: Claims  # what it says of its tests
+    left: int  # UDP sockets that were still open after the last test: each ROS context that is not ended holds some
+    output: str  # what it printed
+    joined_domain: bool = False  # whether a program joined the default domain, where the run was sniffed
 
     @property
     def passed(self) -> bool:

@@ -10,29 +10,17 @@ GIB = 1024 * MIB
 
 @dataclass(frozen=True)
 class Limits:
-    """Bounds on a process tree; going over one ends the tree.
+    """Bounds on a process tree; going over one ends the tree."""
 
-    Attributes:
-        wall_seconds: real time from start to end.
-        cpu_seconds: processor time of each process.
-        memory: bytes resident in the whole tree.
-        address_space: bytes of virtual memory of each process.
-        threads: threads in the whole tree.
-        file_size: bytes of the largest file written.
-        open_files: descriptors of each process.
-        output: bytes written to stdout and stderr together.
-        scratch: bytes of the private /tmp.
-    """
-
-    wall_seconds: float = 120.0
-    cpu_seconds: int = 120
-    memory: int = 1 * GIB
-    address_space: int = 8 * GIB
-    threads: int = 256
-    file_size: int = 64 * MIB
-    open_files: int = 1024
-    output: int = 1 * MIB
-    scratch: int = 64 * MIB
+    wall_seconds: float = 120.0  # real time from start to end
+    cpu_seconds: int = 120  # processor time of each process
+    memory: int = 1 * GIB  # bytes resident in the whole tree
+    address_space: int = 8 * GIB  # bytes of virtual memory of each process
+    threads: int = 256  # threads in the whole tree
+    file_size: int = 64 * MIB  # bytes of the largest file written
+    open_files: int = 1024  # descriptors of each process
+    output: int = 1 * MIB  # bytes written to stdout and stderr together
+    scratch: int = 64 * MIB  # bytes of the private /tmp
 
     @property
     def tasks(self) -> int:

@@ -30,18 +30,12 @@ class Mount:
 
 @dataclass(frozen=True)
 class Sandbox:
-    """One sandbox: what is seen, what may be used, with which environment.
+    """One sandbox: what is seen, what may be used, with which environment."""
 
-    Attributes:
-        mounts: beyond the read-only system and the grader's Python; suites and solutions in them are covered.
-        workdir: the working folder; it must lie in a mount.
-        environment: all environment variables that the code gets, nothing is inherited.
-        network: True shares the cell's loopback (to meet the grader over DDS), False has none at all.
-        limits: what the tree may use.
-    """
-
-    workdir: Path
+    workdir: Path  # the working folder; it must lie in a mount
+    # Beyond the read-only system and the grader's Python; suites and solutions in them are covered.
     mounts: tuple[Mount, ...] = ()
+    # All environment variables that the code gets, nothing is inherited.
     environment: Mapping[str, str] = field(default_factory=dict)
-    network: bool = False
-    limits: Limits = NODE
+    network: bool = False  # True shares the cell's loopback (to meet the grader over DDS), False has none at all
+    limits: Limits = NODE  # what the tree may use
