@@ -8,9 +8,11 @@ from pathlib import Path
 import click
 
 from autograder import export as exporters
-from autograder import lms
 from autograder.cli.options import json_option
 from autograder.exceptions import UsageError
+from autograder.lms.collect import HANDED_IN
+from autograder.lms.marks import SYSTEMS, write_marks
+from autograder.lms.roster import read_roster
 from autograder.result import write_json
 
 _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)
@@ -22,7 +24,7 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
     "--format",
     "name",
     required=True,
-    type=click.Choice(sorted([*exporters.FORMATS, *lms.SYSTEMS])),
+    type=click.Choice(sorted([*exporters.FORMATS, *SYSTEMS])),
     help="The format to write.",
 )
 @click.option(
@@ -49,11 +51,11 @@ def export(
 ) -> None:
     """Write stored RESULTS (a folder or a JSON file) as marks for other programs."""
     stored = exporters.load(results)
-    if name in lms.SYSTEMS:
+    if name in SYSTEMS:
         if roster is None:
             raise UsageError(f"--format {name} needs --roster: the table that {name.title()} exported")
-        table = lms.read_roster(roster)
-        strangers = lms.write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
+        table = read_roster(roster)
+        strangers = write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
         if strangers:
             click.echo(f"Not in {roster}: {', '.join(strangers)}", err=True)
         written = out
@@ -66,5 +68,5 @@ def export(
 
 def _late(results: Path) -> tuple[str, ...]:
     """Return the students whose submission was late, as `autograder grade --roster` found them."""
-    file = results / lms.HANDED_IN
+    file = results / HANDED_IN
     return tuple(json.loads(file.read_text(encoding="utf-8"))["late"]) if file.is_file() else ()

@@ -24,7 +24,8 @@ from autograder.cli.options import (
 )
 from autograder.exceptions import UsageError
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
-from autograder.lms import HANDED_IN, collect, read_roster, unpacked
+from autograder.lms.collect import HANDED_IN, collect, unpacked
+from autograder.lms.roster import read_roster
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 

@@ -14,15 +14,14 @@ from autograder.intake import write_tree
 def grade(data: bytes) -> bytes:
     """Grade the submission in a packed `Parcel`, and return a packed `Answer`. It raises nothing."""
     try:
-        return _graded(Parcel.unpack(data)).pack()
+        parcel = Parcel.unpack(data)
+        with tempfile.TemporaryDirectory(prefix="parcel-") as folder:
+            submission, out = Path(folder, "submission"), Path(folder, "out")
+            write_tree(parcel.files, submission)
+            grade_submission(
+                submission, parcel.assignment, student="", seed=parcel.seed, out=out, isolation=parcel.tier
+            )
+            return Answer({path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}).pack()
     except Exception:
         # An exception would travel as a pickle. The client keeps the text in the grader's log.
         return Answer({}, traceback.format_exc()).pack()
-
-
-def _graded(parcel: Parcel) -> Answer:
-    with tempfile.TemporaryDirectory(prefix="parcel-") as folder:
-        submission, out = Path(folder, "submission"), Path(folder, "out")
-        write_tree(parcel.files, submission)
-        grade_submission(submission, parcel.assignment, student="", seed=parcel.seed, out=out, isolation=parcel.tier)
-        return Answer({path.name: path.read_bytes() for path in sorted(out.iterdir()) if path.is_file()})

@@ -57,11 +57,6 @@ class DriveReport:
     commands: tuple[tuple[float, float, float], ...]
 
     @property
-    def collided(self) -> bool:
-        """Whether the robot touched anything."""
-        return bool(self.recording.collided.any())
-
-    @property
     def collided_at(self) -> float | None:
         """The time of the first collision in seconds, None without one."""
         rows = self.recording.collided.any(axis=1).nonzero()[0]

@@ -42,7 +42,8 @@ def serve(scratch: Path, client: Connection) -> None:
         if child == 0:
             _work(job, suite, said)
         _, status = os.waitpid(child, 0)
-        reply = {"status": os.waitstatus_to_exitcode(status), "output": _end_of(said)}
+        output = said.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if said.is_file() else ""
+        reply = {"status": os.waitstatus_to_exitcode(status), "output": output}
         for left in scratch.iterdir():
             subprocess.run(["rm", "-rf", "--", left], check=True)
         client.send_bytes(json.dumps(reply).encode())
@@ -63,14 +64,6 @@ def _work(job: Job, suite: Suite, said: Path) -> None:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
-
-
-def _end_of(log: Path) -> str:
-    if not log.is_file():
-        return ""
-    with log.open("rb") as stream:
-        stream.seek(max(0, log.stat().st_size - OUTPUT))
-        return stream.read().decode("utf-8", errors="replace")
 
 
 def main() -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.lms import Collected, collect, read_roster, unpacked
+from autograder.lms.collect import Collected, collect, unpacked
+from autograder.lms.roster import read_roster
 
 CHAPTER = "02_nodes"
 MOODLE = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Feedback comments
