@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from action_msgs.msg import GoalStatus
+from sensor_msgs.msg import BatteryState
 
 from autograder.checks import check, expect, hint
 from autograder.checks.ch03_interfaces.support import contract
@@ -35,6 +38,26 @@ def test_rounding(reporter: Reporter) -> None:
     expect(level == 28, f"At percentage 0.278 battery_level is {level}.")
 
 
+@check(
+    points=1,
+    holds=("status-stamp", "charging", "joint-topic", "newest"),
+    group="status",
+    depends=("status",),
+    doc=contract.BATTERY,
+)
+@hint("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.")
+@hint("Compare power_supply_status with the constant; msg.joint_positions = list(...) of the joint state's position.")
+def test_sensors(reporter: Reporter) -> None:
+    """The status has a stamp, and says what a battery that charges and two joints say."""
+    reporter.publish_battery(0.61, status=BatteryState.POWER_SUPPLY_STATUS_CHARGING)
+    reporter.publish_joints([0.25, -1.5])
+    status = reporter.status()
+    expect(status.header.stamp.sec != 0, "header.stamp is 0: it was never set.")
+    expect(status.is_charging, "is_charging is False while the battery charges.")
+    joints = list(status.joint_positions)
+    expect(joints == [0.25, -1.5], f"joint_positions is {joints} instead of [0.25, -1.5].")
+
+
 @check(points=1, holds=("trip-rule", "trip-enough"), group="service", depends=BUILT, doc=contract.SERVICE)
 @hint("battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT); possible when that is at least reserve.")
 def test_trip(reporter: Reporter) -> None:
@@ -48,6 +71,18 @@ def test_trip(reporter: Reporter) -> None:
         )
 
 
+@check(points=1, holds=("trip-far", "trip-reason"), group="service", depends=("trip",), doc=contract.SERVICE)
+@hint("max(0, ...) keeps battery_at_end from falling below 0; then compare with what the legs take, too.")
+@hint("Whenever possible is False, put a sentence into response.reason.")
+def test_too_far(reporter: Reporter) -> None:
+    """At 45 %, legs of 120 m and 130 m leave 0 %: not possible, even with a reserve of 0, and the reason says why."""
+    reporter.set_battery(45)
+    answer = reporter.ask([120.0, 130.0], reserve=0)
+    expect(answer.battery_at_end == 0, f"battery_at_end is {answer.battery_at_end}, instead of 0.")
+    expect(not answer.possible, "The trip takes more charge than there is, and is said to be possible.")
+    expect(bool(answer.reason.strip()), "The response gives no reason.")
+
+
 @check(points=1, holds="trip-unknown", group="service", depends=("trip",), doc=contract.SERVICE)
 @hint("A leg is a distance: at least 0, and finite. Look at the legs before you add them up.")
 def test_negative_leg(reporter: Reporter) -> None:
@@ -59,17 +94,24 @@ def test_negative_leg(reporter: Reporter) -> None:
     expect(left == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {left}, instead of {contract.UNKNOWN}.")
 
 
-@check(points=1, holds=("drives", "arrives"), group="action", depends=BUILT, doc=contract.ACTION)
+@check(points=1, holds=("drives", "arrives", "driven"), group="action", depends=BUILT, doc=contract.ACTION)
 @hint("goal_callback accepts, execute drives: publish feedback and a command, wait, look how far the robot has come.")
 @hint("Without a MultiThreadedExecutor, execute never hears of the odometry.")
 def test_drive(driver: Driver) -> None:
-    """The robot drives 0.2 m, with feedback, and stops."""
-    driver.place(0.0, 0.0, 0.0)
-    goal = driver.start(0.2, 0.5)
-    commands = driver.finish(goal, 10.0, "With 0.2 m to drive")
+    """The robot drives 0.35 m, not along x, with feedback and a result, and stops."""
+    start = (0.4, -0.3)
+    driver.place(*start, 2.2)
+    goal = driver.start(0.35, 0.5)
+    commands = driver.finish(goal, 10.0, "With 0.35 m to drive")
     expect(goal.status == GoalStatus.STATUS_SUCCEEDED, "The goal did not succeed.")
-    expect(0.18 <= driver.x <= 0.4, f"The robot drove {driver.x:.2f} m.")
+    driven = math.dist(start, (driver.x, driver.y))
+    expect(0.33 <= driven <= 0.55, f"The robot drove {driven:.2f} m.")
     expect(bool(goal.feedback), "There was no feedback on the way.")
+    told = goal.feedback[-1].message
+    together = told.driven + told.remaining
+    expect(abs(together - 0.35) < 0.01, f"driven and remaining of a feedback are {together:.2f} m together.")
+    said = goal.result.driven
+    expect(abs(said - driven) <= 0.1, f"The result says {said:.2f} m, it was {driven:.2f} m.")
     expect(stopped(commands), "After the goal had ended, the last command was no stop.")
 
 

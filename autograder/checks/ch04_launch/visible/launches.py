@@ -19,7 +19,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
-OTHER = "lorry"  # the name of the second robot
+NAMES = ("tram", "lorry")  # of the two robots
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
         yield Launches(
             robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
             quiet=start(ROBOT, {"report": "false"}),
-            fleet=start(FLEET, {"speed": "0.31", "second": OTHER}, {SHARED: String}),
+            fleet=start(FLEET, {"speed": "0.31", "first": NAMES[0], "second": NAMES[1]}, {SHARED: String}),
             full=start(SAFE, {"battery": "90"}),
             empty=start(SAFE, {"battery": "5"}),
         )
@@ -90,8 +90,8 @@ def test_quiet(launches: Launches) -> None:
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts two robots with given names and speed; both report on /fleet/status."""
     harness = launches.fleet
-    launch_probe.expect_nodes(harness, contract.in_spaces(contract.FIRST, OTHER))
-    for space in (contract.FIRST, OTHER):
+    launch_probe.expect_nodes(harness, contract.in_spaces(*NAMES))
+    for space in NAMES:
         launch_probe.expect_parameters(harness, f"/{space}{DRIVER}", {"speed": 0.31})
         launch_probe.expect_parameters(harness, f"/{space}{REPORTER}", {"robot_name": space})
     harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
