@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,6 +41,23 @@ def load(path: Path) -> tuple[Stored, ...]:
     if not files:
         raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
     return tuple(stored for file in files for stored in _read(file))
+
+
+def per_student(stored: Sequence[Stored], out: Path) -> list[tuple[Stored, Path]]:
+    """Pair each result with `out/<student>`.
+
+    Raises:
+        UsageError: a student has two results, or a student's name cannot be the name of a folder.
+    """
+    pairs: dict[str, tuple[Stored, Path]] = {}
+    for item in stored:
+        student = item.result.student
+        if student in ("", ".", "..") or "/" in student or "\0" in student:
+            raise UsageError(f"the student {student!r} cannot be the name of a folder; use a format without folders")
+        if student in pairs:
+            raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
+        pairs[student] = (item, out / student)
+    return list(pairs.values())
 
 
 def _read(file: Path) -> tuple[Stored, ...]:

@@ -11,8 +11,7 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grading.batch import ARCHIVES, Entry
-from autograder.lms.gradescope import METADATA, read_metadata
-from autograder.lms.names import HandedIn, read_name
+from autograder.lms.names import METADATA, HandedIn, read_metadata, read_name
 from autograder.lms.roster import Roster
 
 HANDED_IN = "handed_in.json"  # beside the results: who was late, what fits no student

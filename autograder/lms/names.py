@@ -8,7 +8,8 @@
 
 The sources: Moodle, mod/assign/locallib.php (`download_submissions`); Canvas, "How do I download all student
 submissions"; GitHub Classroom, `gh classroom clone student-repos`; nbgrader, the folder "submitted". A download of
-Gradescope says whose its folders are in `submission_metadata.yml`, which `gradescope.py` reads.
+Gradescope says whose its folders are, and when they were handed in, in `submission_metadata.yml`. Ruby writes it: its
+keys are symbols, such as `:submitters:`, which YAML reads as text with a colon.
 """
 
 from __future__ import annotations
@@ -16,6 +17,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import yaml
+
+from autograder.exceptions import UsageError
+
+METADATA = "submission_metadata.yml"  # of Gradescope
 
 MOODLE = re.compile(r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
 CANVAS = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<id>\d+)_(?P<file_id>\d+)_(?P<file>.+)", re.DOTALL)
@@ -58,3 +66,24 @@ def _accounts(name: str) -> Keys:
     """Return the accounts that a clone's name may end in: each part after a hyphen, the longest first."""
     parts = name.split("-")
     return tuple(("github", "-".join(parts[start:])) for start in range(1, len(parts)))
+
+
+def read_metadata(folder: Path) -> list[HandedIn]:
+    """Return what a download of Gradescope holds.
+
+    Raises:
+        UsageError: its `submission_metadata.yml` cannot be read.
+    """
+    path = folder / METADATA
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        return [_handed_in(folder / name, told) for name, told in data.items() if (folder / name).is_dir()]
+    except (OSError, ValueError, yaml.YAMLError, AttributeError, TypeError, KeyError) as error:
+        raise UsageError(f"{path}: cannot be read as Gradescope's list of submissions: {error}") from None
+
+
+def _handed_in(folder: Path, told: dict[str, Any]) -> HandedIn:
+    kinds = {":sid": "number", ":email": "email", ":name": "name"}
+    people = told[":submitters"]
+    keys: Keys = tuple((kind, str(person[key])) for person in people for key, kind in kinds.items() if person.get(key))
+    return HandedIn(folder, keys, (str(told.get(":created_at", "")),))

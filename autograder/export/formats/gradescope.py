@@ -11,8 +11,7 @@ from typing import Any
 
 from autograder.checks import Outcome, Visibility
 from autograder.diagnosis import Kind
-from autograder.export.folders import per_student
-from autograder.export.stored import Stored
+from autograder.export.stored import Stored, per_student
 from autograder.feedback.text import NOT_GRADED, clean
 from autograder.result import CheckResult, Result, Status, write_json
 

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from autograder import feedback
-from autograder.export.folders import per_student
-from autograder.export.stored import Stored
+from autograder.export.stored import Stored, per_student
 
 FOLDER = True
 
