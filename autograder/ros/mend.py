@@ -5,8 +5,9 @@ for Python's and numpy's headers, so no message package compiles until they poin
 lets flake8 fork: beside tests that have used rclpy, whose threads a fork does not copy, the forked process may crash,
 and flake8 replaces it for ever. And rclpy 7.1's MultiThreadedExecutor looks again and again at the callback that it has
 given to a thread, and so keeps that thread from the interpreter: on an idle machine a 10 Hz timer beside a 10 Hz
-subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). Each file is
-replaced atomically; mending twice changes nothing.
+subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). And
+ament_lint_auto has no wheel, which each CMake package that `ros2 pkg create` makes asks for. Each file is replaced
+atomically; mending twice changes nothing.
 """
 
 from __future__ import annotations
@@ -34,6 +35,13 @@ _SUBMIT_AND_YIELD = """\
             self._executor.submit(handler)
             time.sleep(0.0001)  # mended: gives the interpreter to the thread that the handler waits for
             self._futures.append(handler)
+"""
+
+LINT_AUTO = Path("share/ament_lint_auto/cmake/ament_lint_autoConfig.cmake")
+_NO_LINTERS = """\
+# In place of ROS's own, which has no wheel: a CMake package that asks for its linters is built, and has none.
+macro(ament_lint_auto_find_test_dependencies)
+endmacro()
 """
 
 STANDINS_PTH = "ros2_standins.pth"
@@ -87,6 +95,16 @@ def mend_executor(site_packages: Path) -> bool:
     return True
 
 
+def offer_lint_auto(prefix: Path) -> bool:
+    """Let CMake packages find ament_lint_auto where the wheels of ROS are; return whether it was missing."""
+    path = prefix / LINT_AUTO
+    if path.is_file() or not (prefix / "share/ament_cmake").is_dir():
+        return False
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _replace(path, _NO_LINTERS)
+    return True
+
+
 def link_standins(site_packages: Path) -> Path:
     """Put the stand-ins' folder at the end of `sys.path`, where anything real is found before them."""
     standins = Path(__file__).parent / "standins"
@@ -106,5 +124,6 @@ if __name__ == "__main__":
     packages = Path(sysconfig.get_paths()["purelib"])
     mend_flake8(packages)
     mend_executor(packages)
+    offer_lint_auto(Path(sys.prefix))
     link_standins(packages)
     print(f"mended {count} CMake files of the ROS wheels")

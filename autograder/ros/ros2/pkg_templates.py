@@ -1,7 +1,6 @@
 """The files of a new package, as text; nothing here touches the disk.
 
-The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own. One thing differs on
-purpose: CMakeLists.txt does without the lint packages where they are not installed.
+The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own.
 """
 
 from __future__ import annotations
@@ -90,9 +89,7 @@ def package_xml(spec: PackageSpec) -> str:
 
 def setup_py(spec: PackageSpec) -> str:
     """Return setup.py of an ament_python package."""
-    script = (
-        f"\n            '{spec.node_name} = {spec.name}.{spec.node_name}:main',\n        " if spec.node_name else ""
-    )
+    script = f"            '{spec.node_name} = {spec.name}.{spec.node_name}:main',\n" if spec.node_name else ""
     return f"""from setuptools import find_packages, setup
 
 package_name = '{spec.name}'
@@ -113,7 +110,8 @@ setup(
     license={_quoted(spec.licence)},
     tests_require=['pytest'],
     entry_points={{
-        'console_scripts': [{script}],
+        'console_scripts': [
+{script}        ],
     }},
 )
 """
@@ -142,7 +140,7 @@ if __name__ == '__main__':
 def cmakelists(spec: PackageSpec) -> str:
     """Return CMakeLists.txt of an ament_cmake package without C++ targets."""
     finds = "\n".join(f"find_package({name} REQUIRED)" for name in ["ament_cmake", *spec.dependencies])
-    return f"""cmake_minimum_required(VERSION 3.10)
+    return f"""cmake_minimum_required(VERSION 3.8)
 project({spec.name})
 
 if(CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES "Clang")
@@ -152,14 +150,11 @@ endif()
 {finds}
 
 if(BUILD_TESTING)
-  # Part of a ROS 2 installation; a build without it skips the linters.
-  find_package(ament_lint_auto QUIET)
-  if(ament_lint_auto_FOUND)
-    # Take the next two lines away once every source file has a copyright header and the package is in git.
-    set(ament_cmake_copyright_FOUND TRUE)
-    set(ament_cmake_cpplint_FOUND TRUE)
-    ament_lint_auto_find_test_dependencies()
-  endif()
+  find_package(ament_lint_auto REQUIRED)
+  # Take the next two lines away once every source file has a copyright header and the package is in git.
+  set(ament_cmake_copyright_FOUND TRUE)
+  set(ament_cmake_cpplint_FOUND TRUE)
+  ament_lint_auto_find_test_dependencies()
 endif()
 
 ament_package()

@@ -116,3 +116,13 @@ def test_the_executor_of_this_environment_is_mended() -> None:
     lines = path.read_text().splitlines()
     after = lines[next(i for i, line in enumerate(lines) if "self._executor.submit(handler)" in line) + 1]
     assert "time.sleep" in after
+
+
+def test_cmake_packages_find_ament_lint_auto_where_the_wheels_are(tmp_path: Path) -> None:
+    assert not mend.offer_lint_auto(tmp_path)
+    (tmp_path / "share/ament_cmake").mkdir(parents=True)
+    assert mend.offer_lint_auto(tmp_path)
+    assert "macro(ament_lint_auto_find_test_dependencies)" in (tmp_path / mend.LINT_AUTO).read_text()
+    (tmp_path / mend.LINT_AUTO).write_text("the real one")
+    assert not mend.offer_lint_auto(tmp_path)
+    assert (tmp_path / mend.LINT_AUTO).read_text() == "the real one"

@@ -1,0 +1,59 @@
+"""Packages that `ros2 pkg create` wrote, with a student's own work filled in, have every point of the course.
+
+The tool is the stand-in, or after `make real-launch` the real one. What both write is recorded in
+created_packages.yaml, by `python -m tests.e2e.created_packages` with the real ros2cli.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+from autograder.checks import suites
+from autograder.proof.cases import Case
+from autograder.proof.claims import CaseKind, verify_full_marks
+from autograder.proof.lanes import Lanes
+from autograder.proof.mutants import write_reference
+from autograder.proof.prove import prove
+from autograder.sandbox import Tier
+from tests.drawn import drawn, unless
+from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
+
+# The packages of a chapter that its student could make by the tool.
+MADE = {
+    "01_package_structure": ("square_dance",),
+    "06_testing": ("speed_guard",),
+    "08_capstone": ("robot_navigation_tutorial", "robot_navigation_interfaces"),
+    "09_assessment": ("motor_guard", "motor_guard_interfaces"),
+}
+
+
+@pytest.fixture(scope="module")
+def lanes() -> Iterator[Lanes]:
+    with Lanes(Tier.BUBBLEWRAP, 1) as lane:
+        yield lane
+
+
+def test_the_tool_writes_what_the_real_one_writes(tmp_path: Path) -> None:
+    assert facts(tmp_path) == yaml.safe_load(RECORD.read_text())
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize(
+    "assignment", [pytest.param(one, marks=unless(one in now)) for now in [drawn(list(MADE), 3)] for one in MADE]
+)
+def test_no_check_takes_a_point_for_what_the_tool_writes(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
+    def write(folder: Path) -> None:
+        write_reference(suites.hidden(assignment).sources, folder)
+        for package in MADE[assignment]:
+            made = create(tmp_path / "made", package)
+            fill_in(made, folder / "src" / package)
+            assert written(made) <= written(folder / "src" / package)
+
+    case = Case(assignment, CaseKind.VARIANT, "created", write, verify_full_marks)
+    (claim,) = prove([case], seed=2026, out=tmp_path / "proof", lanes=lanes)
+    assert claim.holds, "\n".join(f"{one.id}: {one.points:g} points. {one.message}" for one in claim.result.checks)
