@@ -188,6 +188,20 @@ def test_a_program_that_can_be_stepped_is_stepped() -> None:
     assert in_cell(met, ticking) == [[["lockstep", True]] * 2, ""]
 
 
+def chosen(scratch: Path) -> str:
+    """Return how a program is met whose thread has nothing to do yet."""
+    from autograder.harness import AutoHarness
+
+    text = "class Waits(Speaker):\n    def __init__(self):\n        super().__init__()\n"
+    text += "        threading.Thread(target=threading.Semaphore(0).acquire, daemon=True).start()\nspin(Waits)\n"
+    with AutoHarness(workspace_of(scratch, text), "pkg", "node") as harness:
+        return harness.time
+
+
+def test_a_program_with_a_thread_of_its_own_is_met_in_real_time_before_that_has_sent_anything() -> None:
+    assert in_cell(chosen) == "real"
+
+
 def unheard(scratch: Path) -> int:
     """Let a program in real time say ten things while nobody listens; return how many are stamped with that time."""
     import time

@@ -170,7 +170,9 @@ class Host:
 
     def is_stepped_thread(self) -> bool:
         """Return whether the current thread is stepped: a thread of the program's own is not."""
-        thread = threading.current_thread()
+        return self._is_stepped(threading.current_thread())
+
+    def _is_stepped(self, thread: threading.Thread) -> bool:
         return thread is self._main or isinstance(thread, Worker)
 
     def has_nodes(self) -> bool:
@@ -251,6 +253,8 @@ class Host:
             self.pipes.send(event="ready")
         if self._stepping:
             self._stepping = False
+            if not all(map(self._is_stepped, threading.enumerate())):
+                self.note("thread")  # whatever it waits for now, it may go on when this program is idle
             wake = min((wake for wake in self.wakes if wake is not None), default=None)
             state = {"lost": self._lost, "changed": self.hooks.changed, "wake": wake, "notes": self._notes}
             self.pipes.send(event="done", sent=self.counts.flush(), **state)

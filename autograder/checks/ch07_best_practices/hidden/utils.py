@@ -76,11 +76,14 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
 @check(points=1, holds="leave-lists", depends=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
-    """mask_invalid leaves the list that it was given as it was."""
+    """What is given to mask_invalid, and to process, is left as it was."""
     readings = [0.0, 1.0, 99.0]
     (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, LOW, HIGH))
     value(outcome, "mask_invalid(...)")
-    expect(same(list(outcome.arguments[:1]), [readings]), f"The caller's {readings} became {outcome.arguments[0]}.")
+    processed = _processed(workspace, 3, [readings])[1]
+    value(processed, "DataProcessor(3).process(...)")
+    for each in (outcome, processed):
+        expect(same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
 
 
 @check(points=2, holds="mean")
@@ -94,6 +97,9 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     mean = value(outcome, "mean_distance(...)")
     right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
     expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
+    (outcome,) = calls(workspace, UTILS, call("mean_distance", [0.0, nan]))
+    mean = value(outcome, "mean_distance(...)")
+    expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
 
 
 @check(points=1, holds="mean", depends=("mean",))
@@ -111,7 +117,7 @@ def test_no_mean(workspace: Workspace) -> None:
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
     size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
-    outcomes = _processed(workspace, size, [[mean] for mean in means])
+    outcomes = _processed(workspace, size, [[mean] * (1 + i % 3) for i, mean in enumerate(means)])
     average, wanted = value(outcomes[-1], "average()"), fmean(means[-size:])
     expect(
         same(average, wanted),

@@ -1,0 +1,57 @@
+"""A thread of its own does the work; callbacks only hand scans over."""
+
+import queue
+import threading
+
+from my_robot_package.utils.data_processing import DataProcessor, mean_distance
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float32
+
+
+class SensorProcessor(Node):
+    """Takes scans, and lets a worker clean them."""
+
+    def __init__(self):
+        """Connect, and start the worker."""
+        super().__init__("sensor_processor")
+        self.scans = queue.Queue()
+        self.processor = DataProcessor(history=10)
+        self.filtered = self.create_publisher(LaserScan, "scan_filtered", qos_profile_sensor_data)
+        self.mean = self.create_publisher(Float32, "mean_distance", 10)
+        self.create_subscription(LaserScan, "scan", self.scans.put, qos_profile_sensor_data)
+        self.worker = threading.Thread(target=self.work)
+        self.worker.start()
+
+    def work(self):
+        """Clean scans until None comes."""
+        while (scan := self.scans.get()) is not None:
+            scan.ranges = self.processor.process(scan.ranges, scan.range_min, scan.range_max)
+            self.filtered.publish(scan)
+            if mean_distance(scan.ranges) is None:
+                self.get_logger().warning("blind", throttle_duration_sec=1.0)
+            else:
+                self.mean.publish(Float32(data=self.processor.average()))
+
+    def end(self):
+        """Let the worker end."""
+        self.scans.put(None)
+        self.worker.join()
+
+
+def main():
+    """Run it."""
+    rclpy.init()
+    node = SensorProcessor()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.end()
+        rclpy.try_shutdown()

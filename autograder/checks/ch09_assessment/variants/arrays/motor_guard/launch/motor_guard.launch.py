@@ -1,0 +1,20 @@
+"""The three nodes in a group, the guard's threshold worked out by an expression."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction
+from launch.substitutions import LaunchConfiguration, PythonExpression
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+
+def generate_launch_description():
+    """Name each node once."""
+    hot = ParameterValue(PythonExpression(['float(', LaunchConfiguration('hot'), ')']), value_type=float)
+    return LaunchDescription([
+        DeclareLaunchArgument('hot', default_value='60.0', description='degrees Celsius'),
+        GroupAction([
+            Node(package='motor_guard', executable='thermometer', name='thermometer'),
+            Node(package='motor_guard', executable='smoother', name='smoother'),
+            Node(package='motor_guard', executable='guard', name='guard', parameters=[{'hot': hot}]),
+        ]),
+    ])
