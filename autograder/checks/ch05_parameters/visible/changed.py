@@ -15,11 +15,13 @@ PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}
 @hint("proposed = {parameter.name: parameter.value for parameter in parameters} is what the request asks for.")
 @hint("proposed.get('slow_distance', self.value('slow_distance')) is what it will be.")
 def test_contradiction(robot: Robot) -> None:
-    """It refuses a safety distance above the slow distance or equal to it; its reason names both, with values."""
+    """It refuses distances that do not fit, whichever is set, and equal ones; its reason names both, with values."""
     answer = robot.change({"safety_distance": 1.5})
     expect(not answer.accepted, "With a slow_distance of 1.0 m, it took 1.5 m for safety_distance.")
     named = all(part in answer.reason for part in (*PAIR, "1.5"))
     expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
+    answer = robot.change({"slow_distance": 0.3})
+    expect(not answer.accepted, "With a safety_distance of 0.5 m, it took 0.3 m for slow_distance.")
     answer = robot.change({"safety_distance": 0.7, "slow_distance": 0.7})
     expect(not answer.accepted, "It took 0.7 m for both distances in one request.")
 

@@ -41,6 +41,7 @@ def test_starts(robot: Robot) -> None:
         "slow_distance",
         "control_frequency",
         "battery_threshold",
+        "no-others",
     ),
     depends=("starts",),
     doc=contract.PARAMETERS,
@@ -48,8 +49,10 @@ def test_starts(robot: Robot) -> None:
 @hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
 def test_table(robot: Robot) -> None:
-    """It declares the six parameters with the types and defaults of the table."""
-    expect(not (sentence := missing_sentence(WANTED, robot.parameters.names())), sentence)
+    """It declares the six parameters with the types and defaults of the table, and no others."""
+    names = robot.parameters.names()
+    expect(not (sentence := missing_sentence(WANTED, names)), sentence)
+    expect(not (others := sorted(names - set(WANTED))), f"It also declares {', '.join(others)}.")
     wrong = [
         f"{name} is {TYPES.get(found.type, 'an array')} instead of {TYPES[WANTED[name].type]}"
         for name, found in robot.parameters.descriptors(*WANTED).items()
@@ -59,11 +62,11 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("ranges", "no-others"), depends=("table",), doc=contract.PARAMETERS)
+@check(points=1, holds=("ranges", "robot_name"), depends=("table",), doc=contract.PARAMETERS)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
-    """It refuses -1 m/s, 0.5 Hz, 51 Hz, 5 m, 101 percent and another name, each with a reason."""
+    """It refuses -1 m/s, 0.5 Hz, 51 Hz, 5 m, 101 percent and another robot_name, each with a reason."""
     requests: list[tuple[str, Value]] = [
         ("max_linear_velocity", -1.0),
         ("control_frequency", 0.5),

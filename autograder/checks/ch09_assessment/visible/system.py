@@ -57,10 +57,10 @@ def test_measures(start: Start) -> None:
         harness.expect_readings(6, 0.25, 10.0, 2.0)
 
 
-@check(points=1, holds="smoother", group="nodes", depends=("builds",), doc=contract.NODES_DOC)
+@check(points=1, holds=("smoother", "window"), group="nodes", depends=("builds",), doc=contract.NODES_DOC)
 @hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading.")
 def test_smooths(start: Start) -> None:
-    """Question 3: smoother publishes the average of the newest readings that are finite, with the newest stamp."""
+    """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
         told = harness.send([40.0, 50.0, math.nan, 60.0])
@@ -68,17 +68,22 @@ def test_smooths(start: Start) -> None:
     expect(seen == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
     stamps = [message.stamp.sec for message in told]
     expect(stamps == [1, 2, 4], f"Their stamps were {stamps} s, and those of the newest readings are [1, 2, 4] s.")
+    with start(SMOOTHER, window=2) as harness:
+        seen = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 70.0])]
+    expect(
+        seen == [40.0, 45.0, 60.0], f"With window 2, 40, 50, 70 °C became {seen}, and should become [40.0, 45.0, 60.0]."
+    )
 
 
-@check(points=1, holds="hysteresis", group="nodes", depends=("builds",), doc=contract.NODES_DOC)
+@check(points=1, holds=("hysteresis", "unknown"), group="nodes", depends=("builds",), doc=contract.NODES_DOC)
 @hint("Remember the last decision in self.", "Between the two thresholds nothing changes.")
 def test_decides(start: Start) -> None:
     """Question 3: guard switches the fan on when it is hot or not known, off when it is cool, and passes both on."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
-        told = harness.send([45.0, 65.0, 55.0, 45.0, math.inf])
+        told = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
     seen = [message.cooling for message in told]
-    expect(seen == [False, True, True, False, True], f"45, 65, 55, 45, inf °C: cooling was {seen}.")
+    expect(seen == [False, True, True, False, True], f"45, 65, 55, 45, nan °C: cooling was {seen}.")
     given = [(message.stamp.sec, round(message.celsius, 1)) for message in told[:3]]
     expect(given == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {given}.")
 
