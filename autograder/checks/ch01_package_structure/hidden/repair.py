@@ -110,5 +110,5 @@ def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw
     """With the installed configuration it goes off from 0.8 m on."""
     path = installed_alarm.prefix / "share" / installed_alarm.package / contract.ALARM_CONFIG
     with robots.alarm(workspace, "--params-file", str(path)) as harness:
-        robots.expect_alarm(harness, round(draw.uniform(0.55, 0.75), 2), True)
-        robots.expect_alarm(harness, round(draw.uniform(0.85, 2.0), 2), False)
+        robots.expect_alarm(harness, round(draw.uniform(0.66, 0.76), 2), True)
+        robots.expect_alarm(harness, round(draw.uniform(0.84, 0.98), 2), False)
