@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -31,11 +30,7 @@ def make(folder: Path) -> tuple[Path, Path]:
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     command = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
     command += ["-subj", "/CN=autograder cluster", "-days", str(DAYS), "-keyout", str(key), "-out", str(certificate)]
-    mask = os.umask(0o077)
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    finally:
-        os.umask(mask)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, umask=0o077)
     if done.returncode != 0:
         raise UsageError(f"openssl could not make the certificate: {done.stderr.strip()}")
     return certificate, key

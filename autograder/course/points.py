@@ -56,16 +56,16 @@ def _wrong(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> li
     for cell in notebook.cells:
         if not is_graded(cell) or is_manually_graded(cell):
             continue
-        named, cell_id = group(cell), cell.get("id", "without id")
+        named = group(cell)
         if named is None or named not in points:
             message = f"stands for no group of the suite ({named!r}); its groups: {', '.join(points) or 'none'}"
-            wrong.append((Finding(name, cell_id, message), None))
+            wrong.append((Finding(name, cell.id, message), None))
         elif named in seen:
-            wrong.append((Finding(name, cell_id, f"is the second cell of group {named!r}"), None))
+            wrong.append((Finding(name, cell.id, f"is the second cell of group {named!r}"), None))
         elif cell.metadata.nbgrader.get("points") != points[named]:
             has = cell.metadata.nbgrader.get("points")
             message = f"has {has} points, but the checks of {named!r} have {points[named]:g}"
-            wrong.append((Finding(name, cell_id, message), cell))
+            wrong.append((Finding(name, cell.id, message), cell))
         seen.add(str(named))
     missing = [named for named in points if named not in seen]
     wrong += [(Finding(name, None, f"no grade cell stands for group {named!r}"), None) for named in missing]

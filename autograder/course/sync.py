@@ -16,6 +16,7 @@ from autograder import layout
 from autograder.course.cells import given_files, origin, read_solution
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Finding
+from autograder.result import write_atomically
 
 SHOWN_LINES = 12
 
@@ -98,16 +99,15 @@ def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[tuple[Fin
     """Yield the findings, each with the copy that corrects it, or None where a copy corrects nothing."""
     name = chapter.path.name
     for cell in notebook.cells:
-        cell_id = cell.get("id", "without id")
         try:
             source = origin(cell)
             expected = None if source is None else source.expected_text()
         except CourseError as error:
-            yield Finding(name, cell_id, str(error)), None
+            yield Finding(name, cell.id, str(error)), None
             continue
         if expected is not None and source is not None and cell.source != expected:
             message = f"differs from solutions/{source.source}; run `autograder course sync`"
-            finding = Finding(name, cell_id, message + _diff(cell.source, expected))
+            finding = Finding(name, cell.id, message + _diff(cell.source, expected))
             yield finding, partial(setattr, cell, "source", expected)
     try:
         pairs = given_files(notebook)
@@ -121,13 +121,8 @@ def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[tuple[Fin
         if current != text:
             what = "is missing" if current is None else "differs"
             message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
-            message += "run `autograder course sync`"
-            yield Finding(name, None, message + _diff(current or "", text)), partial(_write, path, text)
-
-
-def _write(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+            message += "run `autograder course sync`" + _diff(current or "", text)
+            yield Finding(name, None, message), partial(write_atomically, path, text.encode())
 
 
 def _diff(current: str, expected: str) -> str:

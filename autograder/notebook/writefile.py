@@ -17,6 +17,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from IPython.display import display
 
 from autograder.notebook.notices import Notice
+from autograder.result import write_json
 
 STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
 RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last
@@ -62,7 +63,7 @@ def write(line: str, cell: str, original: Any) -> None:
     if arguments.append:
         original(line, cell)
         if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
-            _write_record(home, {**record, name: digest((on_disk or "") + cell)})
+            write_json(home / RECORD, {**record, name: digest((on_disk or "") + cell)})
         return
     if on_disk is not None and on_disk != cell:
         if cell.count(STUB) > on_disk.count(STUB):
@@ -74,7 +75,7 @@ def write(line: str, cell: str, original: Any) -> None:
         if record.get(name) != digest(on_disk):
             _show(f"{path} was changed outside of this cell. Its old text is kept in {_keep_copy(path, home)}.")
     original(line, cell)
-    _write_record(home, {**record, name: digest(cell)})
+    write_json(home / RECORD, {**record, name: digest(cell)})
 
 
 def _show(sentence: str) -> None:
@@ -113,9 +114,3 @@ def _read_record(home: Path) -> dict[str, str]:
     except (OSError, ValueError):
         return {}
     return record if isinstance(record, dict) else {}
-
-
-def _write_record(home: Path, record: dict[str, str]) -> None:
-    fresh = home / f"{RECORD}.{os.getpid()}"
-    fresh.write_text(json.dumps(record, indent=1, sort_keys=True))
-    fresh.replace(home / RECORD)
