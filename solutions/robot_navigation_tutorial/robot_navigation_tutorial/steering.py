@@ -25,8 +25,7 @@ def choose_turn(clearance, safety_distance, turn):
     clearance has the distances front, left and right in metres, and turn is the choice
     before. Something ahead that is nearer than safety_distance starts a turn, towards the
     side with more room, to the left when both have the same. A turn keeps its direction, and
-    ends when front is at least safety_distance + MARGIN: a robot that could change its mind
-    at every scan would shake its head in front of a corner.
+    ends when front is at least safety_distance + MARGIN.
     """
     if turn == STRAIGHT and clearance.front >= safety_distance:
         return STRAIGHT
