@@ -32,7 +32,33 @@ def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
     return wanted * min(1.0, max(0.0, share))
 """
 }
-# Is added to the end of guard.py.
+HALF_IN_BETWEEN = {
+    "speed_guard/limits.py": """import math
+
+
+def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
+    if not 0.0 <= stop_distance < slow_distance:
+        raise ValueError('these distances make no sense')
+    if wanted <= 0.0:
+        return wanted
+    if distance is None or math.isnan(distance) or distance <= stop_distance:
+        return 0.0
+    return wanted if distance >= slow_distance else wanted / 2.0
+"""
+}
+# These two are added to the end of guard.py.
+NEVER_FORGETS = """
+
+_answer = SpeedGuard.on_command
+
+
+def _trusting(self, msg):
+    self.distance_time = self.get_clock().now()
+    _answer(self, msg)
+
+
+SpeedGuard.on_command = _trusting
+"""
 TURNS_THE_OTHER_WAY = """
 
 _answer = SpeedGuard.on_command
@@ -54,7 +80,8 @@ def generate_launch_description():
     return LaunchDescription([Node(package='speed_guard', executable='speed_guard', name='speed_guard')])
 """
 }
-RIGHT, ALL_PASS, BLIND, TURNED, UNCONFIGURED = "right", "all pass", "blind", "turned", "unconfigured"
+RIGHT, ALL_PASS, BLIND, HALF = "right", "all pass", "blind", "half"
+TURNED, TRUSTING, UNCONFIGURED = "turned", "trusting", "unconfigured"
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +99,9 @@ def reports(workspace: Workspace, source: Source) -> Reports:
         (GUARD, ALL_PASS): LETS_ALL_PASS,
         (GUARD, TURNED): {GUARD_FILE: files.get(GUARD_FILE, "") + TURNS_THE_OTHER_WAY},
         (LIMITS, ALL_PASS): LETS_ALL_PASS,
+        (GUARD, TRUSTING): {GUARD_FILE: files.get(GUARD_FILE, "") + NEVER_FORGETS},
         (LIMITS, BLIND): GOES_BLIND,
+        (LIMITS, HALF): HALF_IN_BETWEEN,
     }
     wanted = {(name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD) for name in LEAST}
     for (name, what), changed in mutants.items():
@@ -102,6 +131,13 @@ def test_limits_unknown(reports: Reports) -> None:
     _expect_objection(reports, LIMITS, BLIND)
 
 
+@check(points=1, holds="slow", group="function", depends=("limits_pass",), doc=contract.PYTEST)
+@hint("Half way, half the speed is right. What about a quarter of the way?", contract.MUTATE)
+def test_limits_line(reports: Reports) -> None:
+    """One of them fails when safe_speed allows half of what was wanted everywhere between the two distances."""
+    _expect_objection(reports, LIMITS, HALF)
+
+
 @check(points=1, holds="guard-pass", group="node", doc=contract.PYTEST)
 @hint(contract.SPIN, "Between two calls of spin_once, look at the condition and at time.monotonic().")
 def test_guard_pass(reports: Reports) -> None:
@@ -121,6 +157,13 @@ def test_guard_notice(reports: Reports) -> None:
 def test_guard_turn(reports: Reports) -> None:
     """One of them fails when the guard turns to the other side."""
     _expect_objection(reports, GUARD, TURNED)
+
+
+@check(points=1, holds="stale", group="node", depends=("guard_pass",), doc=contract.PYTEST)
+@hint("With guard(timeout=HASTY), see(4.0), then spin for longer than that, then ask(0.8).", contract.MUTATE)
+def test_guard_forgets(reports: Reports) -> None:
+    """One of them fails when the guard trusts a distance however old it is."""
+    _expect_objection(reports, GUARD, TRUSTING)
 
 
 @check(points=1, holds="own-domain", group="node", depends=("guard_pass",), doc=contract.DOMAIN)
