@@ -110,9 +110,10 @@ verify:         ## prove the grader: reference, release and mutants (WORKERS=4 V
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
 
 real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
-	@$(BOOTSTRAP)
+	@$(BOOTSTRAP) --dev
 	@$(BIN)/python -m autograder.ros.real_launch
-	@$(BIN)/python -m pytest -q tests/e2e/launch_cases tests/e2e/launch_test_cases tests/e2e/ros2_records \
+	@$(BIN)/python -m pytest -q tests/e2e/launch_cases tests/e2e/launch_standin tests/e2e/launch_test_cases \
+		tests/e2e/ros2_records tests/e2e/test_created_packages.py \
 		-m "not nightly" $(PYTEST_ARGS)
 
 PREFIX ?= .build/opt/ros/jazzy

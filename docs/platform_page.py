@@ -41,6 +41,9 @@ The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and
 Python programs, from `autograder/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have the hashes of
 the real ones, so programs meet those of other computers. A CMake package cannot use them: they have no CMake files.
 
+A CMake package that `ros2 pkg create` has written asks for `ament_lint_auto`, which has no wheel. Set-up puts an empty
+one in its place. The package is built, and has no linters.
+
 ## Public packages
 
 `make public-packages` builds the Python packages of ros2/examples, and `demo_nodes_py` and `action_tutorials_py` of
