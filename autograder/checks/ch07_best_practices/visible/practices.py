@@ -41,16 +41,24 @@ def test_mean_distance(workspace: Workspace) -> None:
 
 
 @check(
-    points=1, holds=("history", "average"), group="utils", depends=("mask_invalid", "mean_distance"), doc=contract.DEQUE
+    points=1,
+    holds=("history", "average", "leave-lists"),
+    group="utils",
+    depends=("mask_invalid", "mean_distance"),
+    doc=contract.DEQUE,
 )
 @hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the means remembered.")
 def test_data_processor(workspace: Workspace) -> None:
     """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
-    steps = [make("DataProcessor", 2), *(call("process", [metres], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan))]
-    *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
+    steps = [
+        make("DataProcessor", 2),
+        *(call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
+    ]
+    _, first, *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
     average = value(outcome, "average()")
     shown = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
     expect(same(average, 2.5), f"{shown} is {average} instead of 2.5.")
+    expect(same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
 
 
 @check(points=1, holds="scan-filtered", group="processor", depends=("data_processor",), doc=contract.QOS)
