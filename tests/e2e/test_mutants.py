@@ -1,7 +1,7 @@
 """The proof's part for each change: the references and releases of all chapters, some variants and some mutants.
 
 The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in thirty of
-a chapter's, and one variant in three. The runs of several commits take them all, and so does `make nightly`.
+a chapter's, and one variant in six. The runs of several commits take them all, and so does `make nightly`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def of(kind: CaseKind, assignment: str = "") -> list[str]:
 def chosen(draw: str | None = None) -> set[str]:
     """Return the ids of the cases that run for each change."""
     mutants = (drawn(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded())
-    return set().union(of(CaseKind.REFERENCE), of(CaseKind.RELEASE), drawn(of(CaseKind.VARIANT), 3, draw), *mutants)
+    return set().union(of(CaseKind.REFERENCE), of(CaseKind.RELEASE), drawn(of(CaseKind.VARIANT), 6, draw), *mutants)
 
 
 def test_the_commits_draw_all_cases_in_turn() -> None:
