@@ -14,6 +14,7 @@
 
 """The other side of the guard's topics, in a ROS 2 context that no other test shares."""
 
+from copy import deepcopy
 import os
 import time
 
@@ -84,7 +85,7 @@ class Robot(Node):
         wanted.linear.z = self.number  # comes back in the answer; a stop has 0 there
         self.planner.publish(wanted)
         self.until(lambda: self.number in [command.linear.z for command in self.commands])
-        answer = next(command for command in self.commands if command.linear.z == self.number)
+        answer = deepcopy(next(command for command in self.commands if command.linear.z == self.number))
         answer.linear.z = 0.0
         return answer
 
@@ -97,7 +98,7 @@ class Robot(Node):
 
 @pytest.fixture
 def domain():
-    """Return a domain that no other test process uses."""
+    """Return a domain that hardly any other test process uses at the same time."""
     return 1 + os.getpid() % 100
 
 
