@@ -71,7 +71,7 @@ class NavigationController(Node):
 
     def control(self):
         """
-        Publish one command, whatever happens.
+        Publish exactly one command at each call, also to stand still.
 
         Disabled, or without a clearance that can be trusted: stand still. Otherwise turn on
         the spot at up to turn_speed, or drive straight on at up to forward_speed, as

@@ -97,7 +97,7 @@ class RobotController(Node):
 
     def control_loop(self):
         """
-        Publish one command, whatever happens.
+        Publish exactly one command at each call, also to stand still.
 
         No scan yet, a newest scan older than SCAN_TIMEOUT, or no forward reading that
         counts: stand still. Something nearer than SAFETY_DISTANCE: turn at TURN_RATE on the

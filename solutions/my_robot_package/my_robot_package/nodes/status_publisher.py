@@ -119,7 +119,7 @@ class StatusPublisher(Node):
         """
         Fill in whether the battery would last for a trip, and return the response.
 
-        battery_at_end is the battery's level now less the percent that the legs take, rounded
+        battery_at_end is what battery_percent returns less the percent that the legs take, rounded
         down, and never below 0. The trip is possible when that is at least the reserve, and the
         legs take no more than there is.
 
