@@ -85,7 +85,8 @@ class Robot(Node):
         wanted.linear.z = self.number  # comes back in the answer; a stop has 0 there
         self.planner.publish(wanted)
         self.until(lambda: self.number in [command.linear.z for command in self.commands])
-        answer = deepcopy(next(command for command in self.commands if command.linear.z == self.number))
+        heard = next(command for command in self.commands if command.linear.z == self.number)
+        answer = deepcopy(heard)
         answer.linear.z = 0.0
         return answer
 
