@@ -7,8 +7,6 @@ ROS time. At each of them the program takes all messages that were sent to it an
 
 from __future__ import annotations
 
-import json
-import os
 import sys
 import threading
 import time
@@ -31,6 +29,7 @@ from .clocks import Clocks
 from .description import describe
 from .executors import CallbackThreadsExecutor, spin_until_future_complete
 from .hooks import Hooks
+from .pipes import Pipes
 from .tasks import TaskPositions
 
 LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages that were announced count as lost
@@ -39,24 +38,6 @@ OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue 
 _wait_for_work = Executor.wait_for_ready_callbacks
 _init = rclpy.init
 _init_time_source = rclpy.time_source.TimeSource.__init__
-
-
-class Pipes:
-    """The host's end of the pipes, a JSON object a line. When the grader closes them, the program is to quit."""
-
-    def __init__(self, read_fd: int, write_fd: int) -> None:
-        self._reader = os.fdopen(read_fd, "r", encoding="utf-8")
-        self._writer = os.fdopen(write_fd, "w", encoding="utf-8")
-
-    def send(self, **event: Any) -> None:
-        """Send the grader an event."""
-        self._writer.write(json.dumps(event) + "\n")
-        self._writer.flush()
-
-    def receive(self) -> dict[str, Any]:
-        """Wait for the grader's next command."""
-        line = self._reader.readline()
-        return dict(json.loads(line)) if line else {"op": "quit"}
 
 
 class Host:
