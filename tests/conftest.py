@@ -108,7 +108,7 @@ def make_check() -> MakeCheck:
     return _check
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_result() -> MakeResult:
     """Make a result of a flawed submission; keyword arguments replace its fields."""
 
@@ -137,7 +137,7 @@ def make_result() -> MakeResult:
     return make
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def broken_result(make_result: MakeResult) -> Result:
     """A submission that did not build."""
     return make_result(
@@ -154,7 +154,7 @@ def ungraded_result(make_result: MakeResult) -> Result:
     return make_result("carol", checks=(), status=Status.NOT_GRADED)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def track() -> Callable[..., Artifact]:
     """Draw a picture of a robot's track into a folder and return its record."""
 
