@@ -15,13 +15,15 @@ from pathlib import Path
 
 import nbformat
 import numpy as np
-import yaml
 
 from autograder import layout
 from autograder.checks import suites
 from autograder.course.forms import Form, in_form
 from autograder.course.markdown_table import table
 from autograder.course.sync import Chapter, chapters
+from autograder.proof.cases import cases
+from autograder.proof.claims import CaseKind
+from autograder.proof.mutants import mutants
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
 
@@ -33,7 +35,7 @@ KEPT_BACK = ("checks.md", "cluster", "*.py", "__pycache__")
 # Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
-FROM_ELSEWHERE = ("CHANGELOG.md", "SECURITY.md", "chapters/ros2-commands.md")
+FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md")
 
 
 def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
@@ -77,9 +79,9 @@ def proof_table() -> str:
     rows = []
     for name in suites.graded():
         suite = suites.hidden(name)
-        mutants = yaml.safe_load((suite.folder / "mutants.yaml").read_text(encoding="utf-8"))["mutants"]
-        variants = [path for path in (suite.folder / "variants").glob("*") if path.is_dir()]
-        rows.append((name, f"{suite.max_score:g}", *map(str, (len(suite.checks), len(mutants), len(variants)))))
+        variants = sum(case.kind is CaseKind.VARIANT for case in cases(name, quick=True))
+        counts = (len(suite.checks), len(mutants(name)), variants)
+        rows.append((name, f"{suite.max_score:g}", *map(str, counts)))
     return "\n".join(table(("chapter", "points", "hidden checks", "named mutants", "right variants"), rows))
 
 

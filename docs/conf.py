@@ -11,7 +11,7 @@ author = "The authors of the course"
 copyright = f"{author}, Apache License 2.0"
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["made", "CHANGELOG.md", "SECURITY.md"]  # other pages include them
+exclude_patterns = ["made", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"]  # other pages include them
 
 html_theme = "furo"
 html_title = "ROS 2 packages with Python"

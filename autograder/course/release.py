@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 import nbformat
@@ -65,7 +66,8 @@ def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         bundle = Path(scratch) / out.name
         chosen = [known[name] for name in names or known]
-        _copy_parts(bundle)
+        copy_parts(COPIED, bundle)
+        _withhold(bundle)
         for chapter in chosen:
             write_released(chapter, bundle / "chapters" / chapter.assignment)
         shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
@@ -73,14 +75,18 @@ def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
     return [chapter.assignment for chapter in chosen]
 
 
-def _copy_parts(bundle: Path) -> None:
-    for part in COPIED:
-        source, target = layout.ROOT / part, bundle / part
+def copy_parts(parts: Iterable[str], folder: Path) -> None:
+    """Copy files and folders of the course, by their paths in it, to `folder`, without what tools left behind."""
+    for part in parts:
+        source, target = layout.ROOT / part, folder / part
         if source.is_dir():
             shutil.copytree(source, target, ignore=layout.NOT_COPIED)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
+
+
+def _withhold(bundle: Path) -> None:
     for withheld in WITHHELD:
         path = bundle / withheld
         shutil.rmtree(path) if path.is_dir() else path.unlink()

@@ -6,20 +6,20 @@ https://gradescope-autograders.readthedocs.io/en/latest/specs/
 
 from __future__ import annotations
 
-import os
+import shutil
+import tempfile
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 
 from autograder import layout
 from autograder.checks import suites
+from autograder.course.release import copy_parts
 from autograder.exceptions import UsageError
 from autograder.sandbox import Tier
 
-SCRIPTS = layout.ROOT / "assets" / "gradescope"
+SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, in the zip too
 # What grading needs of the course, hidden checks and reference included.
 COURSE = ("autograder", "sim", "assets", "chapters", "solutions", "pyproject.toml", "requirements.lock", "Makefile")
-EXECUTABLE = 0o755 << 16
 
 
 def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
@@ -37,22 +37,13 @@ def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
         raise UsageError(f"{assignment} has no hidden checks; there are: {', '.join(suites.graded())}")
     if out.exists():
         raise UsageError(f"{out} exists already: name a file that does not exist yet")
-    with zipfile.ZipFile(out, "x", zipfile.ZIP_DEFLATED) as archive:
-        for name in ("setup.sh", "run_autograder"):
-            script = (SCRIPTS / name).read_text(encoding="utf-8")
-            entry = zipfile.ZipInfo(name)
-            entry.external_attr = EXECUTABLE
-            archive.writestr(entry, script.replace("ASSIGNMENT", assignment).replace("ISOLATION", tier.value))
-        for path in _course():
-            archive.write(path, Path("course", path.relative_to(layout.ROOT)))
-
-
-def _course() -> Iterator[Path]:
-    for name in COURSE:
-        start = layout.ROOT / name
-        if start.is_file():
-            yield start
-        for folder, folders, files in os.walk(start):
-            left_out = layout.NOT_COPIED(folder, [*folders, *files])
-            folders[:] = sorted(set(folders) - left_out)
-            yield from (Path(folder, file) for file in sorted(set(files) - left_out))
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        copy_parts(COURSE, folder / "course")
+        for script in SCRIPTS.iterdir():
+            text = script.read_text(encoding="utf-8").replace("ASSIGNMENT", assignment).replace("ISOLATION", tier.value)
+            shutil.copy2(script, folder)
+            (folder / script.name).write_text(text, encoding="utf-8")
+        with zipfile.ZipFile(out, "x", zipfile.ZIP_DEFLATED) as archive:
+            for path in sorted(folder.rglob("*")):
+                archive.write(path, path.relative_to(folder))
