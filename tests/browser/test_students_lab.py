@@ -27,11 +27,13 @@ OPEN = """async path => {
     const editor = await window.jupyterapp.commands.execute("docmanager:open", {path, factory: "Editor"});
     await editor.context.ready;
 }"""
-# Jupyter's own command, without its question. It ends when the last cell has.
+# Jupyter's own command, without its question. It ends when the last cell has. It saves the notebook,
+# which JupyterLab would otherwise do two minutes later: until then a mark says that there are unsaved changes.
 RUN_ALL = """async () => {
     const panel = window.jupyterapp.shell.currentWidget;
     await panel.sessionContext.session.kernel.restart();
     await window.jupyterapp.commands.execute("notebook:run-all-cells");
+    await window.jupyterapp.commands.execute("docmanager:save");
     return panel.content.widgets.filter(cell => cell.model.type === "code").map(cell => cell.model.executionCount);
 }"""
 OUTPUTS = """() => window.jupyterapp.shell.currentWidget.content.widgets
