@@ -61,6 +61,7 @@ class Submission:
     # Files beside the notebook that it may read, with paths relative to the assignment's folder.
     extra: tuple[SubmittedFile, ...]
     sha256: str  # digest of all files' paths and contents, in hexadecimal digits
+    graded_sha256: str  # likewise, of what a grading reads: a folder and a zip of it have the same
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
@@ -108,10 +109,6 @@ def detect_layout(entries: list[SubmittedFile], assignment: str) -> Submission:
     Raises:
         StudentError: there is neither the notebook nor a package, or a file and a folder have the same path.
     """
-    digest = hashlib.sha256()
-    for entry in sorted(entries, key=lambda entry: str(entry.path)):
-        digest.update(f"{entry.path}\0{len(entry.data)}\0".encode(errors="surrogatepass"))
-        digest.update(entry.data)
     _require_tree(entries)
     root = _root(entries, assignment)
     inside = [
@@ -134,7 +131,15 @@ def detect_layout(entries: list[SubmittedFile], assignment: str) -> Submission:
             "assignment's whole folder."
         )
         raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
-    return Submission(notebook, tuple(source), tuple(extra), digest.hexdigest())
+    return Submission(notebook, tuple(source), tuple(extra), _digest(entries), _digest(inside))
+
+
+def _digest(entries: list[SubmittedFile]) -> str:
+    digest = hashlib.sha256()
+    for entry in sorted(entries, key=lambda entry: str(entry.path)):
+        digest.update(f"{entry.path}\0{len(entry.data)}\0{entry.executable:d}".encode(errors="surrogatepass"))
+        digest.update(entry.data)
+    return digest.hexdigest()
 
 
 def write_tree(entries: tuple[SubmittedFile, ...], folder: Path) -> None:

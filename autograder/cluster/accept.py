@@ -7,7 +7,6 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 from PIL import Image
 
@@ -16,7 +15,7 @@ from autograder.cluster.exceptions import AnswerError
 from autograder.cluster.parcel import Answer
 from autograder.exceptions import UsageError
 from autograder.grading.batch import Request
-from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, not_graded
+from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, not_graded
 from autograder.result import Result, Status, from_json, write_atomically, write_json
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
@@ -44,7 +43,7 @@ def accept(data: object, request: Request, sha256: str) -> Result:
     _require_artifacts({name: content for name, content in files.items() if name not in (NOTEBOOK, LOG)}, result)
     if NOTEBOOK in files:
         _require_notebook(files[NOTEBOOK])
-    _clear(request.out)
+    clear(request.out)
     for name, content in files.items():
         write_atomically(request.out / name, content)
     return write(result, request)
@@ -58,7 +57,7 @@ def give_up(request: Request, why: str, log: str) -> Result:
         why: a sentence for the result.
         log: what an instructor reads beside the result.
     """
-    _clear(request.out)
+    clear(request.out)
     write_atomically(request.out / LOG, log.encode("utf-8", "backslashreplace"))
     suite = suites.hidden(request.assignment)
     return write(not_graded(suite, request.student, request.seed, request.isolation, why), request)
@@ -69,11 +68,6 @@ def write(result: Result, request: Request) -> Result:
     named = replace(result, student=request.student)
     write_json(request.out / RESULT, named.to_json())
     return named
-
-
-def _clear(out: Path) -> None:
-    for stale in (RESULT, NOTEBOOK, LOG):
-        (out / stale).unlink(missing_ok=True)
 
 
 def _result(data: bytes, request: Request, sha256: str) -> Result:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -16,8 +17,8 @@ import jsonschema.validators  # noqa: F401
 from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
-from autograder.grading.pipeline import RESULT, grade_submission
-from autograder.result import Result, Status, from_json
+from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, grade_submission
+from autograder.result import Result, Status, from_json, write_json
 from autograder.sandbox import Tier
 
 ARCHIVES = (".zip", ".ipynb")
@@ -47,18 +48,26 @@ class Request:
     out: Path
     resume: bool = False
 
+    def submission(self) -> intake.Submission | None:
+        """Return what was handed in, None if it cannot be read."""
+        try:
+            return intake.read_submission(self.path, self.assignment)
+        except (OSError, AutograderError):
+            return None
+
     def stored(self) -> Result | None:
         """Return the stored result if it may be kept: its submission, suite, seed and isolation are the same."""
         if not self.resume:
             return None
         try:
             result = from_json(json.loads((self.out / RESULT).read_text()), source=str(self.out / RESULT))
-            digest = intake.read_submission(self.path, self.assignment).sha256
         except (OSError, ValueError, AutograderError):
             return None
+        submission = self.submission()
+        digest = submission and submission.sha256
         suite = suites.hidden(self.assignment)
-        found = (result.submission_sha256, result.suite_version, result.seed, result.isolation)
-        same = found == (digest, suite.version, self.seed, self.isolation.value)
+        found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
+        same = found == (self.student, digest, suite.version, self.seed, self.isolation.value)
         return result if same and result.status is Status.GRADED else None
 
     def grade(self) -> Result:
@@ -71,6 +80,19 @@ class Request:
             out=self.out,
             isolation=self.isolation,
         )
+
+    def take_over(self, result: Result, folder: Path) -> Result:
+        """Store the result of an equal submission, whose files lie in `folder`, as that of this one."""
+        clear(self.out)
+        shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run)}
+        for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
+            if path.is_file():
+                shutil.copy(path, self.out)
+        submission = self.submission()
+        digest = submission.sha256 if submission and result.status is Status.GRADED else result.submission_sha256
+        own = replace(result, student=self.student, submission_sha256=digest)
+        write_json(self.out / RESULT, own.to_json())
+        return own
 
 
 GradeEach = Callable[[Sequence[Request], OnResult], tuple[Result, ...]]  # results in the order of the requests
@@ -115,6 +137,8 @@ def grade_all(
 ) -> tuple[Result, ...]:
     """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
 
+    Of equal submissions one is graded, and the others take over its result.
+
     Args:
         entries: from `discover`.
         assignment: which assignment they answer.
@@ -133,9 +157,25 @@ def grade_all(
         Request(entry.student, entry.path, assignment, seed, isolation, out / entry.student, resume)
         for entry in entries
     ]
+    equal: dict[str, list[Request]] = {}
+    for request in requests:
+        submission = request.submission()
+        equal.setdefault(submission.graded_sha256 if submission else f"of {request.student}", []).append(request)
+    first = {group[0].student: group for group in equal.values()}
+    results: dict[str, Result] = {}
+
+    def book(result: Result) -> None:
+        graded, *others = first[result.student]
+        for other in (result, *(request.stored() or request.take_over(result, graded.out) for request in others)):
+            results[other.student] = other
+            on_result(other)
+
+    chosen = [group[0] for group in first.values()]
     if grade_each is not None:
-        return grade_each(requests, on_result)
-    return map_parallel(lambda request: request.stored() or request.grade(), requests, jobs=jobs, on_done=on_result)
+        grade_each(chosen, book)
+    else:
+        map_parallel(lambda request: request.stored() or request.grade(), chosen, jobs=jobs, on_done=book)
+    return tuple(results[entry.student] for entry in entries)
 
 
 def map_parallel(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:

@@ -129,9 +129,7 @@ def grade_submission(
 
 def _grade(run: Callable[[], CellReport], out: Path) -> Result | None:
     """Return a worker's result; None if it failed twice, and then `out` has its log."""
-    out.mkdir(parents=True, exist_ok=True)
-    for stale in (RESULT, NOTEBOOK, LOG):
-        (out / stale).unlink(missing_ok=True)
+    clear(out)
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
         report = run()
@@ -140,6 +138,13 @@ def _grade(run: Callable[[], CellReport], out: Path) -> Result | None:
     # Never part of the result: its traceback may quote a hidden check, and results become feedback.
     (out / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
     return None
+
+
+def clear(out: Path) -> None:
+    """Make the folder of a result ready for another one."""
+    out.mkdir(parents=True, exist_ok=True)
+    for stale in (RESULT, NOTEBOOK, LOG):
+        (out / stale).unlink(missing_ok=True)
 
 
 def _worker(job: Job) -> list[str]:

@@ -80,9 +80,10 @@ def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
             older.append(min(item, newest[student.id], key=lambda item: item.order).path.name)
             newest[student.id] = max(item, newest[student.id], key=lambda item: item.order)
     students = [student.id for student in roster.students]
+    late = {student.id for student in roster.students if student.late}
     return Collected(
         tuple(Entry(name, _answer(newest[name].path, assignment)) for name in students if name in newest),
-        tuple(name for name in students if name in newest and newest[name].late),
+        tuple(name for name in students if name in newest and (newest[name].late or name in late)),
         tuple(older),
         tuple(unmatched),
         tuple(name for name in students if name not in newest),

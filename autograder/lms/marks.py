@@ -70,7 +70,8 @@ def write_marks(
 
 
 def _moodle(roster: Roster, results: dict[str, Result], share: Callable[[Result], float], assignment: str) -> Rows:
-    columns = _columns(roster, ("identifier", "grade", "maximum grade"))
+    # The last one is not read here. Moodle refuses a worksheet without it.
+    columns = _columns(roster, ("identifier", "grade", "maximum grade", "last modified (grade)"))
     grade, most = columns["grade"], columns["maximum grade"]
     rows = [list(row) for row in roster.rows]
     for student in roster.students:

@@ -7,6 +7,7 @@ Classroom's `classroom_roster.csv`, Gradescope's roster and nbgrader's `db stude
 from __future__ import annotations
 
 import csv
+import re
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,9 +30,11 @@ COLUMNS = {
     "full name": "name",
     "student": "name",
     "name": "name",
+    "status": "status",
 }
 # The first of these that a student has names the folder of the result.
 NAMES_A_STUDENT = ("login", "number", "email", "identifier", "id", "name")
+LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
 PARTICIPANT = "participant "  # what Moodle writes before the number that it also puts into file names
 NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
 
@@ -40,12 +43,14 @@ NOT_STUDENTS = ("points possible", "student, test")  # rows of Canvas
 class Student:
     """A student: the name in results, what is known of them as pairs of a kind and a text, and the number of their row.
 
-    Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings.
+    Kinds are values of `COLUMNS`. Kind and text are normalized. Rows are counted from 0, without the headings. `late`
+    says whether Moodle's table calls the submission late.
     """
 
     id: str
     keys: frozenset[tuple[str, str]]
     row: int
+    late: bool = False
 
 
 @dataclass(frozen=True)
@@ -108,4 +113,5 @@ def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | No
     if participant.startswith(PARTICIPANT):
         keys.add(("identifier", participant.removeprefix(PARTICIPANT)))
     name = next(told[kind] for kind in NAMES_A_STUDENT if kind in told) if set(told) & set(NAMES_A_STUDENT) else ""
-    return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place) if name else None
+    late = LATE.search(told.get("status", "")) is not None
+    return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place, late) if name else None

@@ -29,7 +29,7 @@ def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
     for student in STUDENTS:
         package = tmp_path / "class" / student / "src" / "my_robot_package"
         package.mkdir(parents=True)
-        (package / "package.xml").write_text("<package/>")
+        (package / "package.xml").write_text(f"<package>{student}</package>")
     alice, bob, carol = (tmp_path / "results" / student / "result.json" for student in STUDENTS)
     # Whoever reads a named pipe waits for its writer: bob has begun, and does not end before Ctrl-C.
     bob.parent.mkdir(parents=True)

@@ -5,44 +5,128 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
+import unicodedata
 import zipfile
+from functools import partial
 from pathlib import Path
 
+import pytest
+
 from autograder.checks import suites
-from autograder.proof.mutants import write_reference
+from autograder.export import load
+from autograder.proof.mutants import mutants, write_mutant, write_reference
 
-ASSIGNMENT = "01_package_structure"
-WORKSHEET = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed
-Participant 101,Zoë Müller-Żak,zoe@example.edu,Submitted for grading,,50.00,Yes
-Participant 102,Jane Doe,jane@example.edu,Submitted for grading,,50.00,Yes
-Participant 103,Bob Roe,bob@example.edu,No submission,,50.00,Yes
-"""
+NAMES = ("Zoë Müller-Żak", "Jane Doe", "José  Ñandú", "王 小明", "Søren O'Neill, Jr.", "Ольга Ким")
+HEADINGS = ("Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade", "Grade can be changed")
+TIMES = ("Last modified (submission)", "Last modified (grade)")
+WORTH, PENALTY = 50.0, 10.0
+SUBMITTED, LATE, NOTHING = "Submitted for grading - ", "Submitted for grading - 1 day 2 hours late", "No submission - "
 
 
-def test_a_class_goes_from_moodle_s_zip_to_moodle_s_worksheet(tmp_path: Path) -> None:
-    write_reference(suites.hidden(ASSIGNMENT).sources, tmp_path / "tree")
-    answer = io.BytesIO()
-    with zipfile.ZipFile(answer, "w") as archive:
-        for path in (path for path in (tmp_path / "tree").rglob("*") if path.is_file()):
-            archive.write(path, f"my answer/ws/{path.relative_to(tmp_path / 'tree')}")
-    with zipfile.ZipFile(tmp_path / "download.zip", "w") as archive:
-        archive.writestr("Zoë Müller-Żak_101_assignsubmission_file_/Übung 1.zip", answer.getvalue())
-        archive.writestr("Jane Doe_102_assignsubmission_file_/ws/src/notes.txt", "later")
-        archive.writestr("Eve Stranger_999_assignsubmission_file_/answer.zip", b"")
-    (tmp_path / "worksheet.csv").write_text(WORKSHEET, encoding="utf-8")
+def answers(assignment: str, flawed: int, folder: Path) -> list[list[tuple[str, bytes]]]:
+    """Return different answers as files by their names: the reference, flawed ones, and one without a package."""
+    sources = suites.hidden(assignment).sources
+    chosen = [mutant for mutant in mutants(assignment) if not mutant.slow][:flawed]
+    writers = [partial(write_reference, sources), *(partial(write_mutant, mutant, sources) for mutant in chosen)]
+    found = []
+    for number, write in enumerate(writers):
+        write(folder / str(number))
+        files = sorted(path for path in (folder / str(number)).rglob("*") if path.is_file())
+        found.append([(str(path.relative_to(folder / str(number))), path.read_bytes()) for path in files])
+    return [*found, [("src/notes.txt", b"later")]]
+
+
+def archive(folder: str, files: list[tuple[str, bytes]]) -> bytes:
+    """Return a zip as a student makes one, of a folder that is called as the student likes."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as made:
+        for name, content in files:
+            made.writestr(f"{folder}/ws/{name}", content)
+    return data.getvalue()
+
+
+def write_class(folder: Path, kinds: list[list[tuple[str, bytes]]], students: int) -> dict[str, tuple[int, bool]]:
+    """Write Moodle's zip and worksheet; return by identifier which answer a student gave, and whether it was late."""
+    given: dict[str, tuple[int, bool]] = {}
+    rows: list[tuple[str, ...]] = [(*HEADINGS, *TIMES)]
+    with zipfile.ZipFile(folder / "download.zip", "w") as download:
+        for number in range(students):
+            name = NAMES[number % len(NAMES)] + (f" {number}" if number >= len(NAMES) else "")
+            identifier, late, nothing = f"Participant {1000 + number}", number % 5 == 2, number % 6 == 4
+            status = NOTHING if nothing else LATE if late else SUBMITTED
+            rows.append((identifier, name, f"s{number}@example.edu", status, "", f"{WORTH:.2f}", "Yes", "-", "-"))
+            if nothing:
+                continue
+            given[identifier] = number % len(kinds), late
+            handed_in = f"{unicodedata.normalize('NFD', name)}_{1000 + number}_assignsubmission"
+            wrapped = archive(f"my answer {number}", kinds[number % len(kinds)])
+            download.writestr(f"{handed_in}_file_/Übung 1 ({number}. Versuch).zip", wrapped)
+        download.writestr(f"{NAMES[0]}_1000_assignsubmission_onlinetext_/onlinetext.html", "<p>Please!</p>")
+        download.writestr("Eve Stranger_999_assignsubmission_file_/answer.zip", archive("answer", kinds[0]))
+    with (folder / "worksheet.csv").open("w", encoding="utf-8-sig", newline="") as file:
+        csv.writer(file).writerows(rows)
+    return given
+
+
+def imported(path: Path, worksheet: Path) -> dict[str, str]:
+    """Return the grades as Moodle's import of a worksheet takes them (mod/assign/feedback/offline, lib/csvlib).
+
+    It refuses a table without three headings, and one whose rows are not as long as the first. It knows a student by
+    the number of the participant.
+    """
+    with path.open(encoding="utf-8", newline="") as file:
+        headings, *rows = csv.reader(file, strict=True)
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(headings)
+    assert {len(row) for row in rows} == {len(headings)}
+    with worksheet.open(encoding="utf-8-sig", newline="") as file:
+        exported = list(csv.reader(file, strict=True))
+    grade = headings.index("Grade")
+    without = [[*row[:grade], *row[grade + 1 :]] for row in (headings, *rows)]
+    assert without == [[*row[:grade], *row[grade + 1 :]] for row in exported]
+    assert all(re.fullmatch(r"Participant \d+", row[0]) for row in rows)
+    return {row[0]: row[grade] for row in rows}
+
+
+@pytest.mark.parametrize(
+    ("assignment", "flawed", "students"),
+    [
+        pytest.param("01_package_structure", 0, 6, id="6"),
+        pytest.param("02_nodes", 8, 200, id="200", marks=[pytest.mark.nightly, pytest.mark.timeout(3600)]),
+    ],
+)
+def test_a_class_goes_from_moodle_s_zip_to_moodle_s_worksheet(
+    tmp_path: Path, assignment: str, flawed: int, students: int
+) -> None:
+    kinds = answers(assignment, flawed, tmp_path / "answers")
+    given = write_class(tmp_path, kinds, students)
 
     def autograder(*arguments: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "autograder", *arguments]
         return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
 
-    graded = autograder("grade", "download.zip", "--assignment", ASSIGNMENT, "--roster", "worksheet.csv", "-j", "2")
+    graded = autograder("grade", "download.zip", "--assignment", assignment, "--roster", "worksheet.csv", "-j", "2")
     assert graded.returncode == 1, graded.stderr  # somebody is not in the roster
     assert "Not graded: Eve Stranger_999_assignsubmission_file_: no student of worksheet.csv fits." in graded.stderr
-    assert "Nothing handed in: bob@example.edu" in graded.stdout
-    assert json.loads((tmp_path / "results" / "handed_in.json").read_text())["missing"] == ["bob@example.edu"]
-    exported = autograder("export", "results", "--format", "moodle", "--roster", "worksheet.csv", "--out", "marks.csv")
+    assert "onlinetext_: it is no file that was handed in." in graded.stderr
+    told = json.loads((tmp_path / "results" / "handed_in.json").read_text())
+    assert len(told["missing"]) == students - len(given)
+    assert len(told["late"]) == sum(late for _, late in given.values())
+    results = [stored.result for stored in load(tmp_path / "results")]
+    assert len(results) == len(given)
+    assert len({(result.started, result.seconds, result.score) for result in results}) <= len(kinds)  # equal ones: once
+
+    arguments = ("--format", "moodle", "--roster", "worksheet.csv", "--out", "marks.csv")
+    exported = autograder("export", "results", *arguments, "--late-penalty", f"{PENALTY:g}")
     assert exported.returncode == 0, exported.stderr
-    with (tmp_path / "marks.csv").open(encoding="utf-8", newline="") as file:
-        assert [row["Grade"] for row in csv.DictReader(file)] == ["50.00", "0.00", ""]
+    shares = {result.student: result.percent / 100 for result in results}
+    marks = imported(tmp_path / "marks.csv", tmp_path / "worksheet.csv")
+    assert len(marks) == students
+    assert {identifier for identifier, mark in marks.items() if mark} == set(given)
+    full, none = 0, len(kinds) - 1
+    for identifier, (kind, late) in given.items():
+        share = shares[f"s{int(identifier.removeprefix('Participant ')) - 1000}@example.edu"]
+        assert (share == 1.0, share == 0.0) == (kind == full, kind == none), identifier
+        assert float(marks[identifier]) == pytest.approx(WORTH * share * (1 - PENALTY / 100 * late), abs=0.005)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -105,7 +106,9 @@ class Grader:
 
 @pytest.fixture
 def entries(tmp_path: Path) -> tuple[Entry, ...]:
-    return tuple(Entry(name, _submission(tmp_path / name)) for name in ("alice", "bob"))
+    """The class: two with another answer each."""
+    (_submission(tmp_path / "alice") / "src" / "pkg" / "README").write_text("alice's")
+    return Entry("alice", tmp_path / "alice"), Entry("bob", _submission(tmp_path / "bob"))
 
 
 @pytest.fixture
@@ -122,6 +125,29 @@ def grade(
         return sorted(grader.graded)
 
     return run
+
+
+def test_of_equal_submissions_one_is_graded_and_the_others_get_the_same(
+    grade: Callable[..., list[str]], tmp_path: Path
+) -> None:
+    (tmp_path / "bob" / "src" / "pkg" / "README").write_text("alice's")
+    (tmp_path / "bob" / "log").mkdir()  # not part of a submission
+    assert grade() == ["alice"]
+    alice, bob = (json.loads((tmp_path / "out" / name / "result.json").read_text()) for name in ("alice", "bob"))
+    assert (alice.pop("student"), bob.pop("student")) == ("alice", "bob")
+    assert alice == bob
+    assert grade(resume=True) == []
+    (tmp_path / "bob" / "src" / "pkg" / "README").chmod(0o755)  # a script that can be run is another answer
+    assert grade(resume=True) == ["bob"]
+
+
+def test_what_wraps_equal_answers_makes_them_no_other_ones(tmp_path: Path) -> None:
+    folder = _submission(tmp_path / "alice")
+    with zipfile.ZipFile(tmp_path / "bob.zip", "w") as archive:
+        archive.write(folder / "src" / "pkg" / "package.xml", "my answer/src/pkg/package.xml")
+    alice, bob = (intake.read_submission(path, CHAPTER) for path in (folder, tmp_path / "bob.zip"))
+    assert alice.graded_sha256 == bob.graded_sha256
+    assert alice.sha256 != bob.sha256
 
 
 def test_as_many_are_graded_at_once_as_asked_for(grade: Callable[..., list[str]]) -> None:

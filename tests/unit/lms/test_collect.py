@@ -12,9 +12,9 @@ from autograder.lms.collect import Collected, collect, unpacked
 from autograder.lms.roster import read_roster
 
 CHAPTER = "02_nodes"
-MOODLE = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Feedback comments
+MOODLE = """Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Last modified (grade)
 Participant 101,Zoë Müller-Żak,zoe@example.edu,Submitted for grading,,100.00,Yes,
-Participant 102,Jane  Doe,jane@example.edu,Submitted for grading,,100.00,Yes,
+Participant 102,Jane  Doe,jane@example.edu,Submitted for grading - 2 hours 5 mins late - ,,100.00,Yes,
 Participant 103,Bob Roe,bob@example.edu,No submission,,100.00,Yes,
 """
 CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,02 Nodes (55)
@@ -58,6 +58,7 @@ def test_moodle_with_folders(tmp_path: Path) -> None:
         "zoe@example.edu": "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
         "jane@example.edu": "Jane Doe_102_assignsubmission_file_",
     }
+    assert collected.late == ("jane@example.edu",)
     assert collected.missing == ("bob@example.edu",)
     assert collected.unmatched == (
         ("Eve Stranger_999_assignsubmission_file_", "no student of roster.csv fits"),
