@@ -21,9 +21,8 @@ it on a part alone. `python docs/attacks_page.py` writes this page from `docs/at
 OPEN = """
 ## Not held
 
-- **Inodes.** A file system in memory has a size, and as many files as the kernel gives it.
-- **Memory that is neither resident nor mapped**: unmapped files of `memfd_create`, and detached segments
-  of System V. The limits of a sandbox count what its processes have mapped.
+- **Buffers of sockets, where no control group can be made.** There the limits of a sandbox count what its processes
+  have mapped. `autograder doctor` says whether the kernel counts the rest.
 - **Answers copied from another student.** The grader compares no submissions.
 """
 

@@ -111,11 +111,19 @@ def isolation(system: System) -> Finding:
     inner = ["bwrap", "--unshare-user", "--unshare-pid", "--ro-bind", "/", "/", "--proc", "/proc"]
     single = system.run([*outer, "true"], {})
     nested = system.run([*outer, *inner, "true"], {}) if single.status == 0 else single
-    if nested.status == 0 and not system.bounded():
+    bounds = system.bounds()
+    if nested.status == 0 and "pids" not in bounds:
         found = "root's processes can be bounded by control groups only, and none can be made: a fork bomb stops it all"
         return Finding("isolation", Status.WEAK, found, "adduser grader && su grader")
+    if nested.status == 0 and "memory" not in bounds:
+        found = (
+            "bubblewrap makes namespaces, one inside the other; no control group can be made, so memory is bounded as "
+            "far as processes show it: buffers of sockets and inodes are not"
+        )
+        return Finding("isolation", Status.WEAK, found, "systemd-run --user --scope autograder doctor")
     if nested.status == 0:
-        return Finding("isolation", Status.OK, "bubblewrap makes namespaces, one inside the other")
+        found = "bubblewrap makes namespaces, one inside the other; control groups bound memory and processes"
+        return Finding("isolation", Status.OK, found)
     which = "one namespace inside another" if single.status == 0 else "namespaces"
     why, mend = _forbidden(system)
     found = f"bubblewrap cannot make {which} ({nested.last_line}): {why}; grading offers its weaker tier only"

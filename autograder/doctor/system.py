@@ -104,9 +104,9 @@ class System:
         """Find ROS 2, or raise `RosError`."""
         return find()
 
-    def bounded(self) -> bool:
-        """Return whether the kernel bounds how many processes a sandbox of this user has."""
-        return cgroup.bounded()
+    def bounds(self) -> frozenset[str]:
+        """Return what the kernel bounds for all processes of a sandbox of this user together: pids, memory."""
+        return cgroup.bounds()
 
     def baked(self, prefix: Path) -> int:
         """Return how many of the wheels' CMake files under a prefix still name the build machine."""

@@ -28,6 +28,10 @@ _LIMITS = {
         Kind.OUT_OF_MEMORY,
         "Your program started far too many threads or processes and was stopped: start them once, not in a callback.",
     ),
+    Ending.FILES: (
+        Kind.OUT_OF_MEMORY,
+        "Your program made far too many files and was stopped: write one file, and not one in each callback.",
+    ),
     Ending.OUTPUT: (
         Kind.FLOODED_OUTPUT,
         "Your program printed without end and was stopped: log when something changes, "

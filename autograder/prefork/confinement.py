@@ -1,7 +1,7 @@
 """Going into a sandbox that bubblewrap has made, and giving up what bubblewrap would not have given.
 
 A forked process has to come by itself to what bubblewrap gives: the sandbox's namespaces, no capability and no way to
-any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2).
+any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2), seccomp(2).
 """
 
 from __future__ import annotations
@@ -10,12 +10,15 @@ import ctypes
 import fcntl
 import os
 import resource
+import struct
 from pathlib import Path
+
+from autograder.prefork import seccomp
 
 _NAMESPACES = ("ipc", "uts", "net", "cgroup", "pid", "mnt")
 _NS_GET_USERNS = 0xB701
-_PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 4, 24, 38, 47
-_PR_CAP_AMBIENT_CLEAR_ALL = 4
+_PR_SET_DUMPABLE, _PR_SET_SECCOMP, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 4, 22, 24, 38, 47
+_PR_CAP_AMBIENT_CLEAR_ALL, _SECCOMP_MODE_FILTER = 4, 2
 _CAPABILITY_VERSION_3 = 0x20080522
 _HIGH = 500  # where nothing is in the way of the numbers that descriptors are to have
 
@@ -66,13 +69,17 @@ def limit(limits: dict[str, tuple[int, int]]) -> None:
 
 
 def drop() -> None:
-    """Give up every capability, for ever."""
+    """Give up every capability, and the calls that a sandbox does not get, for ever."""
     for capability in range(int(Path("/proc/sys/kernel/cap_last_cap").read_text()) + 1):
         _check(_libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0))
     _check(_libc.prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0))
     header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
     _check(_libc.capset(header, (ctypes.c_uint32 * 6)()))
     _check(_libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
+    program = seccomp.program()
+    steps = ctypes.create_string_buffer(program)
+    named = struct.pack("HP", len(program) // 8, ctypes.addressof(steps))  # struct sock_fprog
+    _check(_libc.prctl(_PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, named, 0, 0))
     # Whoever changes its user namespace loses its own /proc files; starting a program gives them back.
     _check(_libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0))
 

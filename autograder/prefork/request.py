@@ -21,7 +21,7 @@ class Request:
     workdir: str  # its working folder
     limits: dict[str, tuple[int, int]]  # the kernel's limits on it, soft and hard, by their names in `resource`
     holder: int  # the process in the sandbox that holds the program's place
-    group: str  # the folder of the sandbox's control group; empty where it has none
+    groups: list[str]  # the folders of the sandbox's control group
     # The numbers of the descriptors that the program gets. The request comes with them, and before them with
     # the one on which the holder waits for the program's exit status.
     fds: list[int]

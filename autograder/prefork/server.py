@@ -94,8 +94,8 @@ def _reporting(requests: socket.socket) -> Iterator[None]:
 
 def _attend(requests: socket.socket, request: Request, status_fd: int) -> bool:
     """Be the attendant of one program until its end; return at once, and False, in the program's own process."""
-    if request.group:
-        (Path(request.group) / "cgroup.procs").write_text("0")
+    for group in request.groups:
+        (Path(group) / "cgroup.procs").write_text("0")
     output = os.open(f"/proc/{request.holder}/fd/2", os.O_WRONLY)
     inner = confinement.join(request.holder)
     program = os.fork()

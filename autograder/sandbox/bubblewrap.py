@@ -45,10 +45,14 @@ def cell(command: list[str], *, scratch: Path, size: int) -> list[str]:
     ]
 
 
-def sandbox(command: list[str], spec: Sandbox) -> list[str]:
-    """Return the command line that runs `command` in the sandbox that `spec` describes."""
+def sandbox(command: list[str], spec: Sandbox, filter_fd: int) -> list[str]:
+    """Return the command line that runs `command` in the sandbox that `spec` describes.
+
+    `filter_fd` is a descriptor from which bubblewrap reads the filter of system calls.
+    """
     arguments = [
         *("bwrap", "--die-with-parent", "--new-session", "--clearenv", "--cap-drop", "ALL"),
+        *("--seccomp", str(filter_fd)),
         *("--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try"),
         *(() if spec.network else ("--unshare-net",)),
         *("--hostname", "robot"),

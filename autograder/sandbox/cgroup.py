@@ -1,8 +1,8 @@
-"""A bound that the kernel keeps on how many processes a sandbox has, where the grader runs as root.
+"""Bounds that the kernel keeps on a whole sandbox: how many processes it has, and how much memory of any kind.
 
-`prlimit --nproc` bounds everybody else. The kernel never applies it to the machine's root (setrlimit(2),
-RLIMIT_NPROC), and a fork bomb outgrows anything that only watches it. So root's sandboxes get a control group with the
-kernel's pids controller (cgroups(7); version 1 and version 2).
+Anybody but root is bounded by `prlimit --nproc`, too. The kernel never applies it to the machine's root (setrlimit(2),
+RLIMIT_NPROC), and a fork bomb outgrows anything that only watches it. Memory that no process has mapped (files in
+memory, buffers of sockets, inodes) is counted by nothing else. See cgroups(7); version 1 and version 2.
 """
 
 from __future__ import annotations
@@ -11,75 +11,110 @@ import contextlib
 import itertools
 import os
 import signal
+import subprocess
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+
+from autograder.sandbox.limits import Limits
 
 _NUMBERS = itertools.count()
 _NAME = "autograder"
 _PATIENCE = 5.0
 _TICK = 0.005
 _STALE = 3600.0  # s after which an empty group was left by a grader that was killed
+# A shell that joins the groups before `--`, and becomes the command behind it.
+_ENTER = 'while [ "$1" != -- ]; do echo $$ > "$1"/cgroup.procs || exit 1; shift; done; shift; exec "$@"'
 
 
 @dataclass(frozen=True)
 class ControlGroup:
-    """One control group of processes that are counted."""
+    """A group of processes that are counted, by the folder of each controller."""
 
-    folder: Path
+    by_controller: dict[str, Path]
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """The group's folders: with version 1, each controller has its own."""
+        return tuple(dict.fromkeys(self.by_controller.values()))
 
     def enter(self, command: list[str]) -> list[str]:
         """Return `command`, run as a member of the group from its first moment."""
-        return ["sh", "-c", 'echo $$ > "$0"/cgroup.procs && exec "$@"', str(self.folder), *command]
+        return ["sh", "-c", _ENTER, "sh", *map(str, self.folders), "--", *command] if self.folders else command
+
+    def ran_out(self) -> bool:
+        """Return whether the kernel has ended a process because the group's memory was used up."""
+        folder = self.by_controller.get("memory")
+        said = folder and _read(folder / "memory.events") + _read(folder / "memory.oom_control")
+        return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in (said or "").splitlines())
 
     def close(self) -> None:
         """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""
+        with contextlib.suppress(OSError, KeyError):
+            (self.by_controller["pids"] / "pids.max").write_text("0")  # who is about to die has no more children
         deadline = time.monotonic() + _PATIENCE
-        with contextlib.suppress(OSError):
-            (self.folder / "pids.max").write_text("0")  # who is about to die has no more children
-        while True:
-            try:
-                return self.folder.rmdir()
-            except OSError:
-                if time.monotonic() > deadline:
-                    return None
-            for pid in map(int, _read(self.folder / "cgroup.procs").split()):
-                with contextlib.suppress(OSError):
-                    if pid > 0:  # 0 is one of another pid namespace, and to kill() the caller's whole group
-                        os.kill(pid, signal.SIGKILL)
-            time.sleep(_TICK)
+        for folder in self.folders:
+            while not _removed(folder) and time.monotonic() < deadline:
+                for pid in map(int, _read(folder / "cgroup.procs").split()):
+                    with contextlib.suppress(OSError):
+                        if pid > 0:  # 0 is one of another pid namespace, and to kill() the caller's whole group
+                            os.kill(pid, signal.SIGKILL)
+                time.sleep(_TICK)
 
 
-def make(most: int) -> ControlGroup | None:
-    """Return a new group of at most `most` processes and threads; None where it is not needed, or cannot be had."""
-    if os.geteuid() != 0:
-        return None
-    for home in homes(_read(Path("/proc/self/mountinfo")), _read(Path("/proc/self/cgroup"))):
-        folder = home / f"{_NAME}-{os.getpid()}-{next(_NUMBERS)}"
-        try:
-            folder.mkdir()
-            (folder / "pids.max").write_text(str(most))
-        except OSError:
-            with contextlib.suppress(OSError):
-                folder.rmdir()
+def make(limits: Limits) -> ControlGroup:
+    """Return a new group with the bounds that can be had here; it may have none.
+
+    Memory has room above `Limits.memory`, as tasks have above `Limits.threads`: what is watched is seen first, and has
+    a better diagnosis.
+    """
+    memory = 2 * (limits.memory + limits.scratch)
+    values = {"pids": {"pids.max": limits.tasks}, "memory": {"memory.max": memory, "memory.limit_in_bytes": memory}}
+    number, folders = next(_NUMBERS), {}
+    for controller, files in values.items():
+        home = _home(controller)
+        if home is None:
             continue
-        _sweep(home)
-        return ControlGroup(folder)
+        folder = home / f"{_NAME}-{os.getpid()}-{number}"
+        with contextlib.suppress(OSError):
+            folder.mkdir(exist_ok=True)
+            for file in (folder / name for name in files):
+                if file.exists():
+                    file.write_text(str(files[file.name]))
+                    folders[controller] = folder
+            for name, value in (("memory.swap.max", "0"), ("memory.oom.group", "1")):
+                if (folder / name).exists():
+                    (folder / name).write_text(value)
+    return ControlGroup(folders)
+
+
+def bounds() -> frozenset[str]:
+    """Return what this machine bounds for all processes of a sandbox of this user together: pids, memory."""
+    group = make(Limits())
+    group.close()
+    return frozenset(group.by_controller) | ({"pids"} if os.geteuid() != 0 else set())
+
+
+@cache
+def _home(controller: str) -> Path | None:
+    """Return the folder in which this process can make groups of a controller, and have its children join them."""
+    for home in homes(controller, _read(Path("/proc/self/mountinfo")), _read(Path("/proc/self/cgroup"))):
+        trial = home / f"{_NAME}-{os.getpid()}-{next(_NUMBERS)}"
+        try:
+            trial.mkdir()
+        except OSError:
+            continue
+        entered = subprocess.run(ControlGroup({controller: trial}).enter(["true"]), capture_output=True, check=False)
+        _removed(trial)
+        if entered.returncode == 0:
+            _sweep(home)
+            return home
     return None
 
 
-def bounded() -> bool:
-    """Return whether this machine bounds how many processes a sandbox of this user has."""
-    if os.geteuid() != 0:
-        return True
-    group = make(1)
-    if group is not None:
-        group.close()
-    return group is not None
-
-
-def homes(mountinfo: str, own: str) -> list[Path]:
-    """Return the folders in which a group with the pids controller can be made, nearest to this process first.
+def homes(controller: str, mountinfo: str, own: str) -> list[Path]:
+    """Return the folders in which a group with a controller may be made, nearest to this process first.
 
     `mountinfo` and `own` are what `/proc/self/mountinfo` and `/proc/self/cgroup` say, see proc_pid_mountinfo(5) and
     cgroups(7).
@@ -89,13 +124,13 @@ def homes(mountinfo: str, own: str) -> list[Path]:
         before, _, after = line.partition(" - ")
         mount = Path(before.split()[4])
         kind, _, options = after.split(maxsplit=2)
-        if kind == "cgroup" and "pids" in options.split(","):
-            place = mount / _own(own, "pids")
+        if kind == "cgroup" and controller in options.split(","):
+            place = mount / _own(own, controller)
             found += [folder for folder in _upwards(place, mount) if folder.is_dir()]
         elif kind == "cgroup2":
             place = mount / _own(own, "")
             handed_down = "cgroup.subtree_control"
-            found += [folder for folder in _upwards(place, mount) if "pids" in _read(folder / handed_down).split()]
+            found += [folder for folder in _upwards(place, mount) if controller in _read(folder / handed_down).split()]
     return found
 
 
@@ -109,6 +144,12 @@ def _own(cgroups: str, controller: str) -> str:
 
 def _upwards(place: Path, mount: Path) -> list[Path]:
     return [folder for folder in (place, *place.parents) if folder.is_relative_to(mount)]
+
+
+def _removed(folder: Path) -> bool:
+    with contextlib.suppress(OSError):
+        folder.rmdir()
+    return not folder.exists()
 
 
 def _sweep(home: Path) -> None:

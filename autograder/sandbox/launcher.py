@@ -8,8 +8,11 @@ import os
 import signal
 import socket
 import subprocess
+import tempfile
 import threading
+from pathlib import Path
 
+from autograder.prefork import seccomp
 from autograder.prefork.client import HOLDER, TIMEOUT, ForkError, ForkServer
 from autograder.prefork.request import Request
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
@@ -57,7 +60,7 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
         process = _forked(command[1:], spec, pass_fds, profile)
         if process is not None:
             return process
-    return _started(command, spec, cgroup.make(spec.limits.tasks), pass_fds)
+    return _started(command, spec, cgroup.make(spec.limits), pass_fds)
 
 
 def warm_up(profile: str) -> None:
@@ -72,24 +75,31 @@ def warm_up(profile: str) -> None:
 def _started(
     command: list[str],
     spec: Sandbox,
-    group: ControlGroup | None,
+    group: ControlGroup,
     pass_fds: tuple[int, ...] = (),
     stdin: int = subprocess.DEVNULL,
     held: bool = False,
 ) -> Process:
     contained = current_tier() is Tier.BUBBLEWRAP
-    command = bubblewrap.sandbox(command, spec) if contained else [*bubblewrap.rlimits(spec.limits), *command]
-    return Process(
-        group.enter(command) if group else command,
-        spec.limits,
-        environment={"PATH": os.defpath, **({} if contained else spec.environment)},
-        pass_fds=pass_fds,
-        cwd=None if contained else spec.workdir,
-        contained=contained,
-        at_end=group.close if group else None,
-        stdin=stdin,
-        held=held,
-    )
+    with tempfile.TemporaryFile() as calls:
+        calls.write(seccomp.program())
+        calls.seek(0)
+        if contained:
+            command = bubblewrap.sandbox(command, spec, calls.fileno())
+        else:
+            command = [*bubblewrap.rlimits(spec.limits), *command]
+        return Process(
+            group.enter(command),
+            spec.limits,
+            environment={"PATH": os.defpath, **({} if contained else spec.environment)},
+            pass_fds=(*pass_fds, calls.fileno()) if contained else pass_fds,
+            cwd=None if contained else spec.workdir,
+            contained=contained,
+            writable=(Path("/tmp"), Path("/dev/shm"), spec.workdir) if contained else (),
+            group=group,
+            stdin=stdin,
+            held=held,
+        )
 
 
 def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
@@ -98,7 +108,7 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profil
     server = _servers[profile]
     if server is None:
         return None
-    group = cgroup.make(spec.limits.tasks)
+    group = cgroup.make(spec.limits)
     status, theirs = socket.socketpair()
     with status:
         with theirs:
@@ -113,7 +123,7 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profil
                 str(spec.workdir),
                 bubblewrap.resources(spec.limits),
                 process.innermost(),
-                str(group.folder) if group else "",
+                list(map(str, group.folders)),
                 list(pass_fds),
             )
             process.entered(server.spawn(request, status.fileno()))

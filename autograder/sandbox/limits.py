@@ -18,6 +18,7 @@ class Limits:
     address_space: int = 8 * GIB  # bytes of virtual memory of each process
     threads: int = 256  # threads in the whole tree
     file_size: int = 64 * MIB  # bytes of the largest file written
+    files: int = 50_000  # new files on the file systems that it can write to
     open_files: int = 1024  # descriptors of each process
     output: int = 1 * MIB  # bytes written to stdout and stderr together
     scratch: int = 64 * MIB  # bytes of the private /tmp

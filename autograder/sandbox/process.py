@@ -9,11 +9,12 @@ import signal
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from enum import Enum
 from pathlib import Path
 
+from autograder.sandbox.cgroup import ControlGroup
 from autograder.sandbox.limits import Limits
 from autograder.sandbox.procfs import Tree, children, cpu_seconds, measure, name
 
@@ -30,6 +31,7 @@ class Ending(str, Enum):
     MEMORY = "memory"
     THREADS = "threads"
     OUTPUT = "output"
+    FILES = "files"
 
 
 class Process:
@@ -44,7 +46,8 @@ class Process:
         pass_fds: descriptors that it inherits, beside its standard streams.
         cwd: its working folder; the present one when not given.
         contained: the end of the outermost process takes the whole tree with it, as in a pid namespace.
-        at_end: is called once, after its end; leaving the block waits for it.
+        group: a control group that the command enters, closed after its end; leaving the block waits for it.
+        writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
         stdin: its standard input.
         held: the command only holds the place of a program that will be `entered`, whose time counts from then.
     """
@@ -58,12 +61,14 @@ class Process:
         pass_fds: tuple[int, ...] = (),
         cwd: Path | None = None,
         contained: bool = False,
-        at_end: Callable[[], None] | None = None,
+        group: ControlGroup | None = None,
+        writable: tuple[Path, ...] = (),
         stdin: int = subprocess.DEVNULL,
         held: bool = False,
     ) -> None:
-        self._at_end = at_end
+        self._group = group
         self._contained = contained
+        self._writable = writable
         self._limits = limits
         self._output = bytearray()
         self._ending: Ending | None = None
@@ -151,6 +156,15 @@ class Process:
     def _measure(self) -> Tree:
         return measure(self._popen.pid, *self._entered, most=self._limits.threads)
 
+    def _files(self) -> int:
+        """Count the files on the file systems that it can write to; none once it is gone."""
+        root, found = f"/proc/{self.innermost()}/root", 0
+        for folder in self._writable:
+            with suppress(OSError):
+                told = os.statvfs(f"{root}{folder}")
+                found += told.f_files - told.f_ffree
+        return found
+
     def _end(self, why: Ending) -> None:
         if self._ending is None and self._popen.poll() is None:
             self._ending = why
@@ -164,7 +178,7 @@ class Process:
 
     def _watch(self) -> None:
         assert self._popen.stdout is not None
-        measured = 0.0
+        measured, files = 0.0, math.inf
         with selectors.DefaultSelector() as selector:
             selector.register(self._popen.stdout, selectors.EVENT_READ)
             open_stream = True
@@ -181,20 +195,27 @@ class Process:
                 if now - measured > _MEASURE:
                     measured = now
                     tree = self._measure()
-                    if tree.memory > self._limits.memory:
+                    if tree.memory > self._limits.memory or self._ran_out():
                         self._end(Ending.MEMORY)
                     elif tree.threads > self._limits.threads:
                         self._end(Ending.THREADS)
+                    elif (now_there := self._files()) > files + self._limits.files:
+                        self._end(Ending.FILES)
+                    else:
+                        files = min(files, now_there)
             # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
             while open_stream and selector.select(0):
                 open_stream = self._read()
         with self._lock:
             self._popen.stdout.close()
         self._popen.wait()
-        self._ending = self._ending or Ending.EXITED
+        self._ending = self._ending or (Ending.MEMORY if self._ran_out() else Ending.EXITED)
         self._ended.set()
-        if self._at_end is not None:
-            self._at_end()
+        if self._group is not None:
+            self._group.close()
+
+    def _ran_out(self) -> bool:
+        return self._group is not None and self._group.ran_out()
 
     def _read(self) -> bool:
         """Take in what is in the pipe, all that it can hold; return whether more may come."""

@@ -57,7 +57,7 @@ def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Result:
 def test_an_attack_gains_no_point_and_learns_nothing(
     attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if attack.id == "fork bomb" and not cgroup.bounded():
+    if attack.id == "fork bomb" and "pids" not in cgroup.bounds():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
     checks = all_checks() - (DRIVES - attack.loses)

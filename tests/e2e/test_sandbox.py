@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from autograder import layout
+from autograder.prefork import seccomp
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup
 from autograder.sandbox.launcher import launch, warm_up
 from autograder.sandbox.limits import GIB, MIB
@@ -183,7 +184,10 @@ def test_a_node_reaches_the_cell_s_loopback_and_a_build_does_not() -> None:
     assert in_cell(meets, code) == {"True": True, "False": False}
 
 
-BOUNDED = pytest.mark.skipif(not cgroup.bounded(), reason="root without control groups: a fork bomb stops the machine")
+BOUNDED = pytest.mark.skipif(
+    "pids" not in cgroup.bounds(), reason="root without control groups: a fork bomb stops the machine"
+)
+NEW_NAMESPACES = [1 << bit for bit in range(32) if seccomp._NEW_NAMESPACES >> bit & 1]
 ENDLESS = "import signal\nwhile True: signal.pause()"
 
 
@@ -205,6 +209,9 @@ ENDLESS = "import signal\nwhile True: signal.pause()"
         ),
         pytest.param(
             "held = []\nwhile True: held.append(bytearray(b'x') * (1 << 20))", {}, Ending.MEMORY, id="memory eater"
+        ),
+        pytest.param(
+            "import itertools\nfor n in itertools.count(): open(f'/tmp/{n}', 'w').close()", {}, Ending.FILES, id="files"
         ),
         pytest.param("while True: print('x' * 99)", {}, Ending.OUTPUT, id="endless output"),
         pytest.param("while True: pass", {"wall_seconds": 1.0}, Ending.WALL_TIME, id="endless loop"),
@@ -242,6 +249,23 @@ print("ptrace", ctypes.CDLL(None).ptrace(16, {outside}, 0, 0))
     answer = _run(code)
     assert f"cannot {outside} No such process" in answer["output"]
     assert "ptrace -1" in answer["output"]
+
+
+def test_calls_that_no_node_needs_are_unknown_and_what_programs_live_by_works() -> None:
+    code = f"""
+import ctypes, errno, os, socket, subprocess, sys, threading
+libc = ctypes.CDLL(None, use_errno=True)
+def fails(number, *arguments):
+    return libc.syscall(number, *arguments) == -1 and ctypes.get_errno() == errno.ENOSYS
+print([name for name, number in {seccomp._FORBIDDEN}.items() if not fails(number, 0, 0, 0, 0, 0)])
+print([flag for flag in {NEW_NAMESPACES} if not fails({seccomp._CLONE}, flag | 17, 0, 0, 0, 0)])
+print(fails({seccomp._X32} + 39), {{f for f in range(46) if not fails({seccomp._SOCKET}, f, socket.SOCK_STREAM, 0)}})
+thread = threading.Thread(target=print, args=("a thread",))
+thread.start(); thread.join()
+print(subprocess.run([sys.executable, "-Ic", "print('a program')"], capture_output=True, text=True).stdout.strip())
+"""
+    wanted = ["[]", "[]", f"True {set(map(int, seccomp._FAMILIES))}", "a thread", "a program"]
+    assert _run(code)["output"].splitlines() == wanted
 
 
 def signalled(scratch: Path, code: str) -> list[Any]:

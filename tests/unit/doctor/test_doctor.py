@@ -59,7 +59,7 @@ GOOD: dict[str, Any] = dict(
     writable=lambda path: True,
     package=lambda name: VERSIONS.get(name, "1.2"),
     find_ros=lambda: WHEELS,
-    bounded=lambda: True,
+    bounds=lambda: frozenset({"pids", "memory"}),
     baked=lambda prefix: 0,
 )
 
@@ -423,8 +423,14 @@ def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> No
     assert "the wheels are installed as well" in told
 
 
-def test_a_root_whose_processes_nothing_bounds_is_told_to_be_somebody_else() -> None:
-    found = finding("isolation", bounded=lambda: False)
-    assert found.status is Status.WEAK
-    assert "a fork bomb stops it all" in found.found
-    assert found.mend == "adduser grader && su grader"
+@pytest.mark.parametrize(
+    ("bounds", "told", "mend"),
+    [
+        (set(), "a fork bomb stops it all", "adduser grader && su grader"),
+        ({"pids"}, "buffers of sockets and inodes are not", "systemd-run --user --scope autograder doctor"),
+    ],
+)
+def test_what_no_control_group_bounds_is_told(bounds: set[str], told: str, mend: str) -> None:
+    found = finding("isolation", bounds=lambda: frozenset(bounds))
+    assert (found.status, found.mend) == (Status.WEAK, mend)
+    assert told in found.found

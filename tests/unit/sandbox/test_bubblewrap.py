@@ -19,7 +19,7 @@ def _options(arguments: list[str]) -> list[str]:
 
 
 def _sandbox(spec: Sandbox) -> list[str]:
-    return bubblewrap.sandbox(["true"], spec)
+    return bubblewrap.sandbox(["true"], spec, 9)
 
 
 def test_a_sandbox_has_namespaces_of_its_own_and_no_privileges(tmp_path: Path) -> None:
@@ -28,6 +28,7 @@ def test_a_sandbox_has_namespaces_of_its_own_and_no_privileges(tmp_path: Path) -
         assert flag in options
     assert "--die-with-parent" in options
     assert _pairs(options, "--cap-drop") == ["ALL"]
+    assert _pairs(options, "--seccomp") == ["9"]
 
 
 def test_a_sandbox_has_no_network_unless_it_is_asked_for(tmp_path: Path) -> None:
@@ -77,7 +78,7 @@ def test_every_file_system_in_memory_has_a_size_or_is_read_only(tmp_path: Path) 
 
 def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
     given = Limits(cpu_seconds=7, address_space=2**30, threads=10, file_size=99, open_files=33)
-    arguments = bubblewrap.sandbox(["node", "--flag"], Sandbox(tmp_path, limits=given))
+    arguments = bubblewrap.sandbox(["node", "--flag"], Sandbox(tmp_path, limits=given), 9)
     inside = arguments[arguments.index("--") + 1 :]
     assert inside[0] == "prlimit"
     assert inside[-2:] == ["node", "--flag"]

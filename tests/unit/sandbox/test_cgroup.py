@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from autograder.sandbox import cgroup
+from autograder.sandbox import Ending, Limits, Process, cgroup
+from autograder.sandbox.limits import MIB
 
 NEEDED = pytest.mark.skipif(
-    os.geteuid() != 0 or not cgroup.bounded(), reason="not root, or no control group can be made"
+    os.geteuid() != 0 or "pids" not in cgroup.bounds(), reason="not root, or no control group can be made"
 )
 
 
@@ -28,7 +30,7 @@ def test_version_1_offers_the_own_group_of_the_pids_controller_and_those_above(t
     )
     own = "9:name=systemd:/\n8:pids:/user/session\n4:memory:/other\n0::/\n"
     pids = tmp_path / "pids"
-    assert cgroup.homes(mountinfo, own) == [pids / "user" / "session", pids / "user", pids]
+    assert cgroup.homes("pids", mountinfo, own) == [pids / "user" / "session", pids / "user", pids]
 
 
 def test_version_2_offers_the_groups_that_hand_the_pids_controller_down(tmp_path: Path) -> None:
@@ -37,38 +39,74 @@ def test_version_2_offers_the_groups_that_hand_the_pids_controller_down(tmp_path
     (tmp_path / "user.slice" / "cgroup.subtree_control").write_text("memory pids\n")
     (tmp_path / "user.slice" / "session.scope" / "cgroup.subtree_control").write_text("\n")
     mountinfo = f"31 23 0:28 / {tmp_path} rw,nosuid - cgroup2 cgroup2 rw,nsdelegate\n"
-    assert cgroup.homes(mountinfo, "0::/user.slice/session.scope\n") == [tmp_path / "user.slice", tmp_path]
+    assert cgroup.homes("pids", mountinfo, "0::/user.slice/session.scope\n") == [tmp_path / "user.slice", tmp_path]
 
 
 def test_without_control_groups_there_is_no_home() -> None:
-    assert cgroup.homes("23 1 0:21 / /proc rw - proc proc rw\n", "") == []
+    assert cgroup.homes("pids", "23 1 0:21 / /proc rw - proc proc rw\n", "") == []
 
 
-def test_a_user_other_than_root_needs_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "geteuid", lambda: 1000)
-    assert cgroup.make(10) is None
-    assert cgroup.bounded()
+@pytest.fixture(autouse=True)
+def _look_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cgroup, "_home", cgroup._home.__wrapped__)
 
 
-def test_a_root_that_can_make_no_group_is_not_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "geteuid", lambda: 0)
-    monkeypatch.setattr(cgroup, "homes", lambda mountinfo, own: [Path("/proc/nowhere")])
-    assert cgroup.make(10) is None
-    assert not cgroup.bounded()
+@pytest.mark.parametrize(("user", "bounds"), [(0, set()), (1000, {"pids"})])
+def test_where_no_group_can_be_made_prlimit_bounds_everybody_but_root(
+    monkeypatch: pytest.MonkeyPatch, user: int, bounds: set[str]
+) -> None:
+    monkeypatch.setattr(os, "geteuid", lambda: user)
+    monkeypatch.setattr(cgroup, "homes", lambda controller, mountinfo, own: [Path("/proc/nowhere")])
+    group = cgroup.make(Limits())
+    assert group.folders == ()
+    assert group.enter(["true"]) == ["true"]
+    assert not group.ran_out()
+    assert cgroup.bounds() == bounds
+
+
+def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No controller is at work in this folder: that its files get what the kernel's want is all that is asked."""
+    monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
+    folder = tmp_path / f"autograder-{os.getpid()}-7"
+    folder.mkdir()
+    for name in ("pids.max", "memory.max", "memory.swap.max", "memory.oom.group"):
+        (folder / name).touch()
+    monkeypatch.setattr(cgroup, "_NUMBERS", iter([7]))
+    group = cgroup.make(Limits(threads=10, memory=100 * MIB, scratch=28 * MIB))
+    assert group.folders == (folder,)
+    said = {path.name: path.read_text() for path in folder.iterdir()}
+    wanted = {"pids.max": "40", "memory.max": str(256 * MIB), "memory.swap.max": "0", "memory.oom.group": "1"}
+    assert said == wanted
+    (folder / "memory.events").write_text("low 0\noom 1\noom_kill 0\n")
+    assert not group.ran_out()
+    (folder / "memory.events").write_text("low 0\noom 1\noom_kill 1\n")
+    assert group.ran_out()
+
+
+@pytest.mark.skipif("memory" not in cgroup.bounds(), reason="no control group of memory can be made")
+def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
+    code = "import os, time; f = os.memfd_create('m'); [os.write(f, bytes(1 << 20)) for _ in range(200)]; print('all')"
+    limits = Limits(memory=30 * MIB, scratch=10 * MIB)
+    with Process([sys.executable, "-c", code], limits, group=(group := cgroup.make(limits))) as outside:
+        assert outside.wait(60)
+    assert "all" in outside.output  # nothing has entered the group
+    with Process((group := cgroup.make(limits)).enter([sys.executable, "-c", code]), limits, group=group) as inside:
+        assert inside.wait(60)
+    assert (inside.ending, "all" in inside.output) == (Ending.MEMORY, False)
+    assert not any(folder.exists() for folder in group.folders)
 
 
 @NEEDED
 def test_the_kernel_refuses_one_process_too_many_and_nothing_stays(tmp_path: Path) -> None:
-    group = cgroup.make(4)
-    assert group is not None
+    group = cgroup.make(Limits(threads=1))
     script = "for n in 1 2 3 4 5; do sleep 30 >&- 2>&- & done; echo all of them"
     done = subprocess.run(group.enter(["sh", "-c", script]), capture_output=True, text=True, timeout=20, check=False)
     assert "all of them" not in done.stdout
     assert "fork" in done.stderr.lower()
-    left = (group.folder / "cgroup.procs").read_text().split()
+    left = (group.by_controller["pids"] / "cgroup.procs").read_text().split()
     assert left
     group.close()
-    assert not group.folder.exists()
+    assert not any(folder.exists() for folder in group.folders)
     assert not [pid for pid in left if Path(f"/proc/{pid}/cmdline").is_file() and _runs(pid)]
 
 
@@ -78,10 +116,8 @@ def _runs(pid: str) -> bool:
 
 @NEEDED
 def test_a_group_left_by_a_grader_that_was_killed_is_swept(monkeypatch: pytest.MonkeyPatch) -> None:
-    left = cgroup.make(4)
-    assert left is not None
+    left = cgroup.make(Limits())
     monkeypatch.setattr(cgroup, "_STALE", -1.0)
-    group = cgroup.make(4)
-    assert group is not None
-    assert not left.folder.exists()
+    group = cgroup.make(Limits())
+    assert not any(folder.exists() for folder in left.folders)
     group.close()
