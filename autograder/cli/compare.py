@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -24,15 +25,20 @@ def compare(old: Path, new: Path, json_file: Path | None) -> None:
     another folder and compare the two.
     """
     found = changes(export.load(old), export.load(new))
+    tell(found)
+    students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
+    click.echo(f"{students} with another result" if found else "No result has changed.")
+    if json_file is not None:
+        write_json(json_file, [asdict(change) for change in found])
+
+
+def tell(found: Iterable[Change]) -> None:
+    """Print who has another result, with the marks and the checks."""
     for change in found:
         marks = f"{_number(change.before)} -> {_number(change.after)}"
         click.echo(f"{change.student} ({change.assignment}): {marks}{_note(change)}")
         for check in change.checks:
             click.echo(f"    {check.id}: {_points(check)}")
-    students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
-    click.echo(f"{students} with another result" if found else "No result has changed.")
-    if json_file is not None:
-        write_json(json_file, [asdict(change) for change in found])
 
 
 def _note(change: Change) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import click
 
 from autograder import feedback
 from autograder.checks import suites
+from autograder.cli.compare import tell
 from autograder.cli.options import (
     certificates_option,
     isolation_option,
@@ -23,7 +24,10 @@ from autograder.cli.options import (
     table,
 )
 from autograder.exceptions import UsageError
+from autograder.export import Stored, load
+from autograder.export.changes import changes
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
+from autograder.grading.pipeline import RESULT
 from autograder.lms.collect import HANDED_IN, collect, unpacked
 from autograder.lms.roster import read_roster
 from autograder.result import Result, Status, write_json
@@ -44,7 +48,11 @@ INTERRUPTED = 130  # as a shell tells it
     show_default=True,
     help="The folder for the results. Each student gets a folder in it: result.json, pictures, feedback.html.",
 )
-@click.option("--resume", is_flag=True, help="Keep a result whose submission, suite and seed have not changed.")
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Keep a result whose submission, suite and seed have not changed. Say whose mark is another one.",
+)
 @click.option(
     "--require",
     type=click.FloatRange(0, 100),
@@ -90,6 +98,7 @@ def grade(
     """
     suites.hidden(assignment)
     with _submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
+        before = _stored(entries, out) if resume else {}
         try:
             with _graders(scheduler, jobs, certificates) as grade_each:
                 results = grade_all(
@@ -108,8 +117,21 @@ def grade(
             click.echo(f"\n{said}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
+    again = [Stored(result, out / result.student) for result in results if result.student in before]
+    if changed := changes(list(before.values()), again):
+        click.echo("\nWhat a change of the suite or of the submission changed:")
+        tell(changed)
     short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
     sys.exit(1 if short or not all_fit else 0)
+
+
+def _stored(entries: Sequence[Entry], out: Path) -> dict[str, Stored]:
+    """Return the marks that are there before a class is graded again, by student."""
+    found: list[Stored] = []
+    for path in (out / entry.student / RESULT for entry in entries):
+        with suppress(UsageError):  # what cannot be read is graded again
+            found += load(path) if path.is_file() else ()
+    return {item.result.student: item for item in found if item.result.status is Status.GRADED}
 
 
 def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None:

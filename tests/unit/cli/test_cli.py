@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,22 @@ def test_grading_prints_a_line_and_a_row_a_submission_and_exits_0(
     assert (asked["seed"], asked["jobs"], asked["isolation"].value, asked["resume"]) == (5, 3, "bubblewrap", False)
     assert json.loads(stored.read_text())[0]["student"] == "alice"
     assert (out / "index.html").is_file()
+
+
+def test_regrading_with_resume_says_whose_mark_is_another_one(
+    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
+) -> None:
+    for name in ("alice", "bob", "carol"):
+        _submission(tmp_path / "class" / name)
+    alice, bob, carol = make_result("alice"), make_result("bob"), make_result("carol")
+    for before in (alice, bob):  # nobody has graded carol yet
+        result.write_json(tmp_path / "out" / before.student / "result.json", before.to_json())
+    mended = replace(alice, checks=(*alice.checks[:2], replace(alice.checks[2], points=4.0), *alice.checks[3:]))
+    graded(mended, bob, carol)
+    command = ("grade", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out"))
+    said = _run(*command, "--resume").output
+    assert said.endswith("changed:\nalice (02_nodes): 4 -> 7\n    turns: 1 -> 4\n")
+    assert "changed:" not in _run(*command).output
 
 
 @pytest.mark.parametrize(("percent", "status"), [("40", 0), ("41", 1)])

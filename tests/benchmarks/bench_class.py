@@ -1,0 +1,46 @@
+"""How fast this machine grades a class: answers to 02 and 08, no two of them equal, caches warm."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from pathlib import Path
+
+from autograder.checks import suites
+from autograder.grading import DEFAULT_SEED
+from autograder.grading.batch import Entry, grade_all
+from autograder.proof.mutants import write_reference
+
+CLASSES = {"02_nodes": 6, "08_capstone": 4}  # an even number each, for two workers
+ONE_AND_TWO = "02_nodes"
+
+
+def figures() -> dict[str, float]:
+    """Return the submissions a minute with two workers, and how many times faster than one these are."""
+    found = {}
+    with tempfile.TemporaryDirectory() as name:
+        for assignment, students in CLASSES.items():
+            folder = Path(name, assignment)
+            entries = tuple(_answer(folder, assignment, number) for number in range(students))
+            _seconds(entries[:1], assignment, folder, 1)
+            two = _seconds(entries, assignment, folder, 2)
+            found[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / two, 1)
+            if assignment == ONE_AND_TWO:
+                found["class.two_workers_ratio"] = round(_seconds(entries, assignment, folder, 1) / two, 2)
+    return found
+
+
+def _answer(folder: Path, assignment: str, number: int) -> Entry:
+    answer = folder / str(number)
+    write_reference(suites.hidden(assignment).sources, answer)
+    (answer / "README").write_text(f"student {number}")  # equal answers would be graded once
+    return Entry(str(number), answer)
+
+
+def _seconds(entries: tuple[Entry, ...], assignment: str, folder: Path, jobs: int) -> float:
+    began = time.monotonic()
+    results = grade_all(entries, assignment, seed=DEFAULT_SEED, out=folder / "out", jobs=jobs)
+    spent = time.monotonic() - began
+    if any(result.score != result.max_score for result in results):
+        raise RuntimeError(f"not each reference of {assignment} has all points")
+    return spent
