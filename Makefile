@@ -25,7 +25,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster verify real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates verify real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -104,6 +104,12 @@ bench:          ## measure simulator, grader and builds, write .build/bench.json
 cluster:        ## set up, with what `autograder grade --scheduler` needs
 	@$(BOOTSTRAP)
 	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-cluster.lock
+
+# One certificate, which signs itself, and its key: for scheduler, workers and client. What is there is kept.
+cluster-certificates: cluster-certificates/cluster.pem ## the certificate and the key by which the machines of a cluster know each other
+cluster-certificates/cluster.pem:
+	umask 077 && mkdir -p $(@D) && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 400 \
+		-subj "/CN=autograder cluster" -keyout $(@D)/cluster.key -out $@
 
 verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev

@@ -14,7 +14,6 @@ from autograder import feedback
 from autograder.checks import suites
 from autograder.cli.compare import tell
 from autograder.cli.options import (
-    certificates_option,
     isolation_option,
     jobs_option,
     json_option,
@@ -69,7 +68,13 @@ INTERRUPTED = 130  # as a shell tells it
     metavar="ADDRESS",
     help="Grade on the workers of this Dask scheduler: tls://HOST:8786, or `local` for -j workers of this machine.",
 )
-@certificates_option
+@click.option(
+    "--certificates",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("cluster-certificates"),
+    show_default=True,
+    help="The folder with the certificate and the key of a cluster.",
+)
 @jobs_option
 @seed_option
 @isolation_option

@@ -40,13 +40,6 @@ isolation_option = click.option(
     show_default=True,
     help="How submissions are kept apart. Use `process` only for code that you trust.",
 )
-certificates_option = click.option(
-    "--certificates",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("cluster-certificates"),
-    show_default=True,
-    help="The folder with the certificate and the key of a cluster.",
-)
 
 
 def reason(result: Result) -> str:

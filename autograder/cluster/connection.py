@@ -13,10 +13,10 @@ import dask
 from distributed import Client, LocalCluster
 from distributed.security import Security
 
-from autograder.cluster.certificates import CERTIFICATE, KEY
 from autograder.cluster.exceptions import ClusterError
 from autograder.exceptions import UsageError
 
+CERTIFICATE, KEY = "cluster.pem", "cluster.key"
 LOCAL = "local"
 PRELOAD = "autograder.cluster"
 PATIENCE = 30  # s, for the first answer of a scheduler
@@ -29,7 +29,7 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
     Args:
         scheduler: its address, or `local` for a cluster on this machine that ends with the client.
         jobs: how many submissions are graded at once by `local`.
-        certificates: the folder that `autograder cluster certificates` made, for TLS.
+        certificates: the folder that `make cluster-certificates` made, for TLS.
 
     Raises:
         UsageError: the address cannot be used, or a certificate is missing.
@@ -72,7 +72,7 @@ def require_address(scheduler: str) -> None:
     if address.scheme == "tcp" and not _loopback(host):
         raise UsageError(
             f"{scheduler} would send submissions and marks in clear text: start scheduler and workers with tls:// "
-            "(`autograder cluster certificates` makes what they need)"
+            "(`make cluster-certificates` makes what they need)"
         )
 
 
@@ -88,8 +88,8 @@ def _security(folder: Path) -> Security:
     for path in (certificate, key):
         if not path.is_file():
             raise UsageError(
-                f"{path}: there is no such file; `autograder cluster certificates` makes it, and --certificates names "
-                "the folder"
+                f"{path}: there is no such file; `make cluster-certificates` makes it, and --certificates names the "
+                "folder"
             )
     return Security(
         tls_ca_file=str(certificate), tls_client_cert=str(certificate), tls_client_key=str(key), require_encryption=True

@@ -36,7 +36,6 @@ STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # Parts for instructors only, as paths in the bundle.
 _PACKAGES = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")
 _VERBS = (
-    "cluster",
     "compare",
     "course",
     "demo",

@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from autograder.cluster.certificates import make
+from autograder import layout
 
 DASK = str(Path(sys.executable).with_name("dask"))
 SCHEDULER, CLIENT = "scheduler", "client"
@@ -118,10 +118,10 @@ class Arena:
 @contextmanager
 def arena(folder: Path) -> Iterator[Arena]:
     """Give an arena below a folder; nothing runs yet."""
-    made = Arena(folder / "client", can_make_namespaces(), folder / "certificates", folder / "machines")
+    made = Arena(folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines")
     made.place.mkdir()
     made.machines.mkdir()
-    make(made.certificates)
+    subprocess.run(["make", "-f", layout.ROOT / "Makefile", made.certificates.name], cwd=folder, check=True)
     with ExitStack() as stack:
         if made.apart:
             _connect(made, stack)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ssl
 import stat
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from autograder.cluster.certificates import make
-from autograder.cluster.connection import connected, require_address
+from autograder import layout
+from autograder.cluster.connection import CERTIFICATE, KEY, connected, require_address
 from autograder.cluster.machine import difference, resource, resources
 from autograder.exceptions import UsageError
 from autograder.sandbox import Tier
@@ -37,19 +38,22 @@ def test_submissions_never_leave_the_machine_in_clear_text() -> None:
 
 
 def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
-    missing = pytest.raises(UsageError, match=r"cluster.pem: there is no such file; `autograder cluster certificates`")
+    missing = pytest.raises(UsageError, match=r"cluster.pem: there is no such file; `make cluster-certificates`")
     with missing, connected("tls://10.0.0.1:8786", 1, tmp_path):
         pytest.fail("connected")
 
 
 def test_a_certificate_serves_both_ends_and_is_its_owner_s_alone(tmp_path: Path) -> None:
-    certificate, key = make(tmp_path / "new")
+    make = ["make", "-f", layout.ROOT / "Makefile", "cluster-certificates"]
+    subprocess.run(make, cwd=tmp_path, check=True)
+    certificate, key = (tmp_path / "cluster-certificates" / name for name in (CERTIFICATE, KEY))
     context = ssl.create_default_context(cafile=str(certificate))
     context.load_cert_chain(certificate, key)
     assert len(context.get_ca_certs()) == 1
     assert stat.S_IMODE(key.stat().st_mode) == 0o600
-    with pytest.raises(UsageError, match=r"cluster\.pem exists"):
-        make(tmp_path / "new")
+    before = key.read_text()
+    subprocess.run(make, cwd=tmp_path, check=True)
+    assert key.read_text() == before
 
 
 HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 bubblewrap"
