@@ -13,10 +13,8 @@ from autograder.course.contract_rules import broken_contract
 from autograder.course.findings import Finding
 from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
-from autograder.course.points import set_points, wrong_points
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 from autograder.course.tables import PAGE, course_page
-from autograder.exceptions import UsageError
 from autograder.proof import guide
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
@@ -32,12 +30,7 @@ def course() -> None:
 def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     for chapter in _chosen(names):
-        changed, notebook = len(sync_chapter(chapter)), chapter.read()
-        if any(map(is_graded, notebook.cells)) and set_points(
-            chapter.path.name, notebook, suites.hidden(chapter.assignment).groups
-        ):
-            chapter.write(notebook)
-            changed += 1
+        changed = len(sync_chapter(chapter))
         click.echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
 
 
@@ -64,12 +57,8 @@ def findings(chapter: Chapter) -> list[Finding]:
     notebook, name = chapter.read(), chapter.path.name
     found = [*find_outdated(chapter), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
     if any(map(is_graded, notebook.cells)):
-        try:
-            hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)
-            found += wrong_points(name, notebook, hidden.groups)
-            found += broken_contract(name, notebook, (*visible.checks, *hidden.checks))
-        except UsageError as error:
-            found.append(Finding(name, None, str(error)))
+        hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)
+        found += broken_contract(name, notebook, (*visible.checks, *hidden.checks))
     return found
 
 

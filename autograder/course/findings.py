@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 
@@ -16,3 +17,7 @@ class Finding:
     def __str__(self) -> str:
         where = self.notebook if self.cell is None else f"{self.notebook}, cell {self.cell!r}"
         return f"{where}: {self.message}"
+
+
+# A finding with what corrects it in place, or None where the author has to.
+Difference = tuple[Finding, Callable[[], None] | None]

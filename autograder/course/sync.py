@@ -1,10 +1,10 @@
-"""Copies the reference solutions into the notebooks, and finds the cells and files that differ from them."""
+"""Copies the reference solutions and the points of the suites into the notebooks, and finds what differs from them."""
 
 from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,9 +13,11 @@ import nbformat
 from nbformat import NotebookNode
 
 from autograder import layout
-from autograder.course.cells import given_files, origin, read_solution
+from autograder.checks import suites
+from autograder.course.cells import given_files, is_graded, origin, read_solution
 from autograder.course.exceptions import CourseError
-from autograder.course.findings import Finding
+from autograder.course.findings import Difference, Finding
+from autograder.course.points import point_differences
 from autograder.result import write_atomically
 
 SHOWN_LINES = 12
@@ -71,16 +73,17 @@ def chapters() -> list[Chapter]:
 
 
 def find_outdated(chapter: Chapter) -> list[Finding]:
-    """Return the cells and files that differ from the reference, and those with wrong metadata."""
+    """Return the cells and files that differ from the reference or the suite, and those with wrong metadata."""
     notebook = chapter.read()
     return [finding for finding, _ in _differences(chapter, notebook)]
 
 
 def sync_chapter(chapter: Chapter) -> list[Finding]:
-    """Copy the reference into a chapter, and return the cells and files that differed.
+    """Copy the reference and the suite's points into a chapter, and return the cells and files that differed.
 
     Raises:
-        CourseError: the metadata are wrong, or a reference file is missing. Nothing is written then.
+        CourseError: the metadata are wrong, a reference file is missing, or the suite has other groups than the cells.
+            Nothing is written then.
     """
     notebook = chapter.read()
     differences = list(_differences(chapter, notebook))
@@ -95,9 +98,10 @@ def sync_chapter(chapter: Chapter) -> list[Finding]:
     return [finding for finding, _ in differences]
 
 
-def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[tuple[Finding, Callable[[], None] | None]]:
-    """Yield the findings, each with the copy that corrects it, or None where a copy corrects nothing."""
+def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[Difference]:
     name = chapter.path.name
+    if any(map(is_graded, notebook.cells)):
+        yield from point_differences(name, notebook, suites.hidden(chapter.assignment).groups)
     for cell in notebook.cells:
         try:
             source = origin(cell)
