@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from autograder import layout
+from autograder.layout import Course
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(
@@ -29,33 +30,50 @@ NOT_READ = frozenset(
         "proof",
     }
 )
-PROOF = frozenset({"mutants.yaml", "survivors.yaml", "variants"})  # in a chapter's checks, for the proof only
-CHAPTER = re.compile(r"ch\d\d_")
-CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\d_\w+)")
+# In a chapter's checks, for the proof only.
+PROOF = frozenset({"attack_payloads.py", "attacks.py", "mutants.yaml", "survivors.yaml", "variants"})
+CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\w+)")
 
 
-def digest(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> str:
+def digest(assignment: str, reads: Iterable[str] = (), course: Course = layout.COURSE, home: Path = layout.ROOT) -> str:
     """Return a digest of the files that a grading of the assignment reads, as 12 hexadecimal digits.
 
     Args:
         assignment: name of the assignment.
-        reads: files and folders that its checks read beside their own, as paths below `root`.
-        root: folder of the course.
+        reads: files and folders that its checks read beside their own, as paths in the course's folder.
+        course: the course.
+        home: folder of the autograder and the simulator.
     """
     found = hashlib.sha256()
-    for path in files(assignment, reads, root):
-        found.update(f"{path.relative_to(root)}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+    for path in files(assignment, reads, course, home):
+        name = path.relative_to(course.root if path.is_relative_to(course.root) else home)
+        found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
     return found.hexdigest()[:12]
 
 
-def files(assignment: str, reads: Iterable[str] = (), root: Path = layout.ROOT) -> list[Path]:
+def files(
+    assignment: str, reads: Iterable[str] = (), course: Course = layout.COURSE, home: Path = layout.ROOT
+) -> list[Path]:
     """Return the sorted paths of the files that a grading of the assignment reads; the arguments are as in `digest`."""
-    chapter = root / "chapters" / assignment
-    tops = [root / name for name in ("autograder", "sim", "assets/worlds", *reads)]
-    tops += [chapter / f"{assignment}.ipynb", chapter / "ws" / "src"]
-    chapters = _chapters(assignment, root / "autograder" / "checks")
-    found = {path for top in tops for path in (top, *top.rglob("*")) if path.is_file()}
-    return sorted(path for path in found if _is_read(path.relative_to(root).parts, chapters))
+    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
+    shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
+    suites = _below(course.root, (checks / name for name in _chapters(assignment, checks)))
+    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
+    return sorted(
+        {
+            *(path for path in shared if _is_read(path.relative_to(home).parts)),
+            *(path for path in suites if PROOF.isdisjoint(path.relative_to(checks).parts)),
+            *_below(course.root, (*given, *(course.root / name for name in (course.worlds, *reads)))),
+        }
+    )
+
+
+def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
+    """Yield the files at and below some paths, without what tools left there."""
+    for path in (path for top in tops for path in (top, *top.rglob("*")) if path.is_file()):
+        parts = path.relative_to(root).parts
+        if "__pycache__" not in parts and not any(part.startswith(".") for part in parts):
+            yield path
 
 
 def _chapters(assignment: str, checks: Path) -> set[str]:
@@ -73,10 +91,8 @@ def _chapters(assignment: str, checks: Path) -> set[str]:
     return found
 
 
-def _is_read(parts: tuple[str, ...], chapters: set[str]) -> bool:
-    """Return whether a grading reads a file by its path below the root, if these chapters' checks are read."""
-    if "__pycache__" in parts or any(part.startswith(".") for part in parts):
-        return False
+def _is_read(parts: tuple[str, ...]) -> bool:
+    """Return whether each grading reads a file of the autograder or the simulator."""
     if parts[:2] == ("autograder", "checks"):
-        return PROOF.isdisjoint(parts) and (parts[2] in chapters or not CHAPTER.match(parts[2]))
+        return len(parts) == 3  # what a check is; the chapters stand in folders
     return parts[0] != "autograder" or parts[1] not in NOT_READ

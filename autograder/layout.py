@@ -1,20 +1,88 @@
-"""Paths of the course's folders and files."""
+"""What the course is, and the paths of its folders and files.
+
+A course is a folder with a `course.yaml`. Its lines, of which only the first two are needed, with their defaults:
+
+    name: my-course           its name for nbgrader
+    title: My course          its name for people
+    chapters: chapters        a folder for each assignment, with a notebook of the same name
+    solutions: solutions      the reference, a source tree of packages
+    checks: checks            a package for each assignment, `chID`, with its checks
+    worlds: worlds            worlds, besides those that come with the simulator
+    syllabus: syllabus.yaml   what the course has to cover
+    guide: checks.md          the page about hidden checks, which `autograder course tables` writes
+    released: []              what students get besides the released chapters, worlds and visible checks
+    demo: ID                  the assignment that `autograder demo` shows; the first one by default
+
+A process works on one course: the one around the autograder, or the one that the environment variable
+AUTOGRADER_COURSE names, which `autograder --course FOLDER` sets.
+"""
 
 from __future__ import annotations
 
+import os
 import shutil
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
+
+import yaml
 
 from autograder.exceptions import UsageError
 
-ROOT = Path(__file__).resolve().parent.parent
-CHAPTERS = ROOT / "chapters"
-SOLUTIONS = ROOT / "solutions"
-CHECKS = ROOT / "autograder" / "checks"
-WORLDS = ROOT / "assets" / "worlds"
-BUILD = ROOT / ".build"
+ROOT = Path(__file__).resolve().parent.parent  # of the autograder and the simulator
+FILE = "course.yaml"
+VARIABLE = "AUTOGRADER_COURSE"
+SHARED_WORLDS = ROOT / "assets" / "worlds"  # those that come with the simulator
 # Ignores the files that tools create in a working folder; for `shutil.copytree`.
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course, as its `course.yaml` describes it. Paths are below its folder, `root`."""
+
+    root: Path
+    name: str
+    title: str
+    chapters: str = "chapters"
+    solutions: str = "solutions"
+    checks: str = "checks"
+    worlds: str = "worlds"
+    syllabus: str = "syllabus.yaml"
+    guide: str = "checks.md"
+    released: tuple[str, ...] = ()
+    demo: str = ""
+
+    @classmethod
+    def read(cls, root: Path) -> Course:
+        """Read the course in a folder. Raises UsageError if there is none, or its file is wrong."""
+        path = root / FILE
+        try:
+            data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+            found = cls(root, **{**data, "released": tuple(data.get("released", ()))})
+        except OSError:
+            raise UsageError(f"{root} is no course: it has no {FILE}") from None
+        except (yaml.YAMLError, AttributeError, TypeError) as error:
+            lines = ", ".join(field.name for field in fields(cls)[1:])
+            raise UsageError(f"{path}: {error}; the lines of this file are {lines}") from None
+        for part in found.parts:
+            if not isinstance(part, str) or not (root / part).resolve().is_relative_to(root):
+                raise UsageError(f"{path}: {part!r} is no path in the course's folder")
+        return found
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The paths of what the course is made of, whether it has all of it or not."""
+        named = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
+        return (FILE, *named, *self.released)
+
+
+COURSE = Course.read(Path(os.environ.get(VARIABLE) or ROOT).resolve())
+CHAPTERS = COURSE.root / COURSE.chapters
+SOLUTIONS = COURSE.root / COURSE.solutions
+CHECKS = COURSE.root / COURSE.checks
+WORLDS = COURSE.root / COURSE.worlds
+BUILD = COURSE.root / ".build"
 
 
 def check_folders() -> tuple[Path, ...]:
@@ -31,12 +99,11 @@ def chapter(assignment: str) -> Path:
 
 
 def world(name: str) -> Path:
-    """Return the path of a world of the course; a UsageError lists the existing ones."""
-    path = WORLDS / f"{name}.yaml"
-    if not path.is_file():
-        there = ", ".join(sorted(file.stem for file in WORLDS.glob("*.yaml")))
-        raise UsageError(f"there is no world {name!r}; there are: {there}")
-    return path
+    """Return the path of a world of the course or of the simulator; a UsageError lists the existing ones."""
+    there = {path.stem: path for folder in (SHARED_WORLDS, WORLDS) for path in sorted(folder.glob("*.yaml"))}
+    if name not in there:
+        raise UsageError(f"there is no world {name!r}; there are: {', '.join(sorted(there))}")
+    return there[name]
 
 
 def assignments() -> list[str]:

@@ -6,9 +6,9 @@ from typing import Any
 
 import yaml
 
+from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, attacks
 from autograder.course.markdown_table import table
 from autograder.layout import ROOT
-from autograder.proof.attacks import ASSIGNMENT, attacks
 
 PAGE = ROOT / "docs" / "attacks.md"
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))
@@ -29,7 +29,7 @@ OPEN = """
 
 def current() -> str:
     """Return the page as it should be."""
-    described = {attack.id: attack.description for attack in attacks(ASSIGNMENT)}
+    described = {attack.id: attack.description for attack in attacks()}
     rows = [
         (str(number), row["attack"], "; ".join(row["submissions"]), _tests(row["tests"]))
         for number, row in enumerate(ROWS, 1)

@@ -9,6 +9,7 @@ The package of a chapter::
         hidden/        the checks that grade; students never get this folder
         mutants.yaml   flawed versions of the reference, with the checks that each loses
         variants/      right answers in another style
+        attacks.py     optional: submissions that try to get points that they have not earned
 
 Visible checks and support import nothing hidden, and no conftest imports another. The release and the sandbox hold no
 `hidden` folder. The fixtures that every chapter has are those of `autograder.grading.plugin`.

@@ -113,7 +113,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
 
     Args:
         home: the package that holds a package for each chapter.
-        assignment: the assignment's name, such as "02_nodes".
+        assignment: the assignment's name.
         kind: "visible" or "hidden".
 
     Raises:
@@ -121,13 +121,9 @@ def read(home: str, assignment: str, kind: str) -> Suite:
         GraderError: it breaks the contract of a check.
     """
     package = f"{home}.ch{assignment}.{kind}"
-    try:
-        described = importlib.import_module(package)
-    except ModuleNotFoundError as error:
-        if error.name is None or not f"{package}.".startswith(f"{error.name}."):
-            raise
-        there = ", ".join(names(home, kind))
-        raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {there}") from None
+    if assignment not in (there := names(home, kind)):
+        raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(there)}")
+    described = importlib.import_module(package)
     modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
     files = tuple(Path(inspect.getfile(module)) for module in modules)
     checks = [found for module in modules for value in vars(module).values() if (found := declared(value))]
@@ -145,7 +141,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
 
 def names(home: str, kind: str) -> list[str]:
     """Return the names of the assignments that have a suite of this kind in the package `home`."""
-    folder = Path(inspect.getfile(importlib.import_module(home))).parent
+    folder = Path(importlib.import_module(home).__path__[0])
     return sorted(path.parents[1].name.removeprefix("ch") for path in folder.glob(f"ch*/{kind}/__init__.py"))
 
 

@@ -17,8 +17,6 @@ from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import write_json
 from autograder.sandbox import Tier
 
-ASSIGNMENT = "08_capstone"
-
 
 @click.command()
 @click.option(
@@ -36,8 +34,9 @@ def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None
 
     The exit status is 0 when the reference has all marks and no flawed submission has, and 1 otherwise.
     """
-    sources = suites.hidden(ASSIGNMENT).sources
-    shown = [mutant for mutant in mutants(ASSIGNMENT) if mutant.demo]
+    assignment = layout.COURSE.demo or suites.graded()[0]
+    sources = suites.hidden(assignment).sources
+    shown = [mutant for mutant in mutants(assignment) if mutant.demo]
     with tempfile.TemporaryDirectory(prefix="demo-") as folder:
         names = ["reference", *(mutant.id for mutant in shown), "empty"]
         entries = tuple(Entry(name, Path(folder) / name) for name in names)
@@ -48,7 +47,7 @@ def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None
         with Progress(len(entries)) as progress:
             results = grade_all(
                 entries,
-                ASSIGNMENT,
+                assignment,
                 seed=seed,
                 out=out,
                 jobs=jobs,

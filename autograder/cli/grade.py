@@ -37,9 +37,7 @@ INTERRUPTED = 130  # as a shell tells it
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "--assignment", required=True, metavar="ID", help="The assignment that the submissions answer, such as 02_nodes."
-)
+@click.option("--assignment", required=True, metavar="ID", help="The assignment that the submissions answer.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),

@@ -2,9 +2,8 @@
 
 A cell that writes a file into the student's workspace names the file of the reference that it copies:
 
-    {"course": {"source": "my_robot_package/my_robot_package/nodes/robot_controller.py",
-                "target": "ws/src/my_robot_package/my_robot_package/nodes/robot_controller.py",
-                "hide": ["RobotController.control_loop"]}}
+    {"course": {"source": "wheels/wheels/wheel_node.py", "target": "ws/src/wheels/wheels/wheel_node.py",
+                "hide": ["WheelNode.turn"]}}
 
 Sources are paths in `solutions/`, targets are paths in the chapter's folder.
 """

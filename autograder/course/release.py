@@ -18,18 +18,8 @@ from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
 
-# Files and whole folders that are copied beside the chapters.
-COPIED = (
-    "sim",
-    "autograder",
-    "assets/worlds",
-    "chapters/ros2-commands.md",
-    "chapters/pytest.ini",
-    "pyproject.toml",
-    "requirements.lock",
-    "LICENSE",
-    ".devcontainer",
-)
+# Files and whole folders that are copied beside the course.
+COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", ".devcontainer")
 STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
@@ -65,21 +55,39 @@ def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         bundle = Path(scratch) / out.name
         chosen = [known[name] for name in names or known]
-        copy_parts(COPIED, bundle)
+        copy_tool(COPIED, bundle)
         _withhold(bundle)
+        copy_course((layout.FILE, layout.COURSE.worlds, *layout.COURSE.released), bundle)
+        checks = [path for path in layout.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
+        copy_course((str(path.relative_to(layout.COURSE.root)) for path in checks), bundle)
         for chapter in chosen:
-            write_released(chapter, bundle / "chapters" / chapter.assignment)
+            write_released(chapter, bundle / layout.COURSE.chapters / chapter.assignment)
         shutil.copytree(STUDENT_FILES, bundle, dirs_exist_ok=True)
+        readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
+        readme = readme.replace("TITLE", layout.COURSE.title).replace("FIRST", chosen[0].assignment)
+        (bundle / "README.md").write_text(readme, encoding="utf-8")
         bundle.rename(out)
     return [chapter.assignment for chapter in chosen]
 
 
-def copy_parts(parts: Iterable[str], folder: Path) -> None:
-    """Copy files and folders of the course, by their paths in it, to `folder`, without what tools left behind."""
+def copy_tool(parts: Iterable[str], folder: Path) -> None:
+    """Copy files and folders that lie around the autograder, without any course's checks, to `folder`."""
+    _copy(layout.ROOT, parts, folder)
+    for chapter in (folder / "autograder" / "checks").glob("ch*"):
+        shutil.rmtree(chapter)
+
+
+def copy_course(parts: Iterable[str], folder: Path) -> None:
+    """Copy those files and folders of the course that it has, by their paths in it, to `folder`."""
+    _copy(layout.COURSE.root, (part for part in parts if (layout.COURSE.root / part).exists()), folder)
+
+
+def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
+    """Copy what lies below `root`, without what tools left behind."""
     for part in parts:
-        source, target = layout.ROOT / part, folder / part
+        source, target = root / part, folder / part
         if source.is_dir():
-            shutil.copytree(source, target, ignore=layout.NOT_COPIED)
+            shutil.copytree(source, target, ignore=layout.NOT_COPIED, dirs_exist_ok=True)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
@@ -89,10 +97,6 @@ def _withhold(bundle: Path) -> None:
     for withheld in WITHHELD:
         path = bundle / withheld
         shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for chapter in (bundle / layout.CHECKS.relative_to(layout.ROOT)).glob("ch*"):
-        for path in chapter.iterdir():
-            if path.name not in STUDENT_CHECKS:
-                shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
 def write_released(chapter: Chapter, folder: Path) -> None:

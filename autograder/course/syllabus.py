@@ -1,6 +1,6 @@
 """The syllabus, and which cells and hidden checks of the course cover it.
 
-`assets/syllabus.yaml` lists the chapter's objectives, sections, examples, steps and questions, and its errors. The
+A syllabus is a YAML file. It lists a text's objectives, sections, examples, steps and questions, and its errors. The
 metadata of cells name the items that they cover (`covers`) and the `errata` that they correct. Those of a notebook name
 the errata that its packages correct, and for each objective the cell with the exercise's heading and the groups of
 hidden checks that test it (`objectives`).
@@ -22,7 +22,7 @@ from autograder.checks import Check
 from autograder.course.cells import metadata
 from autograder.course.findings import Finding
 
-SYLLABUS = layout.ROOT / "assets" / "syllabus.yaml"
+SYLLABUS = layout.COURSE.root / layout.COURSE.syllabus
 PARTS = ("sections", "examples", "steps", "questions")
 _HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
 
@@ -42,8 +42,9 @@ class Syllabus:
     def read(cls, path: Path = SYLLABUS) -> Syllabus:
         """Read the YAML file."""
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        items = {key: text for part in PARTS for key, text in data[part].items()}
-        return cls(data["objectives"], items, {n: (wrong, right) for n, (wrong, right) in data["errata"].items()})
+        items = {key: text for part in PARTS for key, text in data.get(part, {}).items()}
+        errata = data.get("errata", {}).items()
+        return cls(data["objectives"], items, {n: (wrong, right) for n, (wrong, right) in errata})
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def find_coverage(
         findings += wrong
     served = {row.objective for row in rows if row.checks}
     findings += [
-        Finding("assets/syllabus.yaml", None, f"no {what} covers {key!r}: {text}")
+        Finding(layout.COURSE.syllabus, None, f"no {what} covers {key!r}: {text}")
         for what, missing in (
             ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in served}),
             ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),

@@ -10,14 +10,14 @@ from autograder.course.markdown_table import table
 from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters
-from autograder.layout import CHAPTERS
+from autograder.layout import CHAPTERS, COURSE
 
 PAGE = CHAPTERS / "README.md"
 
-HEAD = """# The course, chapter by chapter
+HEAD = f"""# The course, chapter by chapter
 
 One notebook an assignment; its folder is what students get. `autograder course tables` writes this page from the
-notebooks' metadata, the hidden checks and `assets/syllabus.yaml`; a test holds it.
+notebooks' metadata, the hidden checks and `{COURSE.syllabus}`; a test holds it.
 """
 
 

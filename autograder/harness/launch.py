@@ -77,7 +77,7 @@ def sandbox(workspace: Workspace) -> Sandbox:
 class LaunchHarness(contextlib.ExitStack):
     """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS; a context manager.
 
-        with LaunchHarness(workspace, "my_robot_bringup", "robot.launch.py", {"speed": "0.3"},
+        with LaunchHarness(workspace, "bringup", "robot.launch.py", {"speed": "0.3"},
                        listens={"/cmd_vel": Twist}) as harness:
             harness.wait_for(lambda: "/driver" in harness.nodes(), 20.0)
             harness.parameters("/driver", "speed")

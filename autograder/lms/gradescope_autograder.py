@@ -13,13 +13,13 @@ from pathlib import Path
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course.release import copy_parts
+from autograder.course.release import copy_course, copy_tool
 from autograder.exceptions import UsageError
 from autograder.sandbox import Tier
 
 SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, in the zip too
-# What grading needs of the course, hidden checks and reference included.
-COURSE = ("autograder", "sim", "assets", "chapters", "solutions", "pyproject.toml", "requirements.lock", "Makefile")
+# What grading needs besides the course, of which it needs the hidden checks and the reference, too.
+COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", "Makefile")
 
 
 def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
@@ -39,7 +39,8 @@ def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
         raise UsageError(f"{out} exists already: name a file that does not exist yet")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        copy_parts(COURSE, folder / "course")
+        copy_tool(COPIED, folder / "course")
+        copy_course(layout.COURSE.parts, folder / "course")
         for script in SCRIPTS.iterdir():
             text = script.read_text(encoding="utf-8").replace("ASSIGNMENT", assignment).replace("ISOLATION", tier.value)
             shutil.copy2(script, folder)

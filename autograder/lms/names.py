@@ -3,7 +3,7 @@
     Moodle            Jane Doe_1234567_assignsubmission_file_/...     or ..._file_answer.zip, without folders
     Canvas            doejane_LATE_1234567_7654321_answer-1.zip       LATE and -1 (a later attempt) only where it is so
     GitHub Classroom  02-nodes-jane-doe/                              a clone a student, named after the account
-    nbgrader          jane/02_nodes/                                  the folder of a student, with timestamp.txt
+    nbgrader          jane/ASSIGNMENT/                                the folder of a student, with timestamp.txt
     anything else     jane.zip, jane/                                 what the roster calls the student
 
 The sources: Moodle, mod/assign/locallib.php (`download_submissions`); Canvas, "How do I download all student

@@ -83,17 +83,17 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
     The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own.
 
     Args:
-        assignment: the chapter, such as "02_nodes".
+        assignment: the name of the chapter.
         workspace: the colcon workspace.
 
     Raises:
         UsageError: there is no such assignment or workspace.
         GraderError: the check itself failed.
     """
+    if grading():  # the sandbox holds no checks
+        return Notice("The hidden checks run after this notebook has been executed.")
     if assignment not in (there := suites.checked()):
         raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
-    if grading():
-        return Notice("The hidden checks run after this notebook has been executed.")
     with send("check", Path(workspace), assignment=assignment) as (answer, _):
         diagnosis = answer["diagnosis"]
         trouble = None

@@ -106,7 +106,7 @@ def drive(
     Args:
         package: the package in `ws/src`.
         executable: its executable, as `ros2 run PACKAGE EXECUTABLE` names it.
-        world: a name in `assets/worlds`, or a `sim.World`.
+        world: a name of a world, or a `sim.World`.
         seconds: of ROS time.
         faults: what is wrong with the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or
             a `sim.Faults`.

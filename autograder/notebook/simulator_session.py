@@ -49,7 +49,7 @@ def simulator(
     of the one that `drive` has.
 
     Args:
-        world: a name in `assets/worlds`.
+        world: its name.
         speed: simulated seconds in a second of real time.
         robots: the namespaces of the robots, one robot each; "" is a robot without a namespace.
 

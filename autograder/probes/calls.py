@@ -1,6 +1,6 @@
 """Calls of a student's functions in the sandbox: JSON in and JSON out, bounded in size, compared by exact type.
 
-    outcomes = calls(workspace, "my_robot_package.utils.data_processing",
+    outcomes = calls(workspace, "wheels.data_processing",
                      call("mask_invalid", [1.0, nan], 0.1, 3.5),
                      make("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1), look("history", on=1))
 

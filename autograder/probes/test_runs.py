@@ -1,6 +1,6 @@
 """Runs a student's tests against versions of the package under test, and reports what they say of each.
 
-    source = take(workspace, "speed_guard")
+    source = take(workspace, "wheels")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
 
 A run is in the power of the student's tests: what it reports is a claim, "passes" or "fails", and the points come from

@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 from autograder import layout
@@ -13,8 +14,7 @@ from autograder.checks import suites
 from autograder.course.release import write_released
 from autograder.course.sync import Chapter
 from autograder.grading.job import Scope
-from autograder.proof.attacks import Attack, attacks
-from autograder.proof.claims import CaseKind, verify_full_marks, verify_killed, verify_mutant, verify_zero
+from autograder.proof.claims import Attack, CaseKind, verify_full_marks, verify_killed, verify_mutant, verify_zero
 from autograder.proof.generated import GeneratedMutant, generated_mutants
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result
@@ -110,3 +110,11 @@ def _generated(assignment: str, made: GeneratedMutant, sources: tuple[str, ...])
 
 def _attack(assignment: str, attack: Attack) -> Case:
     return Case(assignment, CaseKind.ATTACK, attack.id.replace(" ", "-"), attack.write, attack.verify)
+
+
+def attacks(assignment: str) -> tuple[Attack, ...]:
+    """Return the attacks of an assignment: what `attacks()` in the module of this name gives, beside its suites."""
+    if not (suites.hidden(assignment).folder / "attacks.py").is_file():
+        return ()
+    found: tuple[Attack, ...] = import_module(f"{suites.HOME}.ch{assignment}.attacks").attacks()
+    return found

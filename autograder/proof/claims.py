@@ -6,10 +6,12 @@ empty string if there are none.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
-from autograder.checks import Outcome
+from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
 from autograder.proof.mutants import Mutant
 from autograder.result import Result
@@ -86,3 +88,38 @@ def verify_killed(result: Result) -> str:
 def lost_checks(result: Result) -> frozenset[str]:
     """Return the ids of the checks that did not pass."""
     return frozenset(check.id for check in result.checks if check.outcome is not Outcome.PASSED)
+
+
+@dataclass(frozen=True)
+class Attack:
+    """A malicious submission: the attacks that it combines, in words, and a function that writes it to a folder.
+
+    `loses` holds the checks that it must lose, with or without the payload, and no others if it loses them `exactly`,
+    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none.
+    """
+
+    id: str
+    description: str
+    write: Callable[[Path], None]
+    loses: frozenset[str]
+    diagnosis: frozenset[Kind] = frozenset()
+    exactly: bool = False
+
+    def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
+        """Return what the attack gained or disturbed, and an empty string if nothing.
+
+        Args:
+            result: result of the attack.
+            only: ids of the checks that were run; every check if there are none.
+        """
+        suite = suites.hidden(result.assignment)
+        run = only or frozenset(check.id for check in suite.checks)
+        missing, loses = lost_checks(result) & run, self.loses & run
+        wrong = [f"gains {', '.join(sorted(loses - missing))}"] if loses - missing else []
+        if self.exactly and missing != loses:
+            wrong.append(f"disturbs {', '.join(sorted(missing - loses))}")
+        if result.max_score != suite.max_score:
+            wrong.append(f"changes the maximum to {result.max_score:g}")
+        if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
+            wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
+        return "; ".join(wrong)

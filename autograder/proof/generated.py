@@ -23,7 +23,7 @@ class GeneratedMutant:
     """A mutant that an operator made.
 
     Attributes:
-        id: module, function, operator and number, such as `robot_controller.control_loop.compare.1`.
+        id: module, function, operator and number, such as `wheel_node.turn.compare.1`.
         file: path of the changed file, below `src`.
         text: whole new text of the file.
         reason: the reason why it may survive, from `survivors.yaml` of the suite. It is empty for most mutants.

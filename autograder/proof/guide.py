@@ -10,7 +10,7 @@ from autograder.checks.contract import Sentence, contract
 from autograder.course.markdown_table import table
 from autograder.proof.mutants import Mutant, mutants
 
-PAGE = layout.ROOT / "docs" / "checks.md"
+PAGE = layout.COURSE.root / layout.COURSE.guide
 HEAD = """# The hidden checks, and what proves them
 
 For instructors; nothing of this page reaches students. Each check is named with the sentence that the student reads,

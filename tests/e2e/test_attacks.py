@@ -13,16 +13,17 @@ import pytest
 
 from autograder import feedback, layout
 from autograder.checks import suites
+from autograder.checks.ch02_nodes.attack_payloads import CANARY
+from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks, attacks
 from autograder.grading import grade_submission
 from autograder.grading.job import Scope
 from autograder.grading.pipeline import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
-from autograder.proof.attack_payloads import CANARY
-from autograder.proof.attacks import ASSIGNMENT, Attack, all_checks, attacks
+from autograder.proof.claims import Attack
 from autograder.result import Result
 from autograder.sandbox import cgroup
 
-ATTACKS = attacks(ASSIGNMENT)
+ATTACKS = attacks()
 DRIVES = frozenset({"room", "pillars", "corridor"})
 
 

@@ -12,6 +12,7 @@ import pytest
 from autograder import layout
 from autograder.checks import suites
 from autograder.fingerprint import digest, files
+from autograder.layout import Course
 
 CHAPTER = "02_nodes"
 READ = {
@@ -35,6 +36,7 @@ READ = {
 NOT_READ = (
     "autograder/cli/grade.py",
     "autograder/__pycache__/checks.pyc",
+    "autograder/checks/ch02_nodes/attacks.py",
     "autograder/checks/ch02_nodes/mutants.yaml",
     "autograder/checks/ch02_nodes/survivors.yaml",
     "autograder/checks/ch02_nodes/variants/other/node.py",
@@ -49,33 +51,50 @@ NOT_READ = (
 READS = ("solutions/speed_guard",)
 
 
+LINES = "name: few\ntitle: A course with few files\nchecks: autograder/checks\nworlds: assets/worlds\n"
+
+
 @pytest.fixture
 def course(tmp_path: Path) -> Path:
     """A course with few files."""
-    for name, text in READ.items():
+    for name, text in {**READ, layout.FILE: LINES}.items():
         _write(tmp_path / name, text)
     return tmp_path
 
 
+def version(course: Path) -> str:
+    return digest(CHAPTER, READS, Course.read(course), course)
+
+
 @pytest.mark.parametrize("name", READ)
 def test_a_file_that_a_grading_reads_changes_the_version(name: str, course: Path) -> None:
-    before = digest(CHAPTER, READS, course)
+    before = version(course)
     with (course / name).open("a") as stream:
         stream.write("# more\n")
-    assert digest(CHAPTER, READS, course) != before
+    assert version(course) != before
+
+
+def test_the_checks_of_the_autograders_own_course_are_no_part_of_another(course: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    _write(other / layout.FILE, "name: other\ntitle: Another\n")
+    _write(other / "checks/ch02_nodes/hidden/graph.py", "")
+    read = {str(path.relative_to(tmp_path)) for path in files(CHAPTER, (), Course.read(other), course)}
+    assert "other/checks/ch02_nodes/hidden/graph.py" in read
+    assert {"sim/world.py", "autograder/checks/suites.py", "assets/worlds/lab.yaml"} <= read
+    assert not [path for path in read if path.startswith(("autograder/checks/ch", "chapters"))]
 
 
 def test_a_new_file_of_the_suite_changes_the_version(course: Path) -> None:
-    before = digest(CHAPTER, READS, course)
+    before = version(course)
     _write(course / "autograder/checks/ch02_nodes/hidden/more.json", "")
-    assert digest(CHAPTER, READS, course) != before
+    assert version(course) != before
 
 
 @pytest.mark.parametrize("name", NOT_READ)
 def test_a_file_that_no_grading_reads_does_not(name: str, course: Path) -> None:
-    before = digest(CHAPTER, READS, course)
+    before = version(course)
     _write(course / name, "x")
-    assert digest(CHAPTER, READS, course) == before
+    assert version(course) == before
 
 
 def test_a_suites_version_is_the_digest_of_all_that_it_reads() -> None:

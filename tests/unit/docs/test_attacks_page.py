@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 import runpy
 
+from autograder.checks.ch02_nodes.attacks import attacks
 from autograder.layout import ROOT
-from autograder.proof.attacks import ASSIGNMENT, attacks
 
 MADE = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))
 ROWS = MADE["ROWS"]
@@ -30,4 +30,4 @@ def test_each_test_that_the_table_names_is_there() -> None:
 
 def test_the_table_names_the_submissions_of_the_proof_and_no_others() -> None:
     named = {name for row in ROWS for name in row["submissions"]}
-    assert named == {attack.id for attack in attacks(ASSIGNMENT)}
+    assert named == {attack.id for attack in attacks()}

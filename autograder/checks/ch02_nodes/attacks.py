@@ -6,15 +6,13 @@ Each attack starts from a mutant whose losses are known. An attack that gains no
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.checks import suites
-from autograder.diagnosis import Kind
-from autograder.proof.attack_payloads import (
+from autograder.checks.ch02_nodes.attack_payloads import (
     CALL_SPOOF,
     FORGE_PASSES,
     FORGE_PROTOCOL,
@@ -29,47 +27,13 @@ from autograder.proof.attack_payloads import (
     STEAL_SECRETS,
     STOP_PARENT,
 )
-from autograder.proof.claims import lost_checks
+from autograder.diagnosis import Kind
+from autograder.proof.claims import Attack
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.result import Result
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
 WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
-
-
-@dataclass(frozen=True)
-class Attack:
-    """A malicious submission: the attacks that it combines, in words, and a function that writes it to a folder.
-
-    `loses` holds the checks that it must lose, with or without the payload, and no others if it loses them `exactly`,
-    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none.
-    """
-
-    id: str
-    description: str
-    write: Callable[[Path], None]
-    loses: frozenset[str]
-    diagnosis: frozenset[Kind] = frozenset()
-    exactly: bool = False
-
-    def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
-        """Return what the attack gained or disturbed, and an empty string if nothing.
-
-        Args:
-            result: result of the attack.
-            only: ids of the checks that were run; every check if there are none.
-        """
-        run = only or all_checks()
-        missing, loses = lost_checks(result) & run, self.loses & run
-        wrong = [f"gains {', '.join(sorted(loses - missing))}"] if loses - missing else []
-        if self.exactly and missing != loses:
-            wrong.append(f"disturbs {', '.join(sorted(missing - loses))}")
-        if result.max_score != suites.hidden(ASSIGNMENT).max_score:
-            wrong.append(f"changes the maximum to {result.max_score:g}")
-        if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
-            wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
-        return "; ".join(wrong)
 
 
 def all_checks() -> frozenset[str]:
@@ -137,12 +101,8 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
     return write
 
 
-def attacks(assignment: str) -> tuple[Attack, ...]:
-    """Return the attacks of an assignment. One submission combines attacks that do not disturb each other."""
-    return _corpus() if assignment == ASSIGNMENT else ()
-
-
-def _corpus() -> tuple[Attack, ...]:
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks. One submission combines attacks that do not disturb each other."""
     slow, blind = mutant("five_hertz").loses, mutant("drives_blind").loses
     everything = all_checks()
     return (

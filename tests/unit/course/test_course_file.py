@@ -1,0 +1,73 @@
+"""What a course is stands in its course.yaml, and nowhere in the autograder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.exceptions import UsageError
+from autograder.layout import Course
+
+LINES = "name: small\ntitle: A small course\n"
+
+
+def course(folder: Path, lines: str) -> Course:
+    (folder / layout.FILE).write_text(lines)
+    return Course.read(folder)
+
+
+def test_a_course_needs_a_name_and_a_title_and_the_rest_has_a_usual_place(tmp_path: Path) -> None:
+    small = course(tmp_path, LINES)
+    assert (small.name, small.title, small.chapters, small.checks) == ("small", "A small course", "chapters", "checks")
+    assert small.released == ()
+
+
+def test_it_says_where_its_parts_lie_and_what_students_get(tmp_path: Path) -> None:
+    small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
+    assert small.checks == "suites"
+    assert {"suites", "chapters/commands.md", layout.FILE} <= set(small.parts)
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ("name: small\n", "title"),
+        (LINES + "colour: red\n", "colour"),
+        (LINES + "worlds: ../worlds\n", "'../worlds' is no path in the course's folder"),
+        (LINES + "released: [/etc/passwd]\n", "'/etc/passwd' is no path in the course's folder"),
+        (LINES + "checks: 3\n", "3 is no path in the course's folder"),
+        ("- name\n", "the lines of this file are name, title"),
+        ("name: [\n", "course.yaml"),
+    ],
+)
+def test_a_wrong_line_is_named(tmp_path: Path, lines: str, said: str) -> None:
+    with pytest.raises(UsageError, match=r"course\.yaml") as raised:
+        course(tmp_path, lines)
+    assert said in str(raised.value)
+
+
+def test_a_folder_without_the_file_is_no_course(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"is no course: it has no course\.yaml"):
+        Course.read(tmp_path)
+
+
+def test_the_course_has_what_its_file_names() -> None:
+    assert [part for part in layout.COURSE.parts if not (layout.COURSE.root / part).exists()] == []
+    assert layout.COURSE.demo in layout.assignments()
+
+
+def test_the_autograder_names_no_chapter_and_no_package_of_the_course() -> None:
+    names = {*layout.assignments(), *(path.name for path in layout.SOLUTIONS.iterdir()), *layout.check_folders()}
+    names = {str(name) for name in names if str(name) != "assessment"}
+    texts = {
+        path: path.read_text(encoding="utf-8", errors="replace")
+        for path in (layout.ROOT / "autograder").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    own = [path for path in texts if any(path.is_relative_to(folder) for folder in layout.check_folders())]
+    assert len(names) > 20
+    assert len(own) > 100
+    for path in set(texts) - set(own):
+        assert [name for name in names if name in texts[path]] == [], path
