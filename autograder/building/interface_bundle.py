@@ -46,7 +46,7 @@ def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> str:
         if (workspace.install / name).is_dir():  # for another package that needs it, too
             continue
         shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
-        _relocate(workspace.install / name, note["install"], str(workspace.install))
+        relocate(workspace.install / name, note["install"], str(workspace.install))
     return str(note["log"])
 
 
@@ -65,7 +65,7 @@ def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
     shutil.rmtree(alone.root)
 
 
-def _relocate(prefix: Path, old: str, new: str) -> None:
+def relocate(prefix: Path, old: str, new: str) -> None:
     """Let colcon's own scripts of a package name the place where it is now; everything else in it is relative."""
     for path in prefix.glob("share/*/*"):
         if path.suffix in HOOKS and path.is_file() and not path.is_symlink():

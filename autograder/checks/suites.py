@@ -9,6 +9,7 @@ The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py
                       besides what lies in their own chapter's folder
     BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see
                       it by the fixture `builds`, and those that need a built package depend on one that asks for it.
+    OWN_TESTS         optional: the checks that lose points by what the submission's own tests say of its other files
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ class Suite:
         build_may_fail: whether its checks are run even if a package is missing or does not build.
         folders: what a submission brings in `src` besides its packages.
         reads: files and folders of the course that its checks read besides their own packages, by their paths.
+        own_tests: ids of the checks that lose points by what a submission's own tests say of its other files.
     """
 
     assignment: str
@@ -48,6 +50,7 @@ class Suite:
     build_may_fail: bool = False
     folders: tuple[str, ...] = ()
     reads: tuple[str, ...] = ()
+    own_tests: tuple[str, ...] = ()
 
     @cached_property
     def version(self) -> str:
@@ -136,6 +139,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
         getattr(described, "BUILD_MAY_FAIL", False),
         tuple(getattr(described, "FOLDERS", ())),
         tuple(getattr(described, "READS", ())),
+        tuple(getattr(described, "OWN_TESTS", ())),
     )
 
 

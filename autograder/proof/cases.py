@@ -14,8 +14,7 @@ from autograder.checks import suites
 from autograder.course.release import write_released
 from autograder.course.sync import Chapter
 from autograder.grading.job import Scope
-from autograder.proof.claims import Attack, CaseKind, verify_full_marks, verify_killed, verify_mutant, verify_zero
-from autograder.proof.generated import GeneratedMutant, generated_mutants
+from autograder.proof.claims import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.result import Result
 
@@ -28,7 +27,6 @@ class Case:
     """One submission of the proof: how it is written, how much of the suite grades it, and what its result must be.
 
     `name` is unique in the assignment. `verify` returns how a result differs from the expected one, or an empty string.
-    `reason` says why a generated mutant may survive.
     """
 
     assignment: str
@@ -36,14 +34,13 @@ class Case:
     name: str
     write: Callable[[Path], None]
     verify: Verifier
-    reason: str = ""
     scope: Scope = UNSEEN
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """Return an assignment's proof: all of it, or the part for each change.
 
-    The quick part has one mutant a check, graded by the checks that it stands for; no generated ones and no attacks.
+    The quick part has one mutant a check, graded by the checks that it stands for, and no attacks.
     """
     sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     found = [
@@ -55,7 +52,6 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
         found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_a_check(assignment)]
     else:
         found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
-        found += [_generated(assignment, made, sources) for made in generated_mutants(assignment)]
         found += [_attack(assignment, attack) for attack in attacks(assignment)]
     return tuple(found)
 
@@ -97,15 +93,6 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
         yield Case(assignment, CaseKind.VARIANT, variant.name, write, verify_full_marks)
-
-
-def _generated(assignment: str, made: GeneratedMutant, sources: tuple[str, ...]) -> Case:
-    def write(folder: Path) -> None:
-        write_reference(sources, folder)
-        (folder / "src" / made.file).write_text(made.text, encoding="utf-8")
-
-    scope = replace(UNSEEN, first_loss=True)  # the first lost check kills it
-    return Case(assignment, CaseKind.GENERATED, made.id, write, verify_killed, made.reason, scope)
 
 
 def _attack(assignment: str, attack: Attack) -> Case:

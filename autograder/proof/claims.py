@@ -24,7 +24,6 @@ class CaseKind(str, Enum):
     RELEASE = "release"
     VARIANT = "variant"
     MUTANT = "mutant"
-    GENERATED = "generated"
     ATTACK = "attack"
 
 
@@ -32,7 +31,7 @@ class CaseKind(str, Enum):
 class Claim:
     """The result of a submission of the proof, and how it differs from the expected one, in words.
 
-    `mismatch` is empty if the claim holds. `reason` says why a generated mutant may survive.
+    `mismatch` is empty if the claim holds.
     """
 
     assignment: str
@@ -40,7 +39,6 @@ class Claim:
     name: str
     result: Result
     mismatch: str
-    reason: str = ""
 
     @property
     def holds(self) -> bool:
@@ -78,11 +76,6 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
     if not only and result.diagnosis.kind is not mutant.diagnosis:
         wrong.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
     return "; ".join(wrong)
-
-
-def verify_killed(result: Result) -> str:
-    """Return that a generated mutant survived, if it passed every check."""
-    return "" if lost_checks(result) else "survives: no check sees the difference"
 
 
 def lost_checks(result: Result) -> frozenset[str]:

@@ -1,141 +1,247 @@
-"""Mutation operators. Each changes a Python source at one place, like a slip of a student.
+"""Mutation operators for Python. Each makes one slip at one place, or one kind of slip at all its places.
 
-They change the text at the positions that `ast` gives, so that the rest of the text stays the same.
+They change the text at the positions that `ast` gives, so that the rest of the text stays the same. cosmic-ray and
+mutmut have the classic ones only, and bring a parser and a dozen packages with them; the slips of robots, `slips.py`,
+need the positions of `ast` in any case.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 SYMBOLS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 SYMBOLS |= {ast.Is: "is", ast.IsNot: "is not", ast.In: "in", ast.NotIn: "not in"}
-OPPOSITE = {"<": ">=", "<=": "<", ">": "<=", ">=": ">", "==": "!=", "!=": "==", "is": "is not", "is not": "is"}
-OPPOSITE |= {"in": "not in", "not in": "in"}
-ARITHMETIC = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
-ENDPOINTS = {"create_publisher": 1, "create_subscription": 1, "create_service": 1, "create_client": 1}
-SWAPPED = {"min": "max", "max": "min", "any": "all", "all": "any", "ceil": "floor", "floor": "ceil"}
-CALLS_FOR_PEOPLE = {"debug", "info", "warning", "error", "fatal", "ParameterDescriptor"}  # no check reads their texts
+OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "is": "is not", "in": "not in"}
+OPPOSITE |= {opposite: symbol for symbol, opposite in OPPOSITE.items()}
+BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
+ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
+ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
+LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
+FOR_PEOPLE = {"description", "reason", "msg"}  # arguments that hold words; the contract does not say which
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+Spot = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text
+Slip = tuple[str, tuple[Spot, ...]]  # the operator, and what it replaces
+Simple = tuple[str, ast.AST, str]  # the operator, the node that it replaces, and the new text
+
+
+class Source:
+    """A module's text, as it stands at the nodes of its syntax tree."""
+
+    def __init__(self, text: str) -> None:
+        self.data = text.encode()
+        self.tree = ast.parse(text)
+        self._starts = [0]
+        for line in self.data.splitlines(keepends=True):
+            self._starts.append(self._starts[-1] + len(line))
+
+    def span(self, first: ast.AST, last: ast.AST | None = None) -> tuple[int, int]:
+        """Return the offsets of a node, or of the first to the last of several."""
+        last = last or first
+        end = self._starts[getattr(last, "end_lineno") - 1] + getattr(last, "end_col_offset")  # noqa: B009
+        return self._starts[getattr(first, "lineno") - 1] + getattr(first, "col_offset"), end  # noqa: B009
+
+    def text(self, node: ast.AST) -> str:
+        """Return the text of a node."""
+        start, end = self.span(node)
+        return self.data[start:end].decode()
 
 
 @dataclass(frozen=True)
-class Change:
-    """A change of a text.
+class Place:
+    """A node with what stands around it: the innermost first, and the function that holds it, if one does."""
 
-    Attributes:
-        operator: name of the mutation operator.
-        function: qualified name of the changed function.
-        start: offset of the replaced part, in characters.
-        end: offset of its end, in characters.
-        replacement: the new text.
-    """
-
-    operator: str
-    function: str
-    start: int
-    end: int
-    replacement: str
-
-    def apply(self, text: str) -> str:
-        """Return the changed text."""
-        return text[: self.start] + self.replacement + text[self.end :]
+    node: ast.AST
+    around: tuple[ast.AST, ...]
+    function: ast.FunctionDef | ast.AsyncFunctionDef | None
 
 
-def changes(text: str, functions: frozenset[str] | None = None) -> list[Change]:
-    """Return every change that the operators make of a source, in the order of the text.
+def places(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[str, Place]]:
+    """Yield the nodes that students write, each with the name of its function, "" at the top of the module.
 
     Args:
-        text: source of a module.
-        functions: qualified names of the functions to change. None changes all but `main`.
+        source: the module.
+        functions: the qualified names of the functions that students write. None stands for all.
     """
-    starts = [0]
-    for line in text.splitlines(keepends=True):
-        starts.append(starts[-1] + len(line))
-    found = [
-        Change(operator, name, _offset(text, starts, place, False), _offset(text, starts, place, True), replacement)
-        for name, function in _functions(ast.parse(text))
-        if (name in functions if functions is not None else name != "main")
-        for node in _own_nodes(function)
-        for operator, place, replacement in _mutations(node, text)
-    ]
-    return sorted(found, key=lambda change: (change.start, change.operator))
+
+    def walk(node: ast.AST, name: str, place: Place) -> Iterator[tuple[str, Place]]:
+        inner = Place(node, (place.node, *place.around), place.function)
+        if isinstance(node, (*FUNCTIONS, ast.ClassDef)):
+            name = f"{name}.{node.name}".lstrip(".")
+            function = node if isinstance(node, FUNCTIONS) else None
+            inner = Place(node, inner.around, function or place.function)
+            if function and functions is not None and not any(f"{name}.".startswith(f"{own}.") for own in functions):
+                return
+        elif _is_silent(node, place):
+            return
+        yield name, inner
+        for field, value in ast.iter_fields(node):
+            if field not in ("annotation", "returns", "ctx"):
+                for child in value if isinstance(value, list) else [value]:
+                    if isinstance(child, ast.AST):
+                        yield from walk(child, name, inner)
+
+    for statement in source.tree.body:
+        yield from walk(statement, "", Place(source.tree, (), None))
 
 
-def _mutations(node: ast.AST, text: str) -> Iterator[tuple[str, ast.AST, str]]:
-    """Yield (operator, node to replace, new text)."""
+def _is_silent(node: ast.AST, place: Place) -> bool:
+    """Return whether a node is no part of what runs, or only words for people."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+        return True  # a docstring
+    if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr):
+        return True
+    if isinstance(node, ast.If) and "__name__" in ast.dump(node.test):
+        return True
+    if isinstance(node, ast.keyword) and node.arg in FOR_PEOPLE:
+        return True
+    outer = place.node
+    if isinstance(outer, ast.Call) and isinstance(outer.func, ast.Attribute) and outer.func.attr in LEVELS:
+        return node in outer.args
+    return isinstance(node, ast.Constant | ast.Call) and isinstance(outer, ast.Raise | ast.Assert)
+
+
+def classic(source: Source, place: Place) -> Iterator[Simple]:
+    """Yield the classic mutations of a node."""
+    for made in _OPERATORS:
+        yield from made(source, place.node)
+
+
+def _operators(source: Source, node: ast.AST) -> Iterator[Simple]:
     if isinstance(node, ast.Compare):
-        yield from _comparisons(node, text)
+        operands = [source.text(operand) for operand in (node.left, *node.comparators)]
+        for changed, old in enumerate(node.ops):
+            for name, table in (("boundary", BOUNDARY), ("negated", OPPOSITE)):
+                symbols = [SYMBOLS[type(op)] for op in node.ops]
+                if (symbol := SYMBOLS[type(old)]) in table:
+                    symbols[changed] = table[symbol]
+                    rest = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
+                    yield name, node, f"({operands[0]}{''.join(rest)})"
     elif isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
-        yield "sign", node, f"({_text(text, node.left)} {ARITHMETIC[type(node.op)]} {_text(text, node.right)})"
+        new = ARITHMETIC[type(node.op)][1]
+        yield "arithmetic", node, f"(({source.text(node.left)}) {new} ({source.text(node.right)}))"
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
-        yield "sign", node, _text(text, node.operand)
+        yield "sign" if isinstance(node.op, ast.USub) else "negated", node, f"({source.text(node.operand)})"
     elif isinstance(node, ast.BoolOp):
         word = " or " if isinstance(node.op, ast.And) else " and "
-        yield "boolean", node, word.join(_text(text, value) for value in node.values)
-    elif isinstance(node, ast.Constant) and isinstance(node.value, int | float) and not isinstance(node.value, bool):
-        yield "constant", node, "1" if node.value == 0 else repr(node.value * 2)
-    elif isinstance(node, ast.Name) and node.id == "qos_profile_sensor_data":
-        yield "qos", node, "10"
-    elif isinstance(node, ast.Call):
-        yield from _calls(node, text)
-    elif (
-        isinstance(node, ast.If) and not node.orelse and isinstance(node.body[-1], ast.Return | ast.Continue | ast.Pass)
-    ):
-        yield "guard", node.test, "False"
+        yield "boolean", node, f"({word.join(f'({source.text(value)})' for value in node.values)})"
+        for left_out in range(len(node.values)):
+            kept = [f"({source.text(value)})" for number, value in enumerate(node.values) if number != left_out]
+            word = " and " if isinstance(node.op, ast.And) else " or "
+            yield "boolean", node, f"({word.join(kept)})"
 
 
-def _comparisons(node: ast.Compare, text: str) -> Iterator[tuple[str, ast.AST, str]]:
-    """Yield the comparison once for each of its operators, with that operator inverted."""
-    operands = [_text(text, operand) for operand in (node.left, *node.comparators)]
-    for changed in range(len(node.ops)):
-        symbols = [SYMBOLS[type(op)] for op in node.ops]
-        symbols[changed] = OPPOSITE[symbols[changed]]
-        rest = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
-        yield "compare", node, operands[0] + "".join(rest)
+def _conditions(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if isinstance(node, ast.If | ast.IfExp):
+        yield "condition", node.test, "True"
+        yield "condition", node.test, "False"
+    elif isinstance(node, ast.While):
+        yield "condition", node.test, "False"
+    elif isinstance(node, ast.For):
+        yield "loop", node.iter, "()"
+        yield "order", node.iter, f"reversed(list({source.text(node.iter)}))"
+    elif isinstance(node, ast.comprehension):
+        yield "order", node.iter, f"reversed(list({source.text(node.iter)}))"
+        for test in node.ifs:
+            yield "condition", test, "True"
 
 
-def _calls(node: ast.Call, text: str) -> Iterator[tuple[str, ast.AST, str]]:
-    name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-    if name in ENDPOINTS and len(node.args) > 1 and isinstance(node.args[1], ast.Constant):
-        yield "topic", node.args[1], repr(f"{node.args[1].value!s}s")
-    if name in SWAPPED:
-        yield "order", node.func, _text(text, node.func)[: -len(name)] + SWAPPED[name]
-    if name in ("radians", "degrees") and len(node.args) == 1:
-        yield "units", node, _text(text, node.args[0])
+def _constants(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if not isinstance(node, ast.Constant):
+        return
+    value = node.value
+    if isinstance(value, bool):
+        yield "constant", node, str(not value)
+    elif isinstance(value, str):
+        yield "name", node, repr(f"{value}s" if value else "x")
+    elif isinstance(value, int | float):
+        yield from ((name, node, text) for name, text in numbers(value))
 
 
-def _own_nodes(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function's body, without docstrings, nested functions and log calls."""
-    pending = list(ast.iter_child_nodes(function))
-    while pending:
-        node = pending.pop(0)
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            continue  # a docstring
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.arguments):
-            continue
-        if isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in CALLS_FOR_PEOPLE:
-            continue
-        yield node
-        pending = [*ast.iter_child_nodes(node), *pending]
+def numbers(value: float) -> Iterator[tuple[str, str]]:
+    """Yield (operator, new text) for a number: a tenth more, a quarter less, one more, one less, the other sign."""
+    whole = isinstance(value, int)
+    made = {repr(value): ""}
+    steps = [("off by one", value + 1), ("off by one", value - 1)] if whole or value == 0 else []
+    for name, new in (*steps, ("10 %", value * 1.1), ("25 %", value * 0.75), ("sign", -value)):
+        text = repr(round(new) if whole else float(f"{new:.6g}"))
+        if text not in made and text != "-0.0":
+            made[text] = name
+            yield name, f"({text})" if text.startswith("-") else text
 
 
-def _functions(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, ast.AST]]:
-    for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.ClassDef):
-            yield from _functions(node, f"{prefix}{node.name}.")
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield f"{prefix}{node.name}", node
-            yield from _functions(node, f"{prefix}{node.name}.")
+def _statements(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        yield f"no {_kind(node.value)}", node, "pass"
+    elif isinstance(node, ast.Assign | ast.AugAssign):
+        target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+        owner = getattr(getattr(target, "value", None), "id", "self")
+        of_message = isinstance(target, ast.Attribute) and (owner != "self" or isinstance(target.value, ast.Attribute))
+        yield "no field" if of_message else "no assignment", node, "pass"
+    elif isinstance(node, ast.Return):
+        yield "no return", node, "return None" if node.value else "pass"
+    elif isinstance(node, ast.Raise | ast.Assert | ast.Break | ast.Continue | ast.Delete):
+        yield f"no {type(node).__name__.lower()}", node, "pass"
+        if isinstance(node, ast.Break | ast.Continue):
+            yield "loop", node, "continue" if isinstance(node, ast.Break) else "break"
 
 
-def _text(text: str, node: ast.AST) -> str:
-    return ast.get_source_segment(text, node) or ""
+def _kind(call: ast.Call) -> str:
+    """Return what a call is: a log call, a publish, a timer or another one."""
+    name = getattr(call.func, "attr", "")
+    return {"publish": "publish", "create_timer": "timer"}.get(name, "log" if name in LEVELS else "call")
 
 
-def _offset(text: str, starts: list[int], node: ast.AST, end: bool) -> int:
-    """Return the offset of a node's start or end in characters; `ast` counts columns in bytes of UTF-8."""
-    line: int = getattr(node, "end_lineno" if end else "lineno")
-    column: int = getattr(node, "end_col_offset" if end else "col_offset")
-    whole = text[starts[line - 1] : starts[line]]
-    return starts[line - 1] + len(whole.encode()[:column].decode())
+def _arguments(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if not isinstance(node, ast.Call):
+        return
+    positional = [source.text(argument) for argument in node.args]
+    named = [
+        f"{each.arg}={source.text(each.value)}" if each.arg else f"**{source.text(each.value)}"
+        for each in node.keywords
+    ]
+    function = source.text(node.func)
+    if isinstance(node.func, ast.Attribute) and node.func.attr in LEVELS:
+        level = f"{source.text(node.func.value)}.{LEVELS[node.func.attr]}"
+        yield "log level", node, f"{level}({', '.join(positional + named)})"
+    elif not any(isinstance(argument, ast.Starred) for argument in node.args):
+        for at in range(len(positional) - 1):
+            swapped = [*positional[:at], positional[at + 1], positional[at], *positional[at + 2 :]]
+            yield "arguments", node, f"{function}({', '.join(swapped + named)})"
+    for at, keyword in enumerate(node.keywords):
+        if keyword.arg not in FOR_PEOPLE:
+            yield "keyword", node, f"{function}({', '.join(positional + named[:at] + named[at + 1 :])})"
+
+
+def _elements(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if isinstance(node, ast.Dict):
+        pairs = [
+            f"{source.text(k) + ': ' if k else '**'}{source.text(v)}"
+            for k, v in zip(node.keys, node.values, strict=True)
+        ]
+        for at in range(len(pairs)):
+            yield "element", node, f"{{{', '.join(pairs[:at] + pairs[at + 1 :])}}}"
+    elif isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
+        elements = [source.text(element) for element in node.elts]
+        begin, end = "[]" if isinstance(node, ast.List) else "()"
+        for at in range(len(elements)):
+            rest = "".join(f"{element}, " for element in elements[:at] + elements[at + 1 :])
+            yield "element", node, f"{begin}{rest}{end}"
+
+
+def _exceptions(source: Source, node: ast.AST) -> Iterator[Simple]:
+    if isinstance(node, ast.ExceptHandler) and node.type is not None and source.text(node.type) != "Exception":
+        yield "exception", node.type, "Exception"
+
+
+_OPERATORS: Sequence[Callable[[Source, ast.AST], Iterator[Simple]]] = (
+    _operators,
+    _conditions,
+    _constants,
+    _statements,
+    _arguments,
+    _elements,
+    _exceptions,
+)

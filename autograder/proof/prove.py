@@ -46,7 +46,7 @@ def prove(
                 run_job=lanes,
             )
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
-        return Claim(case.assignment, case.kind, case.name, result, mismatch, case.reason)
+        return Claim(case.assignment, case.kind, case.name, result, mismatch)
 
     claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}

@@ -1,4 +1,4 @@
-"""Counts the claims of a proof and decides whether the proof holds."""
+"""Counts the claims of a proof."""
 
 from __future__ import annotations
 
@@ -7,17 +7,15 @@ from collections.abc import Iterable, Sequence
 from autograder.proof.claims import CaseKind, Claim, lost_checks
 from autograder.result import Status
 
-MIN_KILLED = 0.9  # share of the generated mutants, without the survivors that have a reason
-
 
 def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
     """Count the claims of each kind.
 
     `reference` (the least), `release` (the highest) and `variants` (all) are percentages. `mutants_missed` counts the
     mutants that lost no check. `mutants_wrong_check` counts those that lost other checks than they name, or have
-    another diagnosis. `generated` leaves out the survivors with a reason.
+    another diagnosis.
     """
-    mutants, generated = _of(claims, CaseKind.MUTANT), _unexcused(claims)
+    mutants = _of(claims, CaseKind.MUTANT)
     missed = [claim for claim in mutants if not (claim.result.status is Status.GRADED and lost_checks(claim.result))]
     attacks = _of(claims, CaseKind.ATTACK)
     return {
@@ -27,29 +25,14 @@ def summary(claims: Sequence[Claim], seconds: float) -> dict[str, object]:
         "mutants": len(mutants),
         "mutants_missed": len(missed),
         "mutants_wrong_check": sum(not claim.holds for claim in mutants if claim not in missed),
-        "generated": len(generated),
-        "generated_killed": sum(claim.holds for claim in generated),
         "attacks": len(attacks),
         "attacks_gained": sum(not claim.holds for claim in attacks),
         "seconds": round(seconds, 1),
     }
 
 
-def holds(claims: Sequence[Claim]) -> bool:
-    """Return whether every claim holds. Of the generated mutants, `MIN_KILLED` must hold."""
-    generated = _unexcused(claims)
-    killed = sum(claim.holds for claim in generated)
-    others = [claim for claim in claims if claim.kind is not CaseKind.GENERATED]
-    return all(claim.holds for claim in others) and killed >= MIN_KILLED * len(generated)
-
-
 def _of(claims: Iterable[Claim], kind: CaseKind) -> list[Claim]:
     return [claim for claim in claims if claim.kind is kind]
-
-
-def _unexcused(claims: Iterable[Claim]) -> list[Claim]:
-    """Return the generated mutants without the survivors that have a reason."""
-    return [claim for claim in _of(claims, CaseKind.GENERATED) if claim.holds or not claim.reason]
 
 
 def _percents(claims: Iterable[Claim], kind: CaseKind) -> list[float]:

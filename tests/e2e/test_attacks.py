@@ -50,7 +50,7 @@ def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Result:
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
-    scope, out = Scope(only=tuple(sorted(checks))), folder / "out"
+    scope, out = Scope(only=suites.hidden(ASSIGNMENT).with_dependencies(*checks)), folder / "out"
     return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=out, scope=scope)
 
 

@@ -1,7 +1,8 @@
 """The proof's part for each change: the references and releases of all chapters, some variants and some mutants.
 
 The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in thirty of
-a chapter's, and one variant in six. The runs of several commits take them all, and so does `make nightly`.
+a chapter's, one variant in six, and a part of the population of mutants of one chapter in four. The runs of several
+commits take them all, and so does `make nightly`.
 """
 
 from __future__ import annotations
@@ -15,15 +16,21 @@ from autograder.checks import suites
 from autograder.proof.cases import Case, cases
 from autograder.proof.claims import CaseKind
 from autograder.proof.lanes import Lanes
+from autograder.proof.population import population
 from autograder.proof.prove import prove
+from autograder.proof.survey import surveying
+from autograder.proof.survivors import reasons
 from autograder.sandbox import Tier
-from tests.drawn import drawn, unless
+from tests.drawn import commit, drawn, unless
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
     for name in suites.graded()
     for case in cases(name, quick=True)
 }
+# Chapters of which the whole population was graded, and every survivor has a reason.
+SURVEYED = [name for name in suites.graded() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
+PART = 12  # mutants of a chapter's population for a commit
 
 
 def of(kind: CaseKind, assignment: str = "") -> list[str]:
@@ -60,3 +67,26 @@ def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes,
     messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in claim.result.checks]
     details = [claim.mismatch, *messages, log.read_text() if log.is_file() else ""]
     assert claim.holds, "\n".join(details)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "assignment", [pytest.param(name, marks=unless(name in now)) for now in [drawn(SURVEYED, 4)] for name in SURVEYED]
+)
+def test_a_drawn_part_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
+    mutants = {mutant.id: mutant for mutant in population(assignment).mutants}
+    chosen = drawn(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment).keys()
+    with surveying(assignment, lanes, 2026) as survey:
+        fates = [survey.fate(mutants[name]) for name in sorted(chosen)]
+    print(*fates, sep="\n")
+    assert not [mutants[fate.id].diff() for fate in fates if not fate.killed]
+
+
+@pytest.mark.slow
+def test_a_patched_reference_is_graded_as_a_built_one(lanes: Lanes) -> None:
+    found = [mutant for mutant in population("02_nodes").mutants if mutant.operator == "no publish"]
+    with surveying("02_nodes", lanes, 2026) as survey:
+        assert survey.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
+        patched = [survey.fate(mutant).killer for mutant in found]
+        survey.ways = {"patched": frozenset(), "unbuilt": frozenset()}
+        assert [survey.fate(mutant).killer for mutant in found] == patched

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building.interface_bundle import _key, _relocate, interface_bundle
+from autograder.building.interface_bundle import _key, interface_bundle, relocate
 from autograder.harness import Workspace
 from autograder.packages import find_packages
 from autograder.ros import activate
@@ -67,6 +67,6 @@ def test_scripts_name_the_new_place_and_nothing_else_is_touched(tmp_path: Path) 
     (share / "package.sh").write_text("COLCON=/old/install/robot_msgs\n")
     (share / "notes.txt").write_text("/old/install\n")
     (share / "link.sh").symlink_to("notes.txt")
-    _relocate(tmp_path / "install" / "robot_msgs", "/old/install", str(tmp_path / "install"))
+    relocate(tmp_path / "install" / "robot_msgs", "/old/install", str(tmp_path / "install"))
     assert (share / "package.sh").read_text() == f"COLCON={tmp_path}/install/robot_msgs\n"
     assert (share / "notes.txt").read_text() == "/old/install\n"

@@ -1,0 +1,172 @@
+"""The population of mutants of a chapter: every slip of every operator in everything that its students write."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import hashlib
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import CodeType
+
+from autograder import layout
+from autograder.checks import suites
+from autograder.course.cells import is_solution, origin
+from autograder.course.sync import Chapter
+from autograder.proof.operators import Slip, Source, Spot, classic, places
+from autograder.proof.slips import is_queue_length, robotic, wall_time, wide
+from autograder.proof.text_operators import text_slips
+
+PAIRS = 20  # mutants of second order in a chapter
+
+
+@dataclass(frozen=True)
+class Slipped:
+    """A mutant: what it replaces in the reference, file by file.
+
+    Attributes:
+        id: names the file, the function, the operator and a digest of the change; it outlives changes elsewhere.
+        operator: the operator's name; "pair" for a mutant of second order.
+        function: the qualified name of the changed function, or "".
+        spots: what is replaced, by the path of the file below `solutions/`.
+    """
+
+    id: str
+    operator: str
+    function: str
+    spots: tuple[tuple[str, tuple[Spot, ...]], ...]
+
+    @property
+    def file(self) -> str:
+        """The path of the first changed file."""
+        return self.spots[0][0]
+
+    def texts(self) -> dict[str, str]:
+        """Return the new text of each changed file."""
+        return {file: _replaced((layout.SOLUTIONS / file).read_bytes(), spots).decode() for file, spots in self.spots}
+
+    def diff(self) -> str:
+        """Return the lines that differ, with the line's number, as a person reads them."""
+        shown: list[str] = []
+        for file, text in self.texts().items():
+            old, new = (layout.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
+            matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
+            for tag, first, last, new_first, new_last in matcher.get_opcodes():
+                if tag != "equal":
+                    shown += [f"{file}:{first + 1}"]
+                    shown += [f"- {line.strip()}" for line in old[first:last]]
+                    shown += [f"+ {line.strip()}" for line in new[new_first:new_last]]
+        return "\n".join(shown)
+
+
+@dataclass(frozen=True)
+class Population:
+    """A chapter's mutants, those of second order last, and how many were left out as equivalent or as twins."""
+
+    mutants: tuple[Slipped, ...]
+    left_out: int
+
+
+def population(assignment: str) -> Population:
+    """Return the mutants of a chapter, always the same for one reference."""
+    found: dict[str, Slipped] = {}
+    left_out = 0
+    for file, functions in written_by_students(assignment):
+        text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
+        seen = {_meaning(file, text)}
+        for function, (operator, spots) in slips(file, text, functions):
+            meaning = _meaning(file, _replaced(text.encode(), spots).decode())
+            if meaning in seen:
+                left_out += 1
+                continue
+            seen.add(meaning)
+            mutant = _named(file, function, operator, spots, text)
+            assert mutant.id not in found, f"two mutants are called {mutant.id}"
+            found[mutant.id] = mutant
+    return Population((*found.values(), *_pairs(list(found.values()))), left_out)
+
+
+def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None]]:
+    """Yield (path, functions) of each file that students write or mend; None stands for all of its functions."""
+    packages = suites.hidden(assignment).sources
+    chapter = Chapter(layout.chapter(assignment))
+    for cell in chapter.read().cells:
+        copied = origin(cell) if is_solution(cell) else None
+        if copied is not None and copied.source.parts[0] in packages:
+            yield str(copied.source), frozenset(copied.hide) if copied.hide else None
+    given = chapter.folder / "ws" / "src"
+    written = {copied.source.parts[0] for cell in chapter.read().cells if (copied := origin(cell))}
+    for package in set(packages) - written:  # it is given with faults, and there to be mended
+        for path in sorted((given / package).rglob("*")):
+            right = layout.SOLUTIONS / path.relative_to(given)
+            if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
+                yield str(path.relative_to(given)), None
+
+
+def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Slip]]:
+    """Yield (function, slip) of a file: the name of the changed function, and what a slip replaces."""
+    if not file.endswith(".py"):
+        yield from (("", slip) for slip in text_slips(file, text))
+        return
+    source = Source(text)
+    nodes: list[ast.AST] = []
+    for function, place in places(source, functions):
+        nodes.append(place.node)
+        simple = itertools.chain(() if is_queue_length(place) else classic(source, place), robotic(source, place))
+        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
+        yield from ((function, slip) for slip in wide(source, place))
+    yield from (("", slip) for slip in wall_time(source, nodes))
+
+
+def _named(file: str, function: str, operator: str, spots: tuple[Spot, ...], text: str) -> Slipped:
+    """Name a mutant by what stands around its change, so that it keeps its name when other lines move."""
+    data = text.encode()
+    said = hashlib.sha256(f"{file} {function} {operator}".encode())
+    for start, end, new in spots:
+        begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
+        before, old = data[begin:start], data[start:end]
+        said.update(b"\0".join((before, old, new.encode(), data[end:stop])))
+        said.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
+    where = ".".join(filter(None, (file.rpartition("/")[2], function)))
+    return Slipped(f"{where} {operator} {said.hexdigest()[:6]}", operator, function, ((file, spots),))
+
+
+def _pairs(mutants: list[Slipped]) -> Iterator[Slipped]:
+    """Yield mutants of second order: drawn pairs of mutants of different functions or files."""
+    ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
+    for one, other in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
+        spots = dict(one.spots)
+        for file, more in other.spots:
+            both = sorted((*spots.get(file, ()), *more))
+            if any(first[1] > second[0] for first, second in itertools.pairwise(both)):
+                break
+            spots[file] = tuple(both)
+        else:
+            yield Slipped(f"{one.id} + {other.id}", "pair", one.function, tuple(spots.items()))
+
+
+def _replaced(data: bytes, spots: tuple[Spot, ...]) -> bytes:
+    for start, end, new in sorted(spots, reverse=True):
+        data = data[:start] + new.encode() + data[end:]
+    return data
+
+
+def _meaning(file: str, text: str) -> object:
+    """Return what two texts have in common that mean the same to the interpreter or to the build."""
+    if file.endswith(".py"):
+        return _code(compile(text, file, "exec", optimize=0))
+    return "\n".join(filter(None, (line.split("#")[0].strip() for line in text.splitlines())))
+
+
+def _code(code: CodeType) -> tuple[object, ...]:
+    constants = tuple(
+        _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
+    )
+    return (
+        code.co_code,
+        constants,
+        code.co_names,
+        code.co_varnames,
+        code.co_exceptiontable if hasattr(code, "co_exceptiontable") else b"",
+    )

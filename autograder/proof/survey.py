@@ -1,0 +1,195 @@
+"""Grades a chapter's population of mutants, each up to the first check that it loses, and keeps what came out.
+
+A mutant costs a second, because of three things. Where colcon would only copy the changed file, the built reference is
+patched. Where checks look at the sources alone, they are asked before anything is built. And the checks that killed the
+mutants of the same function before come first. The reference is graded in each of these ways before any mutant: a way
+counts only for checks that the reference passes in it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tempfile
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from autograder import layout
+from autograder.building.build import build_workspace
+from autograder.checks import Outcome, suites
+from autograder.diagnosis import Kind
+from autograder.grading.batch import map_parallel
+from autograder.grading.job import Scope
+from autograder.grading.pipeline import grade_submission
+from autograder.proof.lanes import Lanes
+from autograder.proof.mutants import write_reference
+from autograder.proof.population import Slipped
+from autograder.result import Result, Status
+from autograder.ros import activate
+from autograder.workspace import Workspace
+
+COPIED = (".py", ".yaml")  # endings of files that colcon only copies
+NOT_COPIED = ("setup.py",)
+FIRST = 3  # checks that are asked before all others
+FAILED = "not graded"
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What became of a mutant: the check that killed it, "" if it survived, or that the grader failed on it."""
+
+    id: str
+    killer: str
+    seconds: float
+    version: str
+
+    @property
+    def killed(self) -> bool:
+        """Whether a check was lost."""
+        return self.killer not in ("", FAILED)
+
+
+class Survey:
+    """Grades mutants of one chapter.
+
+    Args:
+        assignment: the chapter.
+        lanes: workers that grade.
+        seed: seed of every hidden input.
+        folder: the folder that holds the built reference, and nothing of which is kept.
+    """
+
+    def __init__(self, assignment: str, lanes: Lanes, seed: int, folder: Path) -> None:
+        self._suite, self._lanes, self._seed, self._folder = suites.hidden(assignment), lanes, seed, folder
+        self._killers: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+        self._ids = tuple(check.id for check in self._suite.checks)
+        for name in ("patched", "unbuilt"):
+            write_reference(self._suite.sources, folder / name)
+        (folder / "home").mkdir()
+        workspace = Workspace(folder / "patched", activate(), folder / "home")
+        build_workspace(workspace, self._suite.packages)
+        self.ways = {name: self._passed(folder / name) for name in ("patched", "unbuilt")}
+
+    def _passed(self, built: Path) -> frozenset[str]:
+        """Return the checks that the reference passes without a build of its own."""
+        result = self._grade({}, Scope(pictures=False, built=str(built)))
+        return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
+
+    def fate(self, mutant: Slipped, version: str = "") -> Fate:
+        """Grade a mutant up to the first check that it loses."""
+        began = time.monotonic()
+        killer = next(filter(None, self._stages(mutant)), "")
+        if killer:
+            for place in {(mutant.file, mutant.function), (mutant.file, "")}:
+                self._killers[place][killer] += 1
+        return Fate(mutant.id, killer, round(time.monotonic() - began, 2), version)
+
+    def _stages(self, mutant: Slipped) -> Iterator[str]:
+        """Yield the killer of each stage, or "": first what is quick, and what is likely to kill."""
+        texts = mutant.texts()
+        in_tests = all("/test/" in file for file in texts)
+        # The reference's own tests would kill much, and a student has others.
+        counted = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
+        copied = all(file.endswith(COPIED) and not file.endswith(NOT_COPIED) for file in texts)
+        way = "patched" if copied else "unbuilt"
+        able = self.ways[way] & counted
+        likely = self._likely(mutant) & able if copied else able
+        built = str(self._folder / way)
+        if likely:
+            yield self._killer(texts, self._suite.with_dependencies(*likely), built)
+        if copied and able - likely:
+            yield self._killer(texts, self._ordered(mutant, able), built)
+        if counted - able:
+            yield self._killer(texts, self._ordered(mutant, counted), "")
+
+    def _likely(self, mutant: Slipped) -> frozenset[str]:
+        known = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
+        return frozenset(name for name, _ in known.most_common(FIRST))
+
+    def _ordered(self, mutant: Slipped, wanted: frozenset[str]) -> tuple[str, ...]:
+        """Return checks, and what they depend on: those that killed in the same file come first."""
+        known = [name for name, _ in self._killers[mutant.file, ""].most_common() if name in wanted]
+        first = self._suite.with_dependencies(*known)
+        return (*first, *(name for name in self._suite.with_dependencies(*wanted) if name not in first))
+
+    def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
+        result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))
+        if result.status is not Status.GRADED:
+            return FAILED
+        lost = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
+        return lost[0] if lost else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
+
+    def _grade(self, texts: dict[str, str], scope: Scope) -> Result:
+        with tempfile.TemporaryDirectory(prefix="mutant-") as name:
+            folder = Path(name)
+            write_reference(self._suite.sources, folder / "mutant")
+            for file, text in texts.items():
+                (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
+            return grade_submission(
+                folder / "mutant",
+                self._suite.assignment,
+                student="mutant",
+                seed=self._seed,
+                out=folder / "out",
+                isolation=self._lanes.tier,
+                scope=scope,
+                run_job=self._lanes,
+            )
+
+
+def survey(
+    assignment: str,
+    mutants: Iterable[Slipped],
+    lanes: Lanes,
+    *,
+    seed: int,
+    kept: Path,
+    on_fate: Callable[[Fate], None] = lambda fate: None,
+) -> tuple[Fate, ...]:
+    """Grade mutants of a chapter, and return what became of them.
+
+    `kept` is a file of fates. One that the same suite and reference made counts, so that a run that was stopped goes on
+    where it was. Each new one is added.
+    """
+    version, chosen = _version(assignment), list(mutants)
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept.is_file() else []
+    known = {fate.id: fate for fate in (Fate(**json.loads(line)) for line in lines) if fate.version == version}
+    missing = [mutant for mutant in chosen if mutant.id not in known]
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with kept.open("a", encoding="utf-8") as file:
+
+        def keep(fate: Fate) -> None:
+            if fate.killer != FAILED:
+                file.write(json.dumps(asdict(fate)) + "\n")
+                file.flush()
+            on_fate(fate)
+
+        made: tuple[Fate, ...] = ()
+        if missing:
+            with surveying(assignment, lanes, seed) as surveyor:
+                made = map_parallel(
+                    lambda mutant: surveyor.fate(mutant, version), missing, jobs=lanes.count, on_done=keep
+                )
+    known |= {fate.id: fate for fate in made}
+    return tuple(known[mutant.id] for mutant in chosen)
+
+
+@contextmanager
+def surveying(assignment: str, lanes: Lanes, seed: int) -> Iterator[Survey]:
+    """Yield a survey of a chapter, in a folder of its own."""
+    with tempfile.TemporaryDirectory(prefix="survey-") as name:
+        yield Survey(assignment, lanes, seed, Path(name))
+
+
+def _version(assignment: str) -> str:
+    """Return a digest of the suite and of the reference."""
+    suite = suites.hidden(assignment)
+    digest = hashlib.sha256(suite.version.encode())
+    for source in suite.sources:
+        for path in sorted(path for path in (layout.SOLUTIONS / source).rglob("*") if path.is_file()):
+            digest.update(str(path.relative_to(layout.SOLUTIONS)).encode() + path.read_bytes())
+    return digest.hexdigest()[:12]

@@ -1,0 +1,100 @@
+"""The population of mutants is the same each time, and what becomes of it is counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.checks import suites
+from autograder.checks.suites import Suite
+from autograder.exceptions import GraderError
+from autograder.proof import survivors
+from autograder.proof.population import Population, population
+from autograder.proof.survey import FAILED, Fate
+from autograder.proof.survivors import Surveyed, holds, mutant_counts, reasons, report
+
+ASSIGNMENT = "02_nodes"
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_each_mutant_is_another_text_and_has_a_name_of_its_own(assignment: str) -> None:
+    found = population(assignment)
+    assert found == population(assignment)
+    assert len({mutant.id for mutant in found.mutants}) == len(found.mutants) > 100
+    assert all(mutant.diff() for mutant in found.mutants)
+
+
+@pytest.mark.parametrize("assignment", suites.graded())
+def test_each_reason_belongs_to_a_mutant_that_exists(assignment: str) -> None:
+    assert all(reason.startswith(survivors.KINDS) for reason in reasons(assignment).values())
+
+
+def test_a_name_outlives_changes_elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from autograder.proof.population import _named
+
+    before = _named("a.py", "f", "sign", ((4, 5, "2"),), "x = 1\n")
+    after = _named("a.py", "f", "sign", ((10, 11, "2"),), "y = 0\nx = 1\n")
+    assert before.id == after.id
+
+
+def surveyed(*killers: str) -> Surveyed:
+    """Return what became of a chapter's first mutants."""
+    mutants = population(ASSIGNMENT).mutants[: len(killers)]
+    fates = tuple(Fate(mutant.id, killer, 1.0, "") for mutant, killer in zip(mutants, killers, strict=True))
+    return Surveyed(ASSIGNMENT, Population(mutants, 2), fates)
+
+
+def with_reason(monkeypatch: pytest.MonkeyPatch, text: str, folder: Path) -> None:
+    real = suites.hidden(ASSIGNMENT)
+    twin = replace(real, files=tuple(folder / "hidden" / path.name for path in real.files))
+    assert isinstance(twin, Suite)
+    monkeypatch.setattr(suites, "hidden", lambda assignment: twin)
+    (folder / "survivors.yaml").write_text(text)
+
+
+def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = surveyed(*["starts"] * 39, "")
+    survivor = found.fates[-1].id
+    with_reason(monkeypatch, "[]", tmp_path)
+    assert found.unexplained == [survivor]
+    assert not holds([found])
+    with_reason(monkeypatch, f"- {{equivalent: so it is, mutants: ['{survivor}']}}", tmp_path)
+    assert found.survivors == {survivor: "equivalent: so it is"}
+    assert holds([found])
+    assert "39/40" in report([found])
+    assert "equivalent: so it is" in report([found])
+    assert mutant_counts([found])[ASSIGNMENT]["all"] == [39, 40]
+
+
+def test_too_many_survivors_are_too_many_whatever_their_reasons(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    found = surveyed(*["starts"] * 38, "", "")
+    names = [fate.id for fate in found.fates[-2:]]
+    with_reason(monkeypatch, f"- {{outside: nobody says so, mutants: {names}}}", tmp_path)
+    assert found.unexplained == []
+    assert not holds([found])
+
+
+def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = surveyed(*["starts"] * 39, FAILED)
+    with_reason(monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.fates[-1].id}']}}", tmp_path)
+    assert not holds([found])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("- {equivalent: x, mutants: [no such mutant]}", "no such mutants any more: no such mutant"),
+        ("- {mutants: []}", "equivalent or outside"),
+        ("- {equivalent: x, outside: y, mutants: []}", "equivalent or outside"),
+    ],
+)
+def test_a_reason_that_fits_nothing_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, said: str
+) -> None:
+    with_reason(monkeypatch, text, tmp_path)
+    with pytest.raises(GraderError, match=said):
+        reasons(ASSIGNMENT)
