@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+VERDICTS = ("Everything needed is here.", "Something needed is missing.")
+
 
 class Status(str, Enum):
     """How a finding stands: `weak` works with a restriction, `missing` stops a part of the course."""
@@ -31,7 +33,7 @@ def healthy(findings: Sequence[Finding]) -> bool:
     return all(finding.status is not Status.MISSING for finding in findings)
 
 
-def render(findings: Sequence[Finding], *, width: int = 100) -> str:
+def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str, str] = VERDICTS) -> str:
     """Return the findings as aligned lines, the command that mends a lack under it, and a closing sentence."""
     longest = max(len(finding.name) for finding in findings)
     lines = []
@@ -43,7 +45,7 @@ def render(findings: Sequence[Finding], *, width: int = 100) -> str:
             # Never wrapped: it is there to be copied.
             lines.append(f"{indent}mend: {finding.mend}")
     count = {status: sum(finding.status is status for finding in findings) for status in Status}
-    verdict = "Everything needed is here." if healthy(findings) else "Something needed is missing."
+    verdict = verdicts[0] if healthy(findings) else verdicts[1]
     return "\n".join(
         [*lines, "", f"{verdict} {count[Status.OK]} ok, {count[Status.WEAK]} weak, {count[Status.MISSING]} missing."]
     )

@@ -12,7 +12,7 @@ import errno
 import socket
 import struct
 
-_FORBIDDEN = {
+FORBIDDEN = {
     # memory and queues that belong to no process
     **{"memfd_create": 319, "memfd_secret": 447, "shmget": 29, "semget": 64, "msgget": 68, "mq_open": 240},
     # the kernel's keys
@@ -26,9 +26,9 @@ _FORBIDDEN = {
     **{"bpf": 321, "perf_event_open": 298, "userfaultfd": 323, "io_uring_setup": 425, "fanotify_init": 300},
     **{"modify_ldt": 154},
 }
-_CLONE, _SOCKET = 56, 41
-_NEW_NAMESPACES = 0x7E020000  # the flags CLONE_NEW... of clone(2)
-_FAMILIES = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
+CLONE, SOCKET = 56, 41
+NEW_NAMESPACES = 0x7E020000  # the flags CLONE_NEW... of clone(2)
+FAMILIES = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
 
 _X86_64 = 0xC000003E  # AUDIT_ARCH_X86_64; a program of 32 bits has other numbers for its calls
 _X32 = 0x40000000  # the lowest number of the calls of x32
@@ -45,13 +45,13 @@ def program() -> bytes:
         (_EQUAL, _X86_64, go_on, forbid),
         (_LOAD, _NUMBER, go_on, go_on),
         (_AT_LEAST, _X32, forbid, go_on),
-        *((_EQUAL, number, forbid, go_on) for number in _FORBIDDEN.values()),
-        (_EQUAL, _SOCKET, 3, go_on),
-        (_EQUAL, _CLONE, go_on, allow),
+        *((_EQUAL, number, forbid, go_on) for number in FORBIDDEN.values()),
+        (_EQUAL, SOCKET, 3, go_on),
+        (_EQUAL, CLONE, go_on, allow),
         (_LOAD, _FIRST_ARGUMENT, go_on, go_on),
-        (_ANY_OF, _NEW_NAMESPACES, forbid, allow),
+        (_ANY_OF, NEW_NAMESPACES, forbid, allow),
         (_LOAD, _FIRST_ARGUMENT, go_on, go_on),
-        *((_EQUAL, family, allow, go_on) for family in _FAMILIES),
+        *((_EQUAL, family, allow, go_on) for family in FAMILIES),
         (_RETURN, _ERROR | errno.ENOSYS, go_on, go_on),
         (_RETURN, _ALLOW, go_on, go_on),
     ]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +18,9 @@ from autograder.sandbox.launcher import TIER_VARIABLE
 from autograder.sandbox.limits import CELL_SCRATCH, GRADING_CELL, Limits
 from autograder.sandbox.process import Ending, Process
 from autograder.sandbox.tiers import Tier, require
+
+_PREFIX = "autograder-cell-"
+_YOUNG = 60.0  # s in which a folder that was just made gets its lock
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,10 @@ def in_cell(
         pass_fds: descriptors that the command inherits.
     """
     require(tier)
-    scratch = Path(tempfile.mkdtemp(prefix="cell-"))
+    _sweep()
+    scratch = Path(tempfile.mkdtemp(prefix=_PREFIX))
+    held = os.open(scratch, os.O_RDONLY)
+    fcntl.flock(held, fcntl.LOCK_EX)  # the kernel lets go of it when this process is killed
     try:
         command = make_command(scratch)
         if tier is Tier.BUBBLEWRAP:
@@ -62,3 +70,18 @@ def in_cell(
             yield process, scratch
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+        os.close(held)
+
+
+def _sweep() -> None:
+    """Remove cells' folders whose grader was killed: nobody holds their lock."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if folder.stat().st_uid != os.geteuid() or time.time() - folder.stat().st_mtime < _YOUNG:
+                continue
+            held = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(folder, ignore_errors=True)
+            finally:
+                os.close(held)

@@ -111,10 +111,10 @@ def test_a_server_that_dies_is_replaced_and_nothing_of_it_stays(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with Lanes(Tier.PROCESS, 1) as lanes:
         assert _grade(half, tmp_path / "one", lanes, tier=Tier.PROCESS).status is Status.GRADED
-        (cell,) = tmp_path.glob("cell-*")
+        (cell,) = tmp_path.glob("autograder-cell-*")
         assert list(cell.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
         assert _grade(half, tmp_path / "two", lanes, tier=Tier.PROCESS).status is Status.GRADED
         assert servers() not in ([], [server])
-    assert list(tmp_path.glob("cell-*")) == []
+    assert list(tmp_path.glob("autograder-cell-*")) == []

@@ -1,0 +1,217 @@
+"""Ways out of a sandbox, as programs: each says what it got hold of in a line that begins with `OUT`.
+
+A program that runs wild has to be ended: how, says its `ending`. What goes beyond a limit without being ended is out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from autograder import layout
+from autograder.prefork import seccomp
+from autograder.sandbox import Ending, Limits
+from autograder.sandbox.limits import GIB, MIB
+
+CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
+LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)
+_SHORT, _HUGE = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
+_ROOMY = replace(LIMITS, memory=600 * MIB)  # what its processes have mapped is less
+
+
+@dataclass(frozen=True)
+class Escape:
+    """One program that tries to get out; the tests and `autograder doctor --security` run it."""
+
+    id: str
+    tries: str  # in words, behind "a program cannot"
+    code: str
+    limits: Limits = LIMITS
+    network: bool = False
+    endings: tuple[Ending, ...] = (Ending.EXITED,)
+
+
+_READ = f"""
+import os
+for path in {[*map(str, (*layout.check_folders(), layout.SOLUTIONS))]}:
+    if any(files for _, _, files in os.walk(path)):
+        print("OUT", path)
+for path in ("/root", "/home", "/etc/shadow", "/etc/passwd", "/var", "/run", "/sys", "/boot"):
+    if os.path.exists(path):
+        print("OUT", path)
+"""
+_PROCESSES = f"""
+import glob, os
+seen = glob.glob("/proc/[0-9]*")
+if len(seen) > 4:  # bubblewrap, itself, at most two helpers
+    print("OUT", seen)
+for path in [p + f for p in seen for f in ("/environ", "/cmdline")] + ["/proc/self/environ"]:
+    try:
+        if {CANARY[:6]!r} + {CANARY[6:]!r} in open(path, errors="replace").read():
+            print("OUT", path)
+    except OSError:
+        pass
+if len(os.listdir("/proc/self/fd")) > 4:  # 3 is the listing itself
+    print("OUT descriptors", os.listdir("/proc/self/fd"))
+"""
+_MEMORY = f"""
+import ctypes, glob, os
+word = {CANARY[:6]!r}.encode() + {CANARY[6:]!r}.encode()
+for process in set(glob.glob("/proc/[0-9]*")) - {{f"/proc/{{os.getpid()}}"}}:
+    try:
+        with open(process + "/maps") as maps, open(process + "/mem", "rb", 0) as memory:
+            for line in maps:
+                start, end = (int(part, 16) for part in line.split()[0].split("-"))
+                if line.split()[1].startswith("r") and end < 1 << 47:
+                    memory.seek(start)
+                    if word in memory.read(end - start):
+                        print("OUT", process)
+    except OSError:
+        pass
+libc = ctypes.CDLL(None)
+for pid in (os.getppid(), 1, OUTSIDE):
+    if libc.ptrace(16, pid, 0, 0) == 0:
+        print("OUT ptrace", pid)
+"""
+_SIGNALS = """
+import os, signal
+for pid in (OUTSIDE, os.getppid()):
+    try:
+        if pid > 1:  # 0, a parent outside, would be the program's own group
+            os.kill(pid, signal.SIGSTOP)
+            print("OUT", pid)
+    except OSError:
+        pass
+"""
+_NETWORK = """
+import socket
+if {name for _, name in socket.if_nameindex()} != {"lo"}:
+    print("OUT", socket.if_nameindex())
+for address in (("127.0.0.1", PORT), ("1.1.1.1", 53), ("192.168.0.1", 80)):
+    try:
+        socket.create_connection(address, timeout=3)
+        print("OUT", address)
+    except OSError:
+        pass
+try:
+    socket.socket(40, socket.SOCK_STREAM)  # AF_VSOCK: a virtual machine's host
+    print("OUT vsock")
+except OSError:
+    pass
+"""
+_WRITE = f"""
+import os
+for folder in ("/", "/usr", "/etc", "/dev", "/proc", "/proc/sys/kernel", {str(layout.ROOT / "autograder")!r}):
+    try:
+        open(folder + "/probe", "w").close()
+        print("OUT", folder)
+    except OSError:
+        pass
+"""
+_CALLS = f"""
+import ctypes
+libc = ctypes.CDLL(None)
+for name, number in {seccomp.FORBIDDEN}.items():
+    if libc.syscall(number, 0, 0, 0, 0, 0) >= 0:
+        print("OUT", name)
+for flag in {[1 << bit for bit in range(32) if seccomp.NEW_NAMESPACES >> bit & 1]}:
+    if libc.syscall({seccomp.CLONE}, flag | 17, 0, 0, 0, 0) >= 0:
+        print("OUT clone", flag)
+if libc.mount(b"none", b"/tmp", b"tmpfs", 0, None) == 0:
+    print("OUT mount")
+"""
+_FILL = """
+for folder in ("/tmp", "/dev/shm"):
+    written = 0
+    try:
+        for number in range(100):
+            with open(f"{folder}/{number}", "wb", buffering=0) as stream:
+                written += stream.write(bytes(1 << 20))
+        print("OUT", folder, written)
+    except OSError:
+        pass
+"""
+_FILES = "import itertools\nfor n in itertools.count(): open(f'/tmp/{n}', 'w').close()"
+_EATER = "held = []\nwhile True: held.append(bytearray(b'x') * (1 << 20))"
+_UNMAPPED = """
+import mmap, os, ctypes
+try:
+    file = os.memfd_create("flood")
+    for _ in range(1000):
+        os.write(file, bytes(1 << 20))
+    print("OUT memfd")
+except OSError:
+    pass
+libc = ctypes.CDLL(None)
+if libc.shmget(0, 1 << 30, 0o1600) >= 0:
+    print("OUT System V")
+"""
+_SOCKETS = """
+import os, socket
+def fill():
+    held, kept = 0, []
+    try:
+        while held < 200 << 20:
+            kept += socket.socketpair()
+            for end in kept[-2:]:
+                end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
+                end.setblocking(False)
+                try:
+                    while True: held += end.send(bytes(65536))
+                except BlockingIOError:
+                    pass
+    except OSError:  # no more descriptors
+        pass
+    return held, kept
+told, tell = os.pipe()
+children = []
+while len(children) < 8 and 0 not in children: children.append(os.fork())
+if 0 in children:
+    held, kept = fill()
+    os.write(tell, b"%d " % held)
+    import signal; signal.pause()
+os.close(tell)
+sums = b""
+while sums.count(b" ") < 8: sums += os.read(told, 64)
+held = sum(map(int, sums.split()))
+if held > 1400 << 20:
+    print("OUT", held >> 20, "MiB")
+for child in children: os.kill(child, 9)
+"""
+_FORKS = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
+_THREADS = "import threading\nwhile True: threading.Thread(target=threading.Event().wait).start()"
+_DEAF = """
+import signal
+for n in range(1, 65):
+    try: signal.signal(n, signal.SIG_IGN)
+    except (OSError, ValueError): pass
+while True: signal.pause()
+"""
+_DAEMON = """
+import os, signal
+for _ in range(2):
+    if os.fork(): os._exit(0)
+    os.setsid()
+while True: signal.pause()
+"""
+
+ESCAPES = (
+    Escape("files", "read hidden checks, solutions, accounts or homes", _READ),
+    Escape("processes", "see other processes, or the grader's environment and descriptors", _PROCESSES),
+    Escape("memory", "read the memory of another process, or trace it", _MEMORY),
+    Escape("signals", "stop the grader, or anything else outside", _SIGNALS),
+    Escape("network", "reach a network or the machine's own ports", _NETWORK),
+    Escape("loopback", "reach more than the grader where it has a network", _NETWORK, network=True),
+    Escape("writing", "write to the system, to settings of the kernel or to the grader", _WRITE),
+    Escape("calls", "make namespaces or mounts, use keys, trace, load programs into the kernel", _CALLS),
+    Escape("disk", "fill more than its own /tmp and /dev/shm", _FILL),
+    Escape("inodes", "make files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),
+    Escape("memory eater", "use memory without end", _EATER, endings=(Ending.MEMORY,)),
+    Escape("unmapped memory", "hold memory that belongs to no process", _UNMAPPED),
+    Escape("socket buffers", "hold memory in buffers of sockets", _SOCKETS, _ROOMY, endings=(Ending.MEMORY,)),
+    Escape("fork bomb", "start processes without end", _FORKS, _HUGE, endings=(Ending.THREADS,)),
+    Escape("thread bomb", "start threads without end", _THREADS, endings=(Ending.THREADS,)),
+    Escape("output", "print without end", "while True: print('x' * 99)", endings=(Ending.OUTPUT,)),
+    Escape("endless loop", "run without end", "while True: pass", _SHORT, endings=(Ending.WALL_TIME,)),
+    Escape("deaf", "live on because it ignores every signal", _DEAF, _SHORT, endings=(Ending.WALL_TIME,)),
+    Escape("daemon", "live on by setsid and two forks", _DAEMON),
+)

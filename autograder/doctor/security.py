@@ -1,0 +1,103 @@
+"""`autograder doctor --security`: tries the ways out of a sandbox on this machine, and says which are held."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from autograder.doctor.escapes import CANARY, ESCAPES, Escape
+from autograder.doctor.finding import Finding, Status
+from autograder.ros import activate
+from autograder.sandbox import Mount, Sandbox, Tier, cgroup
+from autograder.sandbox.cell import run_in_cell
+from autograder.sandbox.launcher import launch, warm_up
+from autograder.sandbox.tiers import namespaces_failure
+
+VERDICTS = ("Every sandbox held.", "Something got out: docs/security.md says what bounds it.")
+_PROFILE = "lockstep"  # of nodes
+
+
+def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
+    """Try an escape in a sandbox of this cell; return what got out, and an empty string if the sandbox held.
+
+    Args:
+        escape: what is tried.
+        home: an empty folder, which the program can write to.
+        port: a port of the machine outside the cell, where somebody listens.
+        profile: what the interpreter from which the program is forked has imported; it is started if there is none.
+    """
+    program = home / "program.py"
+    program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.code}")
+    spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=escape.network, limits=escape.limits)
+    before = processes()
+    with launch([sys.executable, str(program)], spec, profile=profile) as process:
+        process.wait(escape.limits.wall_seconds + 60)
+    wrong = [line for line in process.output.splitlines() if line.startswith("OUT")]
+    if process.ending not in escape.endings:
+        wrong.append(f"it ended as {process.ending and process.ending.value}: {process.output[-200:]}")
+    deadline = time.monotonic() + 20
+    while (left := processes() - before) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return "; ".join([*wrong, *(f"process {pid} lives on" for pid in left)])
+
+
+def processes() -> set[int]:
+    """Return the processes of this cell's network namespace that are no zombies; nobody else is in it."""
+    here, found = Path("/proc/self/ns/net").readlink(), set()
+    for pid in map(int, filter(str.isdigit, os.listdir("/proc"))):
+        with suppress(OSError):
+            state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+            if Path(f"/proc/{pid}/ns/net").readlink() == here and state not in "ZX":
+                found.add(pid)
+    return found
+
+
+def examine() -> tuple[Finding, ...]:
+    """Try every escape on this machine, started in a sandbox and forked into it, and say what became of it."""
+    failure = namespaces_failure()
+    if failure is not None:
+        found = f"not tried: {failure}; without namespaces a student's code can do all that the grader's user can"
+        return (Finding("isolation", Status.MISSING, found, "autograder doctor"),)
+    outs: dict[str, str] = {}
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = str(server.getsockname()[1])
+        command = [sys.executable, "-m", "autograder.doctor.security", port]
+        report = run_in_cell(lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP)
+    for line in report.output.splitlines():
+        with suppress(ValueError):
+            outs |= json.loads(line)
+    return tuple(_finding(escape, outs.get(escape.id, f"not tried: {report.output[-300:]}")) for escape in ESCAPES)
+
+
+def _finding(escape: Escape, out: str) -> Finding:
+    if out:
+        return Finding(escape.id, Status.MISSING, f"not held, a program can {escape.tries}: {out}")
+    return Finding(escape.id, Status.OK, f"held: a program cannot {escape.tries}")
+
+
+def main() -> None:
+    """Try every escape in the cell that this process is in; print what got out, a JSON object for each."""
+    activate()
+    os.environ["CANARY"] = CANARY
+    port, scratch = int(sys.argv[1]), Path(sys.argv[2])
+    warm_up(_PROFILE)
+    counted = "pids" in cgroup.bounds()
+    for number, escape in enumerate(ESCAPES):
+        outs = []
+        for profile in (None, _PROFILE):
+            home = scratch / f"{number}-{profile}"
+            home.mkdir()
+            if escape.id == "fork bomb" and not counted:
+                outs.append("not tried: nothing bounds the processes of root here")
+            else:
+                outs.append(attempt(escape, home, port, profile))
+        print(json.dumps({escape.id: "; ".join(dict.fromkeys(filter(None, outs)))}), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+"""What a grader that was killed has left, and what it has not."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from autograder.sandbox import Tier
+from autograder.sandbox.cell import run_in_cell
+
+
+def test_folders_of_cells_that_nobody_holds_are_swept_and_no_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    left, held, young, other = (
+        tmp_path / f"{name}" for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")
+    )
+    for folder in (left, held, young, other):
+        (folder / "ws").mkdir(parents=True)
+        if folder != young:
+            os.utime(folder, (0, 0))
+    link = tmp_path / "autograder-cell-4"
+    link.symlink_to(other)
+    descriptor = os.open(held, os.O_RDONLY)
+    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    try:
+        report = run_in_cell(lambda scratch: [sys.executable, "-c", f"print({str(scratch)!r})"], Tier.PROCESS)
+    finally:
+        os.close(descriptor)
+    assert Path(report.output.strip()).parent == tmp_path
+    assert {*tmp_path.iterdir()} == {held, young, other, link}
+    assert (other / "ws").is_dir()
