@@ -27,6 +27,13 @@ from autograder.workspace import Workspace
 class GradingPlugin:
     """Collects a result for each check, in memory of the trusted process.
 
+    Args:
+        workspace: the student's built workspace.
+        seed: every hidden input of the run is drawn from it.
+        gallery: keeps the pictures; each check gets one of its own.
+        builds: what became of each package, for checks of a build that may fail.
+        scope: how much of the suite is run.
+
     Attributes:
         results: by check id, in the order in which they ran.
         diagnosis: the first thing that was wrong with the student's program, or OK.
