@@ -33,7 +33,7 @@ def notebooks(
     """
     from autograder.course.execute import run_notebook
     from autograder.course.forms import Form
-    from autograder.grading.batch import map_parallel
+    from autograder.grading.parallel import map_parallel
     from autograder.ros import activate
 
     activate()

@@ -28,7 +28,6 @@ from autograder.exceptions import StudentError
 from autograder.grading.batch import OnResult, Request
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout, read_files
-from autograder.result import Result
 
 TRIES = 2  # answers that are asked for before a submission is given up
 
@@ -37,9 +36,8 @@ Grade = Callable[[bytes], bytes]
 
 @dataclass(frozen=True)
 class _Sent:
-    """A submission that is under way: its place in the class, its digest, and how often it was sent."""
+    """A submission that is under way, its digest, and how often it was sent."""
 
-    place: int
     request: Request
     sha256: str
     parcel: bytes
@@ -53,7 +51,7 @@ def grade_on(
     *,
     say: Callable[[str], None],
     grade: Grade = work.grade,
-) -> tuple[Result, ...]:
+) -> None:
     """Grade submissions of one assignment on a cluster.
 
     After Ctrl-C nothing more is sent, and what is under way is taken in. A second Ctrl-C leaves that, too.
@@ -65,14 +63,11 @@ def grade_on(
         say: is told which workers are refused, and why.
         grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
 
-    Returns:
-        The results, in the order of the requests.
-
     Raises:
         ClusterError: the scheduler was lost, or no worker can grade this. What came by then is stored.
     """
     if not requests:
-        return ()
+        return
     dispatch = _Dispatch(client, requests, on_result, say, grade)
     try:
         with _first_interrupt() as interrupted:
@@ -81,7 +76,6 @@ def grade_on(
         dispatch.forget()
     if interrupted.is_set():
         raise KeyboardInterrupt
-    return tuple(dispatch.results[place] for place in range(len(requests)))
 
 
 @contextlib.contextmanager
@@ -109,7 +103,6 @@ class _Dispatch:
     def __init__(
         self, client: Client, requests: Sequence[Request], on_result: OnResult, say: Callable[[str], None], grade: Grade
     ) -> None:
-        self.results: dict[int, Result] = {}
         self._client, self._on_result, self._grade = client, on_result, grade
         self._resource = resource(requests[0].assignment, requests[0].isolation)
         self._workers = FittingWorkers(client, self._resource, say)
@@ -136,11 +129,11 @@ class _Dispatch:
             self._client.cancel(list(self._under_way), force=True)
 
     def _packed(self, requests: Sequence[Request]) -> Iterator[_Sent]:
-        """Yield what has to be sent; keep the results of the rest."""
-        for place, request in enumerate(requests):
+        """Yield what has to be sent; tell the results of the rest."""
+        for request in requests:
             stored = request.stored()
             if stored is not None:
-                self._keep(place, stored)
+                self._on_result(stored)
                 continue
             try:
                 files = read_files(request.path, request.assignment)
@@ -148,10 +141,10 @@ class _Dispatch:
             except StudentError as error:
                 suite = suites.hidden(request.assignment)
                 result = refused(suite, request.student, request.seed, request.isolation, error.diagnosis)
-                self._keep(place, write(result, request))
+                self._on_result(write(result, request))
                 continue
             parcel = Parcel(request.assignment, request.seed, request.isolation, tuple(files))
-            yield _Sent(place, request, sha256, parcel.pack())
+            yield _Sent(request, sha256, parcel.pack())
 
     def _send(self, sent: _Sent) -> None:
         future = self._client.submit(
@@ -172,17 +165,13 @@ class _Dispatch:
             raise ClusterError("the connection to the scheduler was lost")
         if future.status == "error":
             why = f"The {DEATHS} workers that had this submission died."
-            self._keep(sent.place, give_up(sent.request, why, f"{future.exception()!r}\n"))
+            self._on_result(give_up(sent.request, why, f"{future.exception()!r}\n"))
             return
         try:
-            self._keep(sent.place, accept(future.result(), sent.request, sent.sha256))
+            self._on_result(accept(future.result(), sent.request, sent.sha256))
         except AnswerError as error:
             if sent.tries < TRIES:
                 self._send(replace(sent, tries=sent.tries + 1))
                 return
             why = f"Workers failed on this submission {TRIES} times."
-            self._keep(sent.place, give_up(sent.request, why, f"{error}\n"))
-
-    def _keep(self, place: int, result: Result) -> None:
-        self.results[place] = result
-        self._on_result(result)
+            self._on_result(give_up(sent.request, why, f"{error}\n"))

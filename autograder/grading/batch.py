@@ -5,26 +5,19 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
-
-# Results are checked by it. Two threads that are the first to import it at the same time find it half imported, because
-# its modules import each other.
-import jsonschema.validators  # noqa: F401
 
 from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
+from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, grade_submission
 from autograder.result import Result, Status, from_json, write_json
 from autograder.sandbox import Tier
 
 ARCHIVES = (".zip", ".ipynb")
 
-T = TypeVar("T")
-R = TypeVar("R")
 OnResult = Callable[[Result], None]
 
 
@@ -95,7 +88,7 @@ class Request:
         return own
 
 
-GradeEach = Callable[[Sequence[Request], OnResult], tuple[Result, ...]]  # results in the order of the requests
+GradeEach = Callable[[Sequence[Request], OnResult], None]
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
@@ -176,22 +169,6 @@ def grade_all(
     else:
         map_parallel(lambda request: request.stored() or request.grade(), chosen, jobs=jobs, on_done=book)
     return tuple(results[entry.student] for entry in entries)
-
-
-def map_parallel(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
-    """Call `do` with each item, `jobs` at once; return the results in the order of the items.
-
-    `on_done` gets each result as it comes. The first exception, or Ctrl-C, comes out once what has begun is done, and
-    nothing more is begun.
-    """
-    with ThreadPoolExecutor(jobs) as pool:
-        running = [pool.submit(do, item) for item in items]
-        try:
-            for future in as_completed(running):
-                on_done(future.result())
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-        return tuple(future.result() for future in running)
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:

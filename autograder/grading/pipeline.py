@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -20,6 +18,7 @@ from autograder.checks.suites import Suite
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
+from autograder.grading.machine_lock import MachineLock
 from autograder.result import Build, CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
@@ -33,37 +32,6 @@ FAILED = f"The grader failed on this submission, {TRIES} times."
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
 RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
-
-
-class MachineLock:
-    """A readers-writer lock: many gradings share the machine, or one has it to itself.
-
-    Who wants it exclusively waits until all others are done; whoever comes meanwhile waits as well.
-    """
-
-    def __init__(self) -> None:
-        self._turn = threading.Lock()  # of those who come; one who waits for the machine alone holds it
-        self._changed = threading.Condition()
-        self._sharing = 0
-
-    @contextmanager
-    def shared(self) -> Iterator[None]:
-        """Use the machine while others may use it."""
-        with self._turn, self._changed:
-            self._sharing += 1
-        try:
-            yield
-        finally:
-            with self._changed:
-                self._sharing -= 1
-                self._changed.notify()
-
-    @contextmanager
-    def exclusive(self) -> Iterator[None]:
-        """Use the machine while no other does."""
-        with self._turn, self._changed:
-            self._changed.wait_for(lambda: self._sharing == 0)
-            yield
 
 
 _machine = MachineLock()

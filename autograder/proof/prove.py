@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from autograder.grading.batch import map_parallel
+from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim

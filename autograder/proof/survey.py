@@ -22,8 +22,8 @@ from autograder import layout
 from autograder.building.build import build_workspace
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
-from autograder.grading.batch import map_parallel
 from autograder.grading.job import Scope
+from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.lanes import Lanes
 from autograder.proof.mutants import write_reference

@@ -20,6 +20,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.batch import Request
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
+from autograder.result import Result
 from autograder.sandbox import Tier
 
 ASSIGNMENT = "02_nodes"
@@ -40,7 +41,8 @@ def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[
         requests = [_request(Path(name), number) for number in range(submissions)]
         grade_on(client, requests[:1], lambda _: None, say=print, grade=partial(_answered, [0.0]))  # imports
         began = time.monotonic()
-        results = grade_on(client, requests, lambda _: None, say=print, grade=partial(_answered, pauses))
+        results: list[Result] = []
+        grade_on(client, requests, results.append, say=print, grade=partial(_answered, pauses))
         spent = time.monotonic() - began
     assert len({result.submission_sha256 for result in results}) == submissions
     return spent, sum(result.seconds for result in results)

@@ -28,7 +28,7 @@ from autograder.grading.batch import Request
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
 from autograder.proof.mutants import mutants, write_mutant, write_reference
-from autograder.result import Status
+from autograder.result import Result, Status
 from autograder.sandbox import Tier
 from tests.e2e.cluster_arena import CLIENT, SCHEDULER, WORKERS, Arena, arena
 
@@ -145,7 +145,9 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_rest_is(
     requests: list[Request], tmp_path: Path
 ) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
-        alice, bob, carol = grade_on(client, requests, lambda _: None, say=pytest.fail, grade=answered)
+        results: list[Result] = []
+        grade_on(client, requests, results.append, say=pytest.fail, grade=answered)
+        alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
     assert bob.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
     assert "KilledWorker" in (requests[1].out / "grader.log").read_text()

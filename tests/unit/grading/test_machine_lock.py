@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from autograder.grading.pipeline import MachineLock
+from autograder.grading.machine_lock import MachineLock
 
 SECONDS = 60.0  # for what must happen
 

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from autograder.grading.batch import map_parallel
+from autograder.grading.parallel import map_parallel
 
 MANY = tuple(range(50))
 
@@ -66,7 +66,7 @@ def test_threads_that_check_the_first_results_at_the_same_time_do_not_meet_a_mod
     """Unless jsonschema is imported before, this fails in two of three runs: its modules import each other."""
     program = """
 import importlib, sys, threading
-from autograder.grading.batch import map_parallel
+from autograder.grading.parallel import map_parallel
 
 sys.setswitchinterval(1e-6)
 together = threading.Barrier(4)
