@@ -15,6 +15,7 @@ from autograder.ros.environment import LOGS_TO_STDOUT, WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
 from autograder.sandbox.spec import INTERPRETER
+from autograder.talk import Talk
 from autograder.time_record import TimeRecord
 
 _SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
@@ -30,6 +31,7 @@ class Workspace:
     domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
     # What harnesses find out about time; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
+    talk: Talk = field(default_factory=Talk, compare=False)  # what harnesses ask and hear; copies share it
 
     @property
     def install(self) -> Path:

@@ -21,6 +21,7 @@ from sim.codec import from_json, to_json
 from sim.engine import EngineName
 from sim.exceptions import RecordingError
 from sim.lidar import Scan
+from sim.log import Line, Log
 from sim.pose import Command
 from sim.sensing import observe
 from sim.simulation import start, step
@@ -50,7 +51,8 @@ class Recording:
 
     `times_ns` (K,) int64; `poses` (K, R, 3) x, y, theta in m, m, rad, frame map; `velocities` (K, R, 2) m/s, rad/s;
     `commands` (K, R, 2), what was sent before each state, and nan where nothing was; `odometry` (K, R, 3) and
-    `covariances` (K, R, 9); `collided` (K, R) bool; `clearances` (K, R) metres; `scans`, one log a robot; `events`.
+    `covariances` (K, R, 9); `collided` (K, R) bool; `clearances` (K, R) metres; `scans`, one log a robot; `events`;
+    `said`, what the programs wrote, which is no part of the hash.
     """
 
     simulation: Simulation
@@ -64,6 +66,7 @@ class Recording:
     clearances: NDArray[np.float64]
     scans: tuple[ScanLog, ...]
     events: tuple[Event, ...] = ()
+    said: tuple[Line, ...] = ()
 
     def __len__(self) -> int:
         return len(self.times_ns)
@@ -88,6 +91,7 @@ class Recording:
             "format": FORMAT,
             "simulation": to_json(self.simulation),
             "events": [asdict(event) for event in self.events],
+            "said": self.said,
         }
         text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
         arrays: dict[str, Any] = {"header": text, **self._arrays()}
@@ -119,21 +123,12 @@ _DAMAGE = (
     struct.error,
     tokenize.TokenError,
 )
-_COLUMNS = (
-    "times_ns",
-    "poses",
-    "velocities",
-    "commands",
-    "odometry",
-    "covariances",
-    "collided",
-    "clearances",
-)
+_COLUMNS = ("times_ns", "poses", "velocities", "commands", "odometry", "covariances", "collided", "clearances")
 _SCAN_COLUMNS = ("rows", "stamps_ns", "ranges", "intensities")
 
 
 class Recorder:
-    """Collects a run state by state; `recording()` gives what has been collected so far."""
+    """Collects a run state by state, and in `log` what is said; `recording()` gives what has been collected so far."""
 
     def __init__(self, simulation: Simulation, state: State | None = None) -> None:
         self._simulation = simulation
@@ -142,6 +137,7 @@ class Recorder:
         self._commands: list[list[tuple[float, float]]] = []
         self._scans: list[list[tuple[int, Scan]]] = [[] for _ in self._names]
         self._clearances: list[list[float]] = []
+        self.log = Log()
         self.append(start(simulation) if state is None else state)
 
     def append(self, state: State, commands: Commands = None) -> None:
@@ -178,6 +174,7 @@ class Recorder:
             clearances=np.array(self._clearances, dtype=np.float64),
             scans=tuple(_log(scans) for scans in self._scans),
             events=tuple(event for state in states for event in state.events),
+            said=self.log.lines(),
         )
 
 
@@ -242,7 +239,9 @@ def load_recording(path: str | Path) -> Recording:
             ]
         _check(columns, logs)
         events = tuple(Event(**event) for event in header["events"])
-        return Recording(simulation, **columns, scans=tuple(ScanLog(**log) for log in logs), events=events)
+        said = tuple((float(seconds), str(text)) for seconds, text in header.get("said", ()))
+        scans = tuple(ScanLog(**log) for log in logs)
+        return Recording(simulation, **columns, scans=scans, events=events, said=said)
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file; give the path of a saved recording") from None
     except RecordingError as error:

@@ -10,7 +10,7 @@ from autograder.checks import Outcome
 from autograder.checks.contract import Sentence
 from autograder.diagnosis import Kind
 from autograder.feedback.pictures import Picture, read_picture
-from autograder.feedback.text import clean
+from autograder.plain_text import clean
 from autograder.result import CheckResult, Result, Status
 
 

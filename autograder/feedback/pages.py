@@ -22,7 +22,8 @@ from autograder.checks.contract import contract
 from autograder.feedback.model import page_view
 from autograder.feedback.pictures import Picture
 from autograder.feedback.statistics import class_statistics
-from autograder.feedback.text import NOT_GRADED, clean, number
+from autograder.feedback.text import NOT_GRADED, number
+from autograder.plain_text import clean
 from autograder.result import Result, Status, write_atomically
 
 TEMPLATES = layout.ROOT / "assets" / "templates"

@@ -10,6 +10,7 @@ import os
 import random
 import traceback
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +107,7 @@ class GradingPlugin:
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)
+        self._workspace.talk.take()  # what is said from now on is of this check
         for needed in check.depends if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'not checked: first "{self.results[needed].title}" has to pass')
@@ -118,10 +120,10 @@ class GradingPlugin:
         error = None if call.excinfo is None else call.excinfo.value
         seconds = self._seconds[check.id] = self._seconds.get(check.id, 0.0) + call.duration
         if error is None:
-            if call.when == "call":
-                self.results[check.id] = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
-            return
-        if isinstance(error, CheckFailed):
+            if call.when != "call":
+                return
+            verdict = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
+        elif isinstance(error, CheckFailed):
             verdict = CheckResult.of(check, Outcome.FAILED, error.message, fraction=error.fraction, seconds=seconds)
         elif isinstance(error, StudentError):
             if self.diagnosis is OK:
@@ -132,7 +134,7 @@ class GradingPlugin:
         else:
             self.failures.append("".join(traceback.format_exception(error)))
             verdict = CheckResult.of(check, Outcome.NOT_CHECKED, "the grader failed here", seconds=seconds)
-        self.results[check.id] = verdict
+        self.results[check.id] = replace(verdict, talk=self._workspace.talk.take() if self._scope.pictures else ())
 
 
 def _declared_by(item: pytest.Item) -> Check | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,6 +15,8 @@ from autograder.exceptions import StudentError
 from autograder.harness.auto import AutoHarness
 from autograder.harness.base import Harness
 from autograder.harness.goals import Stamped
+from autograder.plain_text import clean
+from autograder.sandbox import Process
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
@@ -23,13 +26,16 @@ PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; 
 SCAN_NS = 100_000_000
 SCAN_SECONDS = SCAN_NS / 1e9
 
+# The time of ROS's log is the machine's, which is another one at each run.
+_LOGGED = re.compile(r"^(\[\w+\]) \[\d+\.\d+\] (?=\[)")
+
 ScanFilter = Callable[[Scan, float], Scan | None]
 """Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A robot's run, the program's messages on /cmd_vel, and what the program printed and logged."""
+    """A robot's run with what the programs wrote in it, their messages on /cmd_vel, and all that they ever wrote."""
 
     recording: Recording
     commands: tuple[Stamped, ...]
@@ -64,6 +70,9 @@ def drive(
     origin = harness.now_ns
     command: Command | None = None
     end = round(seconds * 1e9)
+    heard: dict[Process, int] = {}
+    if harness.seconds > 0.0:  # what was written before belongs to something else
+        _hear(harness, 0.0, Recorder(simulation, state), heard)
     while state.time_ns < end and not until(state):
         target = min(state.time_ns + harness.tick_ns, end)
         state = _move(simulation, state, command, target, recorder)
@@ -71,9 +80,20 @@ def drive(
             _sense(harness, simulation, state, origin, recorder, alter_scan)
         before = len(harness.messages("/cmd_vel"))
         harness.step(target - (harness.now_ns - origin))
+        _hear(harness, target / 1e9, recorder, heard)
         fresh = harness.messages("/cmd_vel")[before:]
         command = _command(fresh[-1]) if fresh else None
     return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
+
+
+def _hear(harness: Harness | AutoHarness, seconds: float, recorder: Recorder, heard: dict[Process, int]) -> None:
+    """Record the lines that the programs have ended since the last time; `heard` counts their bytes."""
+    for process in harness.processes:
+        text = process.written(heard.get(process, 0))
+        end = text.rfind(b"\n") + 1
+        heard[process] = heard.get(process, 0) + end
+        for line in clean(text[:end].decode("utf-8", errors="replace")).split("\n"):
+            recorder.log.add(seconds, _LOGGED.sub(r"\1 ", line))
 
 
 def _command(stamped: Stamped) -> Command:

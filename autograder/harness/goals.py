@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
@@ -63,7 +64,9 @@ class Actions:
             self._names.add(name)
             feedback, status = f"{name}/_action/feedback", f"{name}/_action/status"
             peers = self._grader_node.publishers_of(feedback)
-            self._grader_node.subscribe(feedback, kind.Impl.FeedbackMessage, self._on_feedback, requested_qos(peers))
+            self._grader_node.subscribe(
+                feedback, kind.Impl.FeedbackMessage, partial(self._on_feedback, feedback), requested_qos(peers)
+            )
             self._grader_node.subscribe(status, kind.Impl.GoalStatusMessage, self._on_status, requested_qos([]))
         services = {
             "send_goal": kind.Impl.SendGoalService,
@@ -102,9 +105,10 @@ class Actions:
         self._grader_node.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, answered)
         return sent
 
-    def _on_feedback(self, message: Any, arrived_ns: int) -> None:
+    def _on_feedback(self, topic: str, message: Any, arrived_ns: int) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
+            self._grader_node.tell("feedback", topic, message.feedback)
             goal.feedback.append(Stamped(self._arrival_seconds(arrived_ns), message.feedback))
 
     def _on_status(self, message: Any, arrived_ns: int) -> None:

@@ -27,6 +27,9 @@ NAME = "grader"
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
 
+OnTalk = Callable[[str, str, Any], None]
+"""Called with what happened, as in `autograder.talk.Row`, the name of the service or topic, and the message."""
+
 
 @dataclass(eq=False)
 class Reader:
@@ -55,9 +58,11 @@ class GraderNode:
         written: the publishers' channels, by topic.
         readers: all that takes messages.
         sent: messages by channel, since the programs were last told.
+        tell: is told of each request, and of what came back.
     """
 
-    def __init__(self, domain: int) -> None:
+    def __init__(self, domain: int, tell: OnTalk = lambda what, name, message: None) -> None:
+        self.tell = tell
         self.context = Context()
         with announcing_often():
             rclpy.init(args=[], context=self.context, domain_id=domain)
@@ -139,8 +144,14 @@ class GraderNode:
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
         """Send a request to a service to which there is a client; `then` is called with the response."""
         client = self.client(kind, name)
+        self.tell("asked", name, request)
         sequence = client.handle.send_request(request)
-        self._waiting[(id(client), sequence)] = then
+
+        def answered(response: Any) -> None:
+            self.tell("answered", name, response)
+            then(response)
+
+        self._waiting[(id(client), sequence)] = answered
         self.sent[channels.request(name, kind)] += 1
 
     def clients(self) -> list[tuple[str, Any]]:

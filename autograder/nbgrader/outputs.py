@@ -17,7 +17,8 @@ from nbformat.v4 import new_output
 
 from autograder.feedback.model import GroupView, PageView
 from autograder.feedback.pages import environment
-from autograder.feedback.text import clean, number
+from autograder.feedback.text import number
+from autograder.plain_text import clean
 
 PICTURES = ("image/png", "image/jpeg")
 

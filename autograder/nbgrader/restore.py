@@ -10,8 +10,8 @@ from nbformat import NotebookNode
 from nbgrader.preprocessors import NbGraderPreprocessor
 
 from autograder.course.forms import Form, in_form
-from autograder.feedback.text import clean
 from autograder.grading import submitted_notebook
+from autograder.plain_text import clean
 
 
 class RestoreCells(NbGraderPreprocessor):

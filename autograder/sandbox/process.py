@@ -99,9 +99,13 @@ class Process:
     @property
     def output(self) -> str:
         """What it has written so far, at most `Limits.output` bytes; bytes that are no UTF-8 are replaced."""
+        return self.written(0).decode("utf-8", errors="replace")
+
+    def written(self, start: int) -> bytes:
+        """Return what it has written so far, from the byte number `start` on."""
         self._read()  # the watcher may not have come to what is in the pipe by now
         with self._lock:
-            return self._output.decode("utf-8", errors="replace")
+            return bytes(self._output[start:])
 
     @property
     def ending(self) -> Ending | None:

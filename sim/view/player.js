@@ -23,6 +23,13 @@ const unpack = async packed => {
 };
 const column = async packed => Float64Array.from(await unpack(packed), row => row[0]);
 
+const unpackSaid = async said => {
+  if (!said) return [];
+  const stream = new Blob([Uint8Array.from(atob(said.texts), letter => letter.charCodeAt(0))]).stream();
+  const texts = await new Response(stream.pipeThrough(new DecompressionStream("deflate"))).json();
+  return Array.from(await column(said.times), (time, place) => [time, texts[place]]);
+};
+
 const unpackRun = async data => {
   const world = data.world;
   const run = {...data, times: await column(data.times), paths: await unpack(data.paths)};
@@ -33,6 +40,7 @@ const unpackRun = async data => {
     commanded: robot.commands ? robot.commands.first : Infinity,
     scans: robot.scans && {...robot.scans, times: await column(robot.scans.times),
       poses: await unpack(robot.scans.poses), ranges: await unpack(robot.scans.ranges)}})));
+  run.said = await unpackSaid(data.said);
   run.margins = await Promise.all(data.margins.map(async margin =>
     ({...margin, times: await column(margin.times), values: await column(margin.values)})));
   return run;
@@ -160,10 +168,11 @@ const start = async root => {
   const said = make("p", {class: "run-said"}, stage);
   const words = make("span", {}, said), hit = make("span", {class: "run-hit"}, said);
   const margins = run.margins.map(margin => makeMargin(margin));
+  const log = run.said.length ? makeLog() : () => {};
   const help = make("details", {}, stage);
   make("summary", {text: "Keys"}, help);
   make("span", {text: "Space plays and pauses. The arrow keys move by 0.1 s, with Shift by 1 s. Home and End go to "
-    + "the ends. B goes to the instant at which a rule broke. The dashed line is the way of the next 2 s, if the "
+    + "the ends. B goes to the instant at which a rule broke. L goes to the next line of the log, with Shift to the one before. The dashed line is the way of the next 2 s, if the "
     + "robot obeys the newest command."}, help);
   let now = begin, playing = false, before = null, still = null, dot = 1;
 
@@ -192,6 +201,33 @@ const start = async root => {
       name.textContent = margin.rule + (place < 0 ? "" : `: margin ${signed(margin.values[place])}`);
     };
   }
+
+  // What the programs wrote; a text is set as text, so nothing in it is markup.
+  function makeLog() {
+    make("p", {class: "run-heading", text: "What the programs wrote"}, stage);
+    const list = make("ol", {class: "run-log", tabindex: "0", "aria-label": "What the programs wrote"}, stage);
+    const lines = run.said.map(([time, text]) => {
+      const line = make("li", {}, list);
+      make("span", {class: "run-when", text: `${time.toFixed(1)} s`}, line);
+      make("bdi", {text}, line);
+      line.addEventListener("click", () => show(time));
+      return line;
+    });
+    const times = run.said.map(([time]) => time);
+    let from = 0, until = 0;
+    return () => {
+      const place = last(times, now), first = place < 0 ? 0 : last(times, times[place] - 0.001) + 1;
+      if (first === from && place + 1 === until) return;
+      lines.slice(from, until).forEach(line => line.removeAttribute("aria-current"));
+      [from, until] = [first, place + 1];
+      lines.slice(from, until).forEach(line => line.setAttribute("aria-current", "time"));
+      if (until) list.scrollTop = lines[place].offsetTop + lines[place].offsetHeight + 5 - list.clientHeight;
+    };
+  }
+  const nextLine = back => {
+    const times = run.said.map(([time]) => time).filter(time => back ? time < now - 1e-3 : time > now + 1e-3);
+    if (times.length) show(back ? times[times.length - 1] : times[0]);
+  };
 
   const styles = getComputedStyle(root);
   const colour = name => styles.getPropertyValue(`--run-${name}`);
@@ -225,6 +261,7 @@ const start = async root => {
     hit.textContent = met.length ? ` \u00b7 ${met[met.length - 1][3]}` : "";
     if (link) link.href = `#${new URLSearchParams({...(root.id && {run: root.id}), t: now.toFixed(2)})}`;
     margins.forEach(update => update());
+    log();
     if (!still) return;
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, canvas.width, canvas.height);
@@ -256,6 +293,7 @@ const start = async root => {
   const keys = {
     " ": () => setPlaying(!playing), Home: () => show(begin), End: () => show(end),
     ArrowLeft: event => show(now - (event.shiftKey ? 1 : 0.1)), ArrowRight: event => show(now + (event.shiftKey ? 1 : 0.1)),
+    l: () => nextLine(false), L: () => nextLine(true),
     b: () => { if (broken.length) show(Math.min(...broken)); },
   };
   root.addEventListener("keydown", event => {

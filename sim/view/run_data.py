@@ -17,11 +17,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sim.log import Line, shorten
 from sim.recording import Recording
 from sim.view.artists import body_outline, is_full_turn, margin_of, movers_at, nose_outline, outlines
 from sim.world import World
 
 MOST_BYTES = 300_000
+MOST_LOG_BYTES = 60_000  # of them for what the programs wrote
 LADDER = ((3000, 360), (3000, 120), (1500, 60), (750, 30), (400, 10))
 """The most rows and the most beams of a scan; the first pair whose text is short enough is taken, or the last one."""
 
@@ -61,6 +63,7 @@ def encode(recording: Recording, alt: str, margins: Sequence[Margin] = ()) -> st
             "alt": alt,
             "world": _world(recording.simulation.world),
             "margins": [_margin(margin, most_rows) for margin in margins],
+            "said": _said(recording.said),
             **_run(recording, most_rows, most_beams),
         }
         # "</" would end the script element; "\\u003c" is the same character to JSON.
@@ -164,6 +167,18 @@ def _scans(recording: Recording, index: int, most_rows: int, most_beams: int) ->
         "full": is_full_turn(lidar),
         "ranges": pack(shown, CENTIMETRE),
     }
+
+
+def _said(lines: tuple[Line, ...]) -> dict[str, Any] | None:
+    """Return what the programs wrote, or as much as there is room for; None if they wrote nothing."""
+    most = len(lines)
+    while shown := shorten(lines, most):
+        texts = json.dumps([text for _, text in shown]).encode()
+        data = base64.b64encode(zlib.compress(texts, 9)).decode("ascii")
+        if len(data) <= MOST_LOG_BYTES:
+            return {"times": pack([seconds for seconds, _ in shown], MILLI), "texts": data}
+        most //= 2
+    return None
 
 
 def _margin(margin: Margin, most_rows: int) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -132,4 +133,30 @@ def test_a_rule_shows_when_it_broke_and_leads_there(
     page.screenshot(path=screenshots / "run-page-rule.png")
     page.get_by_role("button", name="Play").click()
     print(f"a minute: {size} bytes, {page.evaluate(COUNT_FRAMES, 2.0):.0f} frames/s")
+    assert complaints == []
+
+
+def test_what_the_programs_wrote_stands_at_its_instant_as_text(
+    page: Page, complaints: list[str], tmp_path: Path, screenshots: Path
+) -> None:
+    attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
+    flood = tuple((0.5 + number / 1000, f"[INFO] [loop]: {number}") for number in range(1000))
+    recording = replace(drive("lab", 3.0), said=((0.3, attack), *flood, (2.0, "the last one")))
+    page.goto(to_html(recording, tmp_path / "run.html").as_uri())
+    lines, clock = page.locator(".run-log li"), page.locator(".run-player output")
+    expect(lines).to_have_count(1002)
+    expect(lines.first).to_have_text(f"0.3 s{attack}")
+    expect(page.locator(".run-log [aria-current]")).to_have_count(0)
+    lines.first.click()
+    expect(clock).to_have_text("0.30 s")
+    expect(page.locator(".run-log [aria-current]")).to_have_text(f"0.3 s{attack}")
+    page.locator(".run-log").scroll_into_view_if_needed()
+    page.keyboard.press("End")
+    expect(page.locator(".run-log [aria-current]")).to_have_text("2.0 sthe last one")
+    expect(lines.last).to_be_in_viewport()
+    for key, time in (("Shift+L", "2.00"), ("Shift+L", "1.50"), ("Home", "0.00"), ("l", "0.30")):
+        page.keyboard.press(key)
+        expect(clock).to_have_text(f"{time} s")
+    page.screenshot(path=screenshots / "run-page-log.png", full_page=True)
+    assert page.title() == "the lab: 3.0 s"
     assert complaints == []

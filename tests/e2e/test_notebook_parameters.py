@@ -40,6 +40,10 @@ def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
         for distance in (0.5, 1.5)
     }
     assert [stop(report) for report in drives.values()] == pytest.approx([0.5, 1.5], abs=0.02)
+    lines = [report.recording.said[0] for report in drives.values() if isinstance(report, DriveReport)]
+    assert len(lines) == 2
+    assert {text for _, text in lines} == {"[INFO] [configured_node]: DefaultRobot is ready"}
+    assert lines[0][0] == lines[1][0] <= 0.1
     picture = side_by_side(drives)
     assert not isinstance(picture, Notice)
     assert "0.5 m: " in picture.alt

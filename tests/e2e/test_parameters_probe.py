@@ -38,6 +38,7 @@ def asked(scratch: Path) -> Any:
         (folder / name).write_text(NODE.replace("SERVICES", services))
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
     told: list[Any] = []
+    said: list[Any] = []
     for kind in (SteppedHarness, RealTimeHarness):
         with kind(workspace, "pkg", "open") as harness:
             parameters = NodeParameters(harness, "/tuned")
@@ -45,6 +46,7 @@ def asked(scratch: Path) -> Any:
             told.append(
                 [sorted(parameters.names()), parameters.values("speed", "mass"), answer.accepted, answer.reason]
             )
+            said.append([[row.what, row.name, row.text] for row in workspace.talk.take()])
     with SteppedHarness(workspace, "pkg", "closed") as harness:
         parameters = NodeParameters(harness, "/tuned")
         for ask in (lambda: parameters.values("speed"), parameters.names):
@@ -52,14 +54,21 @@ def asked(scratch: Path) -> Any:
                 ask()
             except CheckFailed as failed:
                 told.append(str(failed))
-    return told
+    said.append([[row.what, row.text] for row in workspace.talk.take()])
+    return told, said
 
 
 def test_parameters_are_asked_for_in_either_time_and_silence_is_told() -> None:
-    stepped, real, without, silent = in_cell(asked)
+    (stepped, real, without, silent), (talk, real_talk, silent_talk) = in_cell(asked)
     assert stepped == real
     names, values, accepted, reason = stepped
     assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)
     assert "Wrong parameter type" in reason
     assert without == "The node has no service /tuned/get_parameters: leave its parameter services on."
     assert silent == "The node did not answer a request to /tuned/list_parameters within 5 s."
+    assert talk == real_talk
+    assert talk[:2] == [
+        ["asked", "/tuned/set_parameters_atomically", "parameters: [{name: 'speed', value: 'fast'}]"],
+        ["answered", "/tuned/set_parameters_atomically", f"result: {{successful: False, reason: {stepped[3]!r}}}"],
+    ]
+    assert silent_talk == [["no answer", "within 5 s"], ["asked", "depth: 0"], ["no answer", "within 5 s"]]

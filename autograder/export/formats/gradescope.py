@@ -12,7 +12,8 @@ from typing import Any
 from autograder.checks import Outcome, Visibility
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored, per_student
-from autograder.feedback.text import NOT_GRADED, clean
+from autograder.feedback.text import NOT_GRADED
+from autograder.plain_text import clean
 from autograder.result import CheckResult, Result, Status, write_json
 
 FOLDER = True

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from autograder.checks import Outcome
 from autograder.export.stored import Stored
-from autograder.feedback.text import NOT_GRADED, clean, number, one_line
+from autograder.feedback.text import NOT_GRADED, number, one_line
+from autograder.plain_text import clean
 from autograder.result import CheckResult, Result, Status
 
 FOLDER = False

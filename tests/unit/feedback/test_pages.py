@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -16,7 +17,8 @@ from autograder.checks.contract import contract
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.feedback.text import NOT_GRADED
-from autograder.result import Artifact, CheckResult, Result
+from autograder.result import Artifact, CheckResult, Result, from_json
+from autograder.talk import Row
 
 MakeResult = Callable[..., Result]
 
@@ -240,3 +242,17 @@ def test_a_student_whose_name_is_a_path_gets_no_link(make_result: MakeResult, tm
     (tmp_path / "class").mkdir()
     page = Page(feedback.write_summary([make_result("..")], tmp_path / "class"))
     assert [link for link in page.all("href") if "feedback" in link] == []
+
+
+def test_what_a_node_was_asked_and_what_came_back_stands_in_a_table_as_text(
+    make_result: MakeResult, tmp_path: Path
+) -> None:
+    attack = "message: '</td><script>alert(1)</script>\u202e'"
+    talk = (Row(1.25, "asked", "/<b>/enable", "data: True"), Row(1.3, "answered", "/enable", attack))
+    result = make_result()
+    result = replace(result, checks=(replace(result.checks[0], talk=talk), *result.checks[1:]))
+    page = Page(feedback.write(from_json(result.to_json()), tmp_path))
+    assert "1.25 asked /<b>/enable data: True" in page.text
+    assert "1.30 answered /enable message: '</td><script>alert(1)</script>\ufffd'" in page.text
+    assert not {"script", "b"} & set(page.tags)
+    assert page.tags.count("table") == 1

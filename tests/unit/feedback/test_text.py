@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from autograder.feedback.text import clean, number, one_line
+from autograder.feedback.text import number, one_line
+from autograder.plain_text import clean
 
 
 @settings(deadline=None)

@@ -244,3 +244,27 @@ def test_checks_see_what_became_of_each_package(tmp_path: Path, monkeypatch: pyt
     run((path,), plugin)
     assert _outcomes(plugin) == {"builds": (Outcome.FAILED, 0.0), "reads": (Outcome.PASSED, 1.0)}
     assert plugin.diagnosis == broken
+
+
+def test_a_check_gets_what_was_said_in_it_and_its_set_up_alone(grade: Grade) -> None:
+    text = """
+        @pytest.fixture
+        def prepared(workspace):
+            workspace.talk.add(0.5, "asked", "/prepare", "")
+            yield
+            workspace.talk.add(9.0, "asked", "/tidy_up", "")
+
+        @check(points=1, group="g")
+        def test_first(prepared, workspace):
+            '''The first.'''
+            workspace.talk.add(1.0, "answered", "/go", "success: False")
+            expect(False, "no")
+
+        @check(points=1, group="g")
+        def test_second(workspace):
+            '''The second.'''
+            workspace.talk.add(2.0, "asked", "/stop", "")
+    """
+    said = {name: [row.name for row in result.talk] for name, result in grade(text).results.items()}
+    assert said == {"first": ["/prepare", "/go"], "second": ["/stop"]}
+    assert [result.talk for result in grade(text, Scope(pictures=False)).results.values()] == [(), ()]

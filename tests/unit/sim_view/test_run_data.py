@@ -5,7 +5,9 @@ from __future__ import annotations
 import base64
 import json
 import math
+import random
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +16,9 @@ import numpy.typing as npt
 import pytest
 
 from sim import Command, Recording, RobotSpec, Simulation, World, load_world, run
+from sim.log import LEFT_OUT
 from sim.view import Margin, encode
-from sim.view.run_data import MOST_BYTES, NO_RETURN, pack
+from sim.view.run_data import MOST_BYTES, MOST_LOG_BYTES, NO_RETURN, pack
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -69,3 +72,27 @@ def test_a_name_cannot_end_the_script() -> None:
     text = encode(run(Simulation(World(name=evil)), lambda state, scans: None, 0.5), evil)
     assert "<" not in text
     assert json.loads(text)["world"]["name"] == json.loads(text)["alt"] == evil
+
+
+def said(text: str) -> list[tuple[float, str]]:
+    data = json.loads(text)["said"]
+    texts = json.loads(zlib.decompress(base64.b64decode(data["texts"])))
+    return list(zip(unpack(data["times"])[:, 0].tolist(), texts, strict=True))
+
+
+def test_what_the_programs_wrote_comes_back_with_its_times(recording: Recording) -> None:
+    evil = "</script><script>alert(1)</script>"
+    text = encode(replace(recording, said=((0.1, "near"), (1.5, evil))), "")
+    assert said(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), evil)]
+    assert "<" not in text
+    assert json.loads(encode(recording, ""))["said"] is None
+
+
+def test_a_flood_of_lines_that_nothing_makes_small_is_bounded(recording: Recording) -> None:
+    draw = random.Random(1)
+    flood = tuple((0.001 * n, "".join(chr(draw.randrange(0x4E00, 0x9FFF)) for _ in range(300))) for n in range(2001))
+    text = encode(replace(recording, said=flood), "")
+    assert len(json.loads(text)["said"]["texts"]) <= MOST_LOG_BYTES
+    assert len(text) <= MOST_BYTES
+    assert (said(text)[0][1], said(text)[-1][1]) == (flood[0][1], flood[-1][1])
+    assert [line for _, line in said(text)].count(LEFT_OUT) == 1

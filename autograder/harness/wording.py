@@ -1,0 +1,38 @@
+"""A message in a line of words, of a bounded length whatever is in it."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Any
+
+from rcl_interfaces.msg import ParameterType, ParameterValue
+from rclpy.parameter import parameter_value_to_python
+from unique_identifier_msgs.msg import UUID
+
+MOST_ITEMS = 6  # of a list
+MOST_LETTERS = 200  # of a text
+_KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
+
+
+def words(message: Any) -> str:
+    """Return what a message says; empty texts and lists in it, and the numbers of goals, are left out."""
+    fields = {name: getattr(message, name) for name in message.get_fields_and_field_types()}
+    shown = {name: _value(value) for name, value in fields.items() if not isinstance(value, UUID)}
+    return ", ".join(f"{name}: {text}" for name, text in shown.items() if text not in ("''", "[]", "{}"))
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, ParameterValue):
+        if value.type not in _KNOWN:  # a node may answer anything
+            return f"of the unknown type {value.type}"
+        value = parameter_value_to_python(value)
+    if hasattr(value, "get_fields_and_field_types"):
+        return f"{{{words(value)}}}"
+    if isinstance(value, str | bytes):
+        return repr(value[:MOST_LETTERS]) + "…" * (len(value) > MOST_LETTERS)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if hasattr(value, "__len__"):
+        more = f", … {len(value)} in all" if len(value) > MOST_ITEMS else ""
+        return f"[{', '.join(map(_value, islice(value, MOST_ITEMS)))}{more}]"
+    return str(value)

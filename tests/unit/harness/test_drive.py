@@ -1,0 +1,79 @@
+"""A drive hears what the programs write, line by line, at the step in which they write it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import pytest
+
+from autograder.harness import Harness, drive
+from sim import RobotSpec, Simulation, World, box
+
+WORLD = Simulation(World.from_segments(box(4.0, 3.0)), (RobotSpec(),))
+
+
+class Program:
+    """A process that has written something."""
+
+    def __init__(self, written: bytes) -> None:
+        self.text = written
+
+    def written(self, start: int) -> bytes:
+        return self.text[start:]
+
+
+class Talking:
+    """A harness of one program, which writes one of its pieces at each step."""
+
+    tick_ns = 100_000_000
+
+    def __init__(self, seconds: float, pieces: Sequence[bytes], before: bytes = b"") -> None:
+        self.seconds, self._pieces = seconds, list(pieces)
+        self.processes = (Program(before),)
+        self.output = ""
+
+    @property
+    def now_ns(self) -> int:
+        return round(self.seconds * 1e9)
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Show the program a message, which it does not look at."""
+
+    def messages(self, topic: str) -> list[Any]:
+        return []
+
+    def step(self, dt_ns: int) -> None:
+        self.seconds += dt_ns / 1e9
+        self.processes[0].text += self._pieces.pop(0) if self._pieces else b""
+
+
+def heard(harness: Talking) -> tuple[tuple[float, str], ...]:
+    return drive(cast("Harness", harness), WORLD, 0.5).recording.said
+
+
+def test_each_line_has_the_instant_at_which_it_was_ended() -> None:
+    pieces = [b"hello\nhalf", b"", b" a line\n\xff\n", b"no end"]
+    assert heard(Talking(0.0, pieces, b"started\n")) == (
+        (0.1, "started"),
+        (0.1, "hello"),
+        (0.3, "half a line"),
+        (0.3, "\ufffd"),
+    )
+
+
+def test_what_was_written_before_the_drive_belongs_to_another_check() -> None:
+    assert heard(Talking(7.0, [b"mine\n"], b"of another check\n")) == ((0.1, "mine"),)
+
+
+@pytest.mark.parametrize(
+    ("written", "shown"),
+    [
+        (b"[WARN] [1764044043.123456789] [follower]: near", "[WARN] [follower]: near"),
+        (b"\x1b[33m[WARN] [1764044043.1] [follower]: near\x1b[0m", "[WARN] [follower]: near"),
+        (b"said at [12.5] [x]", "said at [12.5] [x]"),
+        ("‮evil\x00".encode(), "\ufffdevil\ufffd"),
+    ],
+)
+def test_a_line_is_shown_without_the_machines_time_and_without_terminal_codes(written: bytes, shown: str) -> None:
+    assert heard(Talking(0.0, [written + b"\n"])) == ((0.1, shown),)

@@ -1,0 +1,43 @@
+"""What programs wrote is kept with its times; a flood is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from sim import Command, Simulation, World, box, load_recording, run
+from sim.log import LEFT_OUT, MOST_LETTERS, MOST_LINES, Log
+
+RUN = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)
+
+
+def test_lines_are_kept_in_order_and_empty_ones_are_not() -> None:
+    log = Log()
+    for seconds, text in ((0.1, "first"), (0.2, "  "), (0.30004, "second")):
+        log.add(seconds, text)
+    assert log.lines() == ((0.1, "first"), (0.3, "second"))
+
+
+def test_of_a_flood_the_first_and_the_last_lines_are_kept() -> None:
+    log = Log()
+    for number in range(50_000):
+        log.add(number / 1000, f"{number} {'x' * 1000}")
+    lines = log.lines()
+    assert len(lines) == 2 * MOST_LINES + 1
+    assert lines[MOST_LINES][1] == LEFT_OUT
+    assert (lines[MOST_LINES - 1][0], lines[-1][0]) == (0.999, 49.999)
+    assert max(len(text) for _, text in lines) == MOST_LETTERS
+
+
+def test_as_many_lines_as_are_kept_are_no_flood() -> None:
+    log = Log()
+    for number in range(2 * MOST_LINES):
+        log.add(0.0, str(number))
+    assert [text for _, text in log.lines()] == [str(number) for number in range(2 * MOST_LINES)]
+
+
+def test_a_saved_run_keeps_its_lines_and_they_are_no_part_of_its_hash(tmp_path: Path) -> None:
+    talking = replace(RUN, said=((0.2, "<b>näher</b>"),))
+    talking.save(tmp_path / "run.npz")
+    assert load_recording(tmp_path / "run.npz").said == talking.said
+    assert talking.sha256() == RUN.sha256()

@@ -1,0 +1,22 @@
+"""What was asked and answered is kept for one check, in a bounded number of rows."""
+
+from __future__ import annotations
+
+from autograder.talk import MOST_LETTERS, MOST_ROWS, Row, Talk
+
+
+def test_rows_are_taken_once() -> None:
+    talk = Talk()
+    talk.add(0.12345, "asked", "/enable", "data: True")
+    assert talk.take() == (Row(0.123, "asked", "/enable", "data: True"),)
+    assert talk.take() == ()
+
+
+def test_of_too_many_the_first_and_the_last_are_kept_and_a_long_or_foul_text_is_not() -> None:
+    talk = Talk()
+    for number in range(1000):
+        talk.add(number, "feedback", "/drive" * 1000, f"{number} \x1b[2J\u202e" + "x" * 100_000)
+    rows = talk.take()
+    assert [row.seconds for row in rows] == [*range(MOST_ROWS), *range(1000 - MOST_ROWS, 1000)]
+    assert max(len(row.text) for row in rows) == max(len(row.name) for row in rows) == MOST_LETTERS
+    assert rows[0].text.startswith("0 \ufffdx")
