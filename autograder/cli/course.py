@@ -7,14 +7,13 @@ import sys
 import click
 
 from autograder.checks import suites
-from autograder.course import judged_later
 from autograder.course.cells import is_graded
 from autograder.course.contract_rules import broken_contract
 from autograder.course.findings import Finding
 from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
-from autograder.course.tables import PAGE, course_page
+from autograder.course.tables import PAGE, course_page, titles
 from autograder.proof import guide
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
@@ -68,5 +67,5 @@ def tables() -> None:
     page, problems = course_page()
     for finding in problems:
         click.echo(str(finding))
-    for path, text in {**judged_later.texts(), PAGE: page, guide.PAGE: guide.guide()}.items():
+    for path, text in {**titles(), PAGE: page, guide.PAGE: guide.guide()}.items():
         path.write_text(text, encoding="utf-8")

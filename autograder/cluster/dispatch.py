@@ -17,9 +17,8 @@ from dataclasses import dataclass, replace
 from distributed import Client, Future
 
 from autograder.checks import suites
-from autograder.cluster import work
+from autograder.cluster import DEATHS, work
 from autograder.cluster.accept import accept, give_up, write
-from autograder.cluster.dask_hooks import DEATHS
 from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.fitting import TICK, FittingWorkers
 from autograder.cluster.machine import resource

@@ -1,8 +1,14 @@
-"""Writes the instructors' page in Markdown: where the course covers the syllabus, and which checks test it."""
+"""Writes the instructors' page: where the course covers the syllabus, and which checks test it.
+
+It also writes the titles of an assignment's hidden checks, which `check(...)` shows to students when all visible checks
+have passed. A title is a sentence of the contract; it tells no input.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from autograder.checks import suites
 from autograder.course.findings import Finding
@@ -10,7 +16,7 @@ from autograder.course.markdown_table import table
 from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters
-from autograder.layout import CHAPTERS, COURSE
+from autograder.layout import CHAPTERS, COURSE, judged_later
 
 PAGE = CHAPTERS / "README.md"
 
@@ -90,3 +96,14 @@ def _objectives(syllabus: Syllabus, covered: SyllabusCoverage) -> Iterator[tuple
 
 def _where(locations: Sequence[Location]) -> str:
     return "; ".join(f"{location.chapter}: {location.heading}" for location in locations)
+
+
+def titles() -> dict[Path, str]:
+    """Return the text of each assignment's file of titles for students, by its path."""
+    return {judged_later(name): _titles(name) for name in sorted({*suites.checked()} & {*suites.graded()})}
+
+
+def _titles(assignment: str) -> str:
+    shown = {check.title for check in suites.visible(assignment).checks}
+    hidden = [check.title for check in suites.hidden(assignment).checks if check.title not in shown]
+    return json.dumps(hidden, indent=1, ensure_ascii=False) + "\n"

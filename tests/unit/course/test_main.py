@@ -14,8 +14,8 @@ from click.testing import CliRunner, Result
 from autograder import layout
 from autograder.checks import Check, Outcome, Visibility, suites
 from autograder.cli import course as command
-from autograder.course import judged_later
 from autograder.course.exceptions import CourseError
+from autograder.course.tables import titles
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result import CheckResult
@@ -78,7 +78,7 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
 
 
 def test_the_lists_of_what_is_judged_later_are_up_to_date() -> None:
-    stale = [path for path, text in judged_later.texts().items() if path.read_text(encoding="utf-8") != text]
+    stale = [path for path, text in titles().items() if path.read_text(encoding="utf-8") != text]
     assert stale == [], "run `autograder course tables`"
     assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
 
