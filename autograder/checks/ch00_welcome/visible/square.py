@@ -14,7 +14,7 @@ check = group("square")
 MODULE = "first_robot.square"
 SIDE, TURN = 4.0, 2.0  # s
 SPEED, RATE = 0.3, math.radians(90.0) / TURN
-TOLERANCE = 0.01
+TOLERANCE = 0.01  # m/s and rad/s: a speed may be rounded to two digits
 DOC = "https://docs.python.org/3/library/stdtypes.html#numeric-types-int-float-complex"
 
 

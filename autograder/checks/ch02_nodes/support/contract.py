@@ -11,7 +11,7 @@ TURN = 0.5  # rad/s, to the left
 SAFETY_DISTANCE = 1.0  # m
 HALF_SECTOR = 30.0  # degrees
 STALE_AFTER = 0.5  # s
-TOLERANCE = 0.02  # m/s and rad/s
+TOLERANCE = 0.02  # m/s and rad/s: an error of a tenth of a speed is seen
 
 RULE_FORWARD = "The way is clear: linear.x = 0.3, angular.z = 0."
 RULE_TURN = "Something is within 1 m in front: linear.x = 0, angular.z = 0.5."

@@ -17,7 +17,7 @@ from autograder.probes.pace import is_paced, mean_period
 
 check = group("action")
 MOVES = ("drive_moves",)
-SLACK = 0.02  # m
+SLACK = 0.02  # m; and m/s, a tenth of the default speed
 PUSHED = 0.2  # m, made good within a second
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
 LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real

@@ -21,8 +21,8 @@ from autograder.probes.parameters import Answer, NodeParameters, Value, as_decla
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
-TOLERANCE = 0.01  # m/s
-RATE_TOLERANCE = 0.08  # of the rate
+TOLERANCE = 0.01  # m/s: a speed may be rounded to centimetres
+RATE_TOLERANCE = 0.08  # of the rate: in real time commands are late, and an error of a tenth is seen
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 

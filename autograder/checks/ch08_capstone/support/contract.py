@@ -20,7 +20,7 @@ OK, DEGRADED, FAILED = range(3)
 LEVELS = ("OK", "DEGRADED", "FAILED")
 SAID_WITHIN = 2.0  # s: a report every 0.5 s, of a silence of 1.0 s
 
-TOLERANCE = 0.005  # m; and m/s, rad/s
+TOLERANCE = 0.005  # m; and m/s, rad/s: a tenth of the least forward_speed, and more than a 32-bit float loses
 
 
 @dataclass(frozen=True)
