@@ -78,6 +78,8 @@ class Course:
 
 
 COURSE = Course.read(Path(os.environ.get(VARIABLE) or ROOT).resolve())
+if VARIABLE in os.environ:
+    os.environ[VARIABLE] = str(COURSE.root)  # what is started from here has another working folder
 CHAPTERS = COURSE.root / COURSE.chapters
 SOLUTIONS = COURSE.root / COURSE.solutions
 CHECKS = COURSE.root / COURSE.checks
@@ -86,8 +88,9 @@ BUILD = COURSE.root / ".build"
 
 
 def check_folders() -> tuple[Path, ...]:
-    """Return the folders of all chapters' checks, which every sandbox hides."""
-    return tuple(sorted(CHECKS.glob("ch*")))
+    """Return the folders with checks, which every sandbox hides: the course's, and those around the autograder."""
+    around = ROOT / "autograder" / "checks"
+    return tuple(sorted({*around.glob("ch*")} | ({CHECKS} - {around})))
 
 
 def chapter(assignment: str) -> Path:

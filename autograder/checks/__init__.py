@@ -15,6 +15,7 @@ Visible checks and support import nothing hidden, and no conftest imports anothe
 `hidden` folder. The fixtures that every chapter has are those of `autograder.grading.plugin`.
 """
 
+from autograder import layout
 from autograder.checks.declaration import (
     Check,
     CheckFailed,
@@ -28,6 +29,10 @@ from autograder.checks.declaration import (
     group,
     hint,
 )
+
+# The chapters of a course that lies elsewhere are imported under the same names, as autograder.checks.chID.
+if str(layout.CHECKS) not in __path__:
+    __path__.insert(0, str(layout.CHECKS))
 
 __all__ = [
     "Check",

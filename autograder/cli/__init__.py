@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from pathlib import Path
 
@@ -28,8 +29,21 @@ class Verbs(click.Group):
         return command
 
 
+def _choose(context: click.Context, option: click.Parameter, course: Path | None) -> None:
+    """Name the course to all that is imported and started from here on; `autograder.layout` reads it."""
+    if course is not None:
+        os.environ["AUTOGRADER_COURSE"] = str(course.resolve())
+
+
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__)
+@click.option(
+    "--course",
+    type=click.Path(path_type=Path, file_okay=False),
+    expose_value=False,
+    callback=_choose,
+    help="Work on the course in this folder, which holds a course.yaml. AUTOGRADER_COURSE names one for all commands.",
+)
 def group() -> None:
     """Checks and grades packages for ROS 2 Jazzy that students write in Python."""
 

@@ -12,8 +12,9 @@ from autograder.sandbox.spec import Mount, Sandbox
 # Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
 _ETC = ("alternatives", "fonts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime", "magic")
 _SYSTEM = ("bin", "lib", "lib32", "lib64", "sbin")
-# Covered wherever a mount would show them: an installed course lies inside the Python that every sandbox sees.
-_PRIVATE = (*layout.check_folders(), layout.SOLUTIONS)
+# Covered wherever a mount would show them: an installed course lies inside the Python that every sandbox sees. The
+# sources of notebooks hold the answers.
+_PRIVATE = (*layout.check_folders(), layout.SOLUTIONS, layout.CHAPTERS)
 
 
 def resources(limits: Limits) -> dict[str, tuple[int, int]]:

@@ -1,0 +1,155 @@
+"""A course that lies elsewhere is kept, proved, graded and released by the same commands, and hides what it has to."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.sandbox import Tier
+
+SECOND = layout.ROOT / "tests" / "second_course"
+RIGHT = {"01_greeting": "greeting", "02_beat": "beat"}  # each assignment with the package that answers it
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+def run(*command: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, **variables}
+    return subprocess.run([sys.executable, "-m", *command], cwd=cwd, env=environment, text=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The second course in a folder of its own, brought up to date."""
+    course = tmp_path_factory.mktemp("second") / "course"
+    shutil.copytree(SECOND, course, ignore=layout.NOT_COPIED)
+    for verb in ("sync", "tables"):
+        done = run("autograder", "--course", "course", "course", verb, cwd=course.parent)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return course
+
+
+@pytest.fixture
+def autograder(course: Path, tmp_path: Path) -> Run:
+    """Run a verb on the second course, from a folder that has nothing to do with it."""
+    return lambda *words, **variables: run(
+        "autograder", *words, cwd=tmp_path, AUTOGRADER_COURSE=str(course), **variables
+    )
+
+
+def test_its_notebooks_keep_the_rules_and_its_tables_name_its_checks(course: Path, autograder: Run) -> None:
+    checked = autograder("course", "check")
+    assert (checked.returncode, checked.stdout) == (0, "")
+    assert "Write a node that beats | 02_beat" in (course / "chapters" / "README.md").read_text()
+    assert "counts from 0" in (course / "checks.md").read_text()
+    assert json.loads((course / "checks/ch02_beat/visible/judged_later.json").read_text()) == ["It counts its beats."]
+
+
+def test_its_proof_holds(autograder: Run) -> None:
+    done = autograder("verify", "--quick", "-j", "2", "--json", "proof.json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    for name in RIGHT:
+        assert f"{name} reference" in done.stdout
+    assert "01_greeting variant added" in done.stdout
+    assert "02_beat mutant" in done.stdout
+
+
+def test_a_class_is_graded_and_reads_its_own_contract(course: Path, autograder: Run, tmp_path: Path) -> None:
+    for student in ("ada", "ben"):
+        package = tmp_path / "class" / student / "src" / "greeting"
+        shutil.copytree(course / "solutions" / "greeting", package)
+    greet = package / "greeting" / "greet.py"
+    greet.write_text(greet.read_text().replace(".strip()", ""))
+    done = autograder("grade", "class", "--assignment", "01_greeting", "--out", "graded", "-j", "2")
+    assert done.returncode == 0, done.stderr
+    results = {name: json.loads((tmp_path / "graded" / name / "result.json").read_text()) for name in ("ada", "ben")}
+    assert [(result["score"], result["max_score"]) for result in results.values()] == [(3.0, 3.0), (2.0, 3.0)]
+    assert "without spaces around it" in (tmp_path / "graded" / "ben" / "feedback.html").read_text()
+
+
+def test_a_wrong_place_is_said(tmp_path: Path) -> None:
+    done = run("autograder", "--course", "nowhere", "course", "check", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (
+        2,
+        f"autograder: {tmp_path / 'nowhere'} is no course: it has no course.yaml\n",
+    )
+
+
+def test_it_has_its_own_chapters_alone(autograder: Run) -> None:
+    done = autograder("grade", ".", "--assignment", "02_nodes", "--out", "graded")
+    assert done.returncode == 2
+    assert "there are for: 01_greeting, 02_beat" in done.stderr
+
+
+def test_its_release_holds_no_answer_and_no_hidden_check_of_any_course(
+    course: Path, autograder: Run, tmp_path: Path
+) -> None:
+    assert autograder("release", "--out", "bundle").returncode == 0
+    bundle = tmp_path / "bundle"
+    kept = {path.name for path in (bundle / "checks").glob("ch*/*")}
+    assert kept == {"__init__.py", "support", "visible"}
+    assert list((bundle / "autograder" / "checks").glob("ch*")) == []
+    texts = "\n".join(path.read_text(errors="replace") for path in bundle.rglob("*") if path.is_file())
+    for secret in ("Elektro", "{name.strip()}", "UInt32(data=self.count)"):
+        assert secret not in texts
+        assert any(secret in path.read_text() for path in course.rglob("*.py"))
+    assert "# A second course" in (bundle / "README.md").read_text()
+
+    here = bundle / "chapters" / "02_beat"
+    checked = run("autograder", "check", "02_beat", cwd=here, PYTHONPATH=str(bundle))
+    assert "Its first beat is 1." in checked.stdout, checked.stderr
+    assert checked.returncode == 1
+
+
+def test_a_sandbox_that_would_show_it_hides_its_checks_its_reference_and_its_notebooks(course: Path) -> None:
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from autograder.sandbox import Mount, Sandbox\n"
+        "from autograder.sandbox.launcher import launch\n"
+        "course = Path(sys.argv[1])\n"
+        "shown = Sandbox(course.parent, mounts=(Mount(course.parent),))\n"
+        "with launch(['find', str(course), '-type', 'f'], shown) as found:\n"
+        "    found.wait(None)\n"
+        "    print(found.output)\n"
+    )
+    variables = {"AUTOGRADER_COURSE": str(course), "AUTOGRADER_TIER": Tier.BUBBLEWRAP.value}
+    asked = [sys.executable, "-c", code, str(course)]
+    done = subprocess.run(asked, env={**os.environ, **variables}, text=True, capture_output=True, check=True)
+    seen = {Path(line).relative_to(course).parts[0] for line in done.stdout.splitlines() if line}
+    assert {"course.yaml", "syllabus.yaml"} <= seen
+    assert seen.isdisjoint({"checks", "solutions", "chapters"})
+
+
+def test_its_solved_notebook_runs_and_is_graded_as_a_submission(course: Path, autograder: Run, tmp_path: Path) -> None:
+    done = autograder("notebooks", "--solved", "01_greeting")
+    assert done.returncode == 0, done.stdout + done.stderr
+    hand_in = tmp_path / "ada" / "01_greeting.ipynb"
+    hand_in.parent.mkdir()
+    shutil.copy(course / ".build" / "notebooks" / "01_greeting-solved.ipynb", hand_in)
+    graded = autograder("grade", "ada", "--assignment", "01_greeting", "--out", "graded")
+    assert graded.returncode == 0, graded.stdout + graded.stderr
+
+
+def test_nbgrader_books_its_marks(course: Path) -> None:
+    def nbgrader(verb: str) -> None:
+        done = run("nbgrader", verb, "01_greeting", cwd=course, AUTOGRADER_COURSE=str(course))
+        assert done.returncode == 0, done.stderr
+
+    nbgrader("generate_assignment")
+    submitted = course / "submitted" / "ada" / "01_greeting"
+    shutil.copytree(course / "release" / "01_greeting", submitted)
+    shutil.copytree(course / "solutions" / "greeting", submitted / "ws" / "src" / "greeting", dirs_exist_ok=True)
+    nbgrader("autograde")
+    nbgrader("generate_feedback")
+    exported = run("nbgrader", "export", "--to", "marks.csv", cwd=course, AUTOGRADER_COURSE=str(course))
+    assert exported.returncode == 0, exported.stderr
+    header, row = (line.split(",") for line in (course / "marks.csv").read_text().splitlines())
+    assert (row[header.index("student_id")], row[header.index("score")]) == ("ada", "3.0")

@@ -1,0 +1,4 @@
+"""The hidden checks of 01_greeting."""
+
+PACKAGES = ("greeting",)
+MODULES = ("greet",)

@@ -1,0 +1,26 @@
+"""Greetings of names that are drawn."""
+
+import random
+
+from autograder.checks import group, hint
+from autograder.checks.ch01_greeting.support.asking import expect_greeting
+from autograder.harness import Workspace
+
+check = group("greet")
+NAMES = ("Karel", "Grace", "Unimate", "Elektro")
+
+
+@check(points=2, holds="greets")
+@hint("An f-string puts a name into a text.")
+def test_greets(workspace: Workspace, draw: random.Random) -> None:
+    """It greets each robot by its name."""
+    name = draw.choice(NAMES)
+    expect_greeting(workspace, name, f"Hello, {name}!")
+
+
+@check(points=1, holds="strips", depends=("greets",))
+@hint("str.strip() takes the spaces away.")
+def test_strips(workspace: Workspace, draw: random.Random) -> None:
+    """It takes the spaces around a name away."""
+    name = draw.choice(NAMES)
+    expect_greeting(workspace, f"  {name} ", f"Hello, {name}!")

@@ -1,0 +1,4 @@
+"""The visible checks of 01_greeting."""
+
+PACKAGES = ("greeting",)
+MODULES = ("greet",)

@@ -1,0 +1,14 @@
+"""One greeting."""
+
+from autograder.checks import group, hint
+from autograder.checks.ch01_greeting.support.asking import expect_greeting
+from autograder.harness import Workspace
+
+check = group("greet")
+
+
+@check(points=1, holds="greets")
+@hint("An f-string puts a name into a text.")
+def test_greets_one(workspace: Workspace) -> None:
+    """It greets a robot."""
+    expect_greeting(workspace, "Ada", "Hello, Ada!")

@@ -1,0 +1,1 @@
+"""The checks of 02_beat."""

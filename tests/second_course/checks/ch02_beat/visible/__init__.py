@@ -1,0 +1,4 @@
+"""The visible checks of 02_beat."""
+
+PACKAGES = ("beat",)
+MODULES = ("beat",)
