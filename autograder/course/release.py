@@ -32,6 +32,7 @@ _VERBS = (
     "export",
     "grade",
     "gradescope",
+    "new",
     "notebooks",
     "release",
     "replay",

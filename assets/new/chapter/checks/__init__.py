@@ -1,0 +1,1 @@
+"""The checks of NEW_CHAPTER."""

@@ -1,0 +1,41 @@
+"""What the node says about scans that are drawn for each grading."""
+
+import math
+import random
+
+from autograder.checks import expect, group, hint
+from autograder.checks.chNEW_CHAPTER.support.contract import RANGE_MAX, RANGE_MIN
+from autograder.checks.chNEW_CHAPTER.support.robot import Robot, expect_nearest
+
+check = group("readings")  # the points of this group count for the cell grade('NEW_CHAPTER', 'readings')
+NO_DISTANCE = (math.nan, math.inf, 0.0, 0.05, 3.9)  # failed, nothing there, and three outside of the lidar's range
+
+
+@check(points=2, holds="nearest")
+@hint("on_scan gets each scan. What it publishes is a Float32, whose number is called data.")
+def test_nearest(robot: Robot, draw: random.Random) -> None:
+    """Of each scan, it publishes the smallest reading."""
+    readings = [draw.uniform(1.0, 3.0) for _ in range(36)]
+    readings[draw.randrange(1, 36)] = nearest = draw.uniform(0.2, 0.9)
+    expect_nearest(robot, readings, nearest)
+
+
+@check(points=2, holds="counts", depends=("nearest",))
+@hint("A comparison with nan is always false.")
+@hint("A reading counts if range_min <= reading <= range_max.")
+def test_counts(robot: Robot, draw: random.Random) -> None:
+    """A reading that is no distance within the lidar's range counts for nothing."""
+    nearest = draw.uniform(0.2, 0.9)
+    readings = [*NO_DISTANCE, nearest, draw.uniform(1.0, 3.0)]
+    draw.shuffle(readings)
+    expect_nearest(robot, readings, nearest)
+    for limit in (RANGE_MIN, RANGE_MAX):
+        expect_nearest(robot, [math.nan, limit], limit)
+
+
+@check(points=1, holds="silent", depends=("nearest",))
+@hint("min() of an empty list is an error, unless it has a default.")
+def test_silent(robot: Robot, draw: random.Random) -> None:
+    """It publishes nothing if no reading counts."""
+    answers = robot.answers(draw.sample(NO_DISTANCE, len(NO_DISTANCE)))
+    expect(not answers, f"No reading counted, and the node published {answers}.")

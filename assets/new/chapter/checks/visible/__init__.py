@@ -1,0 +1,4 @@
+"""The visible checks of NEW_CHAPTER."""
+
+PACKAGES = ("NEW_PACKAGE",)
+MODULES = ("nearest",)

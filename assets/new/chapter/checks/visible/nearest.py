@@ -1,0 +1,13 @@
+"""The check that students run themselves. No hidden check has the same scan."""
+
+from autograder.checks import group, hint
+from autograder.checks.chNEW_CHAPTER.support.robot import Robot, expect_nearest
+
+check = group("readings")
+
+
+@check(points=1, holds="nearest")
+@hint("on_scan gets each scan. What it publishes is a Float32, whose number is called data.")
+def test_one_scan(robot: Robot) -> None:
+    """It publishes the nearest reading of one scan."""
+    expect_nearest(robot, [2.0, 0.7, 1.5, 3.0], 0.7)

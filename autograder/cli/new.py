@@ -1,0 +1,37 @@
+"""`autograder new`: a chapter or a course to begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.group()
+def new() -> None:
+    """Write a chapter or a course to begin with."""
+
+
+@new.command()
+@click.argument("assignment", metavar="ID")
+def chapter(assignment: str) -> None:
+    """Write the chapter ID, such as 10_mapping: a small one that works, and that passes the proof.
+
+    It has a notebook with a contract, a reference, visible and hidden checks, mutants and a variant.
+    """
+    from autograder.course.new import write_chapter
+
+    for folder in write_chapter(assignment):
+        click.echo(folder)
+    click.echo(f"\nProve it:        autograder verify --assignment {assignment}")
+    click.echo(f"After a change:  autograder course sync {assignment}, and autograder course tables")
+
+
+@new.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+def course(folder: Path) -> None:
+    """Write a course without chapters to FOLDER."""
+    from autograder.course.new import write_course
+
+    write_course(folder.resolve())
+    click.echo(f"{folder}\n\nIts first chapter: autograder --course {folder} new chapter 01_first")

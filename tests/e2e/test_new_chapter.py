@@ -1,0 +1,105 @@
+"""A new chapter works as it is, and what the tutorial says about it is what happens."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+
+PAGE = layout.ROOT / "docs" / "first_check.md"
+BLOCKS = re.compile(r"^```(sh|text)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def shell(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a script as the tutorial's reader does, with the commands of this environment on the path."""
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    return subprocess.run(["bash", "-euc", script], cwd=folder, env=environment, text=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new course with a new chapter."""
+    folder = tmp_path_factory.mktemp("new")
+    done = shell("autograder new course mine\nautograder --course mine new chapter 10_mapping", folder)
+    assert done.returncode == 0, done.stderr
+    return folder / "mine"
+
+
+def on(course: Path, words: str) -> subprocess.CompletedProcess[str]:
+    return shell(f"autograder --course {course} {words}", course.parent)
+
+
+def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
+    checked = on(course, "course check")
+    assert (checked.returncode, checked.stdout) == (0, "")
+    tables = on(course, "course tables")
+    assert (tables.returncode, tables.stdout) == (0, "")
+    page = (course / "chapters" / "README.md").read_text()
+    assert "| Mapping | 10_mapping | Exercise | `nearest`, `counts`, `silent` |" in page
+
+
+def test_its_author_finds_no_word_of_the_template(course: Path) -> None:
+    texts = {path: path.read_text() for path in course.rglob("*") if path.is_file() and ".build" not in path.parts}
+    assert len(texts) > 25
+    assert [path for path, text in texts.items() if "NEW_" in f"{path}{text}" or "TODO" in text] == []
+
+
+def test_a_new_chapter_passes_the_proof_at_once(course: Path) -> None:
+    done = on(course, "verify --quick -j 2")
+    assert done.returncode == 0, done.stdout + done.stderr
+    for name in ("reference", "release", "variant loop", "mutant farthest"):
+        assert re.search(f"^10_mapping {name} .* as claimed$", done.stdout, re.MULTILINE), done.stdout
+
+
+@pytest.mark.nightly
+def test_every_mutant_of_a_new_chapter_is_killed(course: Path) -> None:
+    done = on(course, "verify -j 2")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "0 without a reason" in done.stdout
+
+
+def test_its_notebook_runs_as_its_author_and_as_a_student_have_it(course: Path) -> None:
+    done = on(course, "notebooks --source --released -j 2")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("chapter mapping", "'mapping' is no name for a chapter: take two digits and a name, such as 10_mapping"),
+        ("chapter 11_import", "'11_import' is no name for a chapter"),
+        ("chapter 11_mapping", "solutions/mapping exists already: take another name"),
+        ("course mine", "mine exists already: take another name"),
+    ],
+)
+def test_a_name_that_cannot_be_taken_is_refused_and_nothing_is_written(course: Path, words: str, said: str) -> None:
+    before = {*course.rglob("*")}
+    done = on(course, f"new {words}")
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert {*course.rglob("*")} == before
+
+
+def test_every_command_of_the_tutorial_does_what_the_page_says(tmp_path: Path) -> None:
+    blocks = BLOCKS.findall(PAGE.read_text(encoding="utf-8"))
+    script = "".join(f"{text}\necho =====\n" for kind, text in blocks if kind == "sh")
+    done = shell(script, tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    outputs = iter(done.stdout.split("=====\n"))
+    shown, compared = "", 0
+    for kind, text in blocks:
+        if kind == "sh":
+            shown = " ".join(next(outputs).split())
+            continue
+        for line in text.splitlines():
+            assert line in shown, f"the page says {line!r}, and the command said {shown}"
+            compared += 1
+    assert compared > 6
+    assert "The node is called nearest." in (tmp_path / "graded" / "ada" / "feedback.html").read_text()
+    assert not [*(tmp_path / "bundle").rglob("hidden")]
