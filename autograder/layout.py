@@ -14,7 +14,8 @@ A course is a folder with a `course.yaml`. Its lines, of which only the first tw
     demo: ID                  the assignment that `autograder demo` shows; the first one by default
 
 A process works on one course: the one around the autograder, or the one that the environment variable
-AUTOGRADER_COURSE names, which `autograder --course FOLDER` sets.
+AUTOGRADER_COURSE names, which `autograder --course FOLDER` sets. An autograder that was installed as a wheel has none
+around it, and takes the one around the working folder.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class Course:
             data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
             found = cls(root, **{**data, "released": tuple(data.get("released", ()))})
         except OSError:
-            raise UsageError(f"{root} is no course: it has no {FILE}") from None
+            raise UsageError(f"{root} is no course: it has no {FILE}; --course names another folder") from None
         except (yaml.YAMLError, AttributeError, TypeError) as error:
             lines = ", ".join(field.name for field in fields(cls)[1:])
             raise UsageError(f"{path}: {error}; the lines of this file are {lines}") from None
@@ -77,9 +78,15 @@ class Course:
         return (FILE, *named, *self.released)
 
 
-COURSE = Course.read(Path(os.environ.get(VARIABLE) or ROOT).resolve())
-if VARIABLE in os.environ:
-    os.environ[VARIABLE] = str(COURSE.root)  # what is started from here has another working folder
+def _chosen() -> Path:
+    """Return the folder of the course; around the working folder, where the autograder alone was installed."""
+    around = (folder for folder in (ROOT, Path.cwd(), *Path.cwd().parents) if (folder / FILE).is_file())
+    return Path(os.environ.get(VARIABLE) or next(around, ROOT)).resolve()
+
+
+COURSE = Course.read(_chosen())
+if COURSE.root != ROOT:
+    os.environ[VARIABLE] = str(COURSE.root)  # what is started from here may have another working folder
 CHAPTERS = COURSE.root / COURSE.chapters
 SOLUTIONS = COURSE.root / COURSE.solutions
 CHECKS = COURSE.root / COURSE.checks

@@ -78,7 +78,7 @@ def test_a_wrong_place_is_said(tmp_path: Path) -> None:
     done = run("autograder", "--course", "nowhere", "course", "check", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (
         2,
-        f"autograder: {tmp_path / 'nowhere'} is no course: it has no course.yaml\n",
+        f"autograder: {tmp_path / 'nowhere'} is no course: it has no course.yaml; --course names another folder\n",
     )
 
 

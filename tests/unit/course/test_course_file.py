@@ -53,6 +53,21 @@ def test_a_folder_without_the_file_is_no_course(tmp_path: Path) -> None:
         Course.read(tmp_path)
 
 
+def test_an_autograder_that_was_installed_alone_takes_the_course_around_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    course(tmp_path, LINES)
+    inside = tmp_path / "chapters" / "01_first"
+    inside.mkdir(parents=True)
+    monkeypatch.chdir(inside)
+    monkeypatch.delenv(layout.VARIABLE, raising=False)
+    assert layout._chosen() == layout.ROOT  # the one around the autograder comes first
+    monkeypatch.setattr(layout, "ROOT", tmp_path / "site-packages")
+    assert layout._chosen() == tmp_path
+    monkeypatch.setenv(layout.VARIABLE, str(inside))
+    assert layout._chosen() == inside
+
+
 def test_the_course_has_what_its_file_names() -> None:
     assert [part for part in layout.COURSE.parts if not (layout.COURSE.root / part).exists()] == []
     assert layout.COURSE.demo in layout.assignments()

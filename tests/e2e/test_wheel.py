@@ -1,0 +1,41 @@
+"""The students' half is a wheel: where pip has installed it, `autograder check` runs in a chapter's folder."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+
+CHAPTER, PACKAGE = "02_nodes", "my_robot_package"
+
+
+def run(*command: str | Path, cwd: Path) -> str:
+    """Run a command that must succeed, without this environment's own variables for Python, and return its output."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "AUTOGRADER"))}
+    done = subprocess.run(list(map(str, command)), cwd=cwd, env=environment, text=True, capture_output=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(1200)
+def test_a_student_checks_a_chapter_by_the_installed_wheel(tmp_path: Path) -> None:
+    bundle, fresh = tmp_path / "bundle", tmp_path / "fresh"
+    run(sys.executable, "-m", "autograder", "release", CHAPTER, "--out", bundle, cwd=layout.ROOT)
+    run(sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", "dist", bundle, cwd=tmp_path)
+    (wheel,) = (tmp_path / "dist").glob("*.whl")
+    run(sys.executable, "-m", "venv", fresh, cwd=tmp_path)
+    run(fresh / "bin" / "pip", "install", wheel, cwd=tmp_path)
+    for code in ("autograder", "sim"):
+        for part in (bundle / code).iterdir():  # what is imported is the wheel's
+            if part.name != "checks":
+                shutil.rmtree(part) if part.is_dir() else part.unlink()
+    chapter = bundle / "chapters" / CHAPTER
+    shutil.copytree(layout.SOLUTIONS / PACKAGE, chapter / "ws" / "src" / PACKAGE, dirs_exist_ok=True)
+    assert "visible checks passed" in run(fresh / "bin" / "autograder", "check", CHAPTER, cwd=chapter)
