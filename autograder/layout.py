@@ -69,7 +69,16 @@ class Course:
         for part in found.parts:
             if not isinstance(part, str) or not (root / part).resolve().is_relative_to(root):
                 raise UsageError(f"{path}: {part!r} is no path in the course's folder")
+        for part in filter(found.shows_answers, (found.worlds, *found.released)):
+            raise UsageError(f"{path}: {part!r} goes to students, and would show them answers or hidden checks")
         return found
+
+    def shows_answers(self, part: str) -> bool:
+        """Return whether a path holds or lies in what students do not get. Files beside the chapters are no answers."""
+        shown, chapters = (self.root / part).resolve(), (self.root / self.chapters).resolve()
+        secrets = (chapters, *((self.root / name).resolve() for name in (self.solutions, self.checks, self.guide)))
+        beside = shown.parent == chapters and shown.suffix != ""
+        return not beside and any(shown.is_relative_to(s) or s.is_relative_to(shown) for s in secrets)
 
     @property
     def parts(self) -> tuple[str, ...]:
