@@ -7,7 +7,7 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -131,12 +131,12 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """A copy of the generated course, with the grader replaced by what the test sets as `grade`."""
     made = course_in(Path(shutil.copytree(generated, tmp_path / "course")))
 
-    def grade(*args: Any, out: Path, **options: Any) -> Result:
-        graded = made.grade(*args, out=out, **options)
+    def grade(*args: Any, out: Path, student: str, **options: Any) -> Result:
+        graded = made.grade(*args, out=out, student=student, **options)
         out.mkdir(parents=True, exist_ok=True)
         if graded.notebook is not None:
             nbformat.write(graded.notebook, out / NOTEBOOK)
-        return graded.result
+        return replace(graded.result, student=student)
 
     monkeypatch.setattr(autograder.grading.batch, "grade_submission", grade)
     return made
