@@ -37,9 +37,9 @@ IN_ORDER = ("change",)
 # that will not find what was named.
 LOOKING = ("node", "topic", "service", "action", "param")
 WITHOUT_SPIN_TIME = ("topic pub", "service call", "action send_goal")
-# The real ones of these always ask ros2cli's daemon.
+# The real ones of these ask ros2cli's daemon.
 WITHOUT_CHOICE = ("topic hz", "topic bw")  # of asking it or not
-BY_DAEMON = ("service type", "service find", "action list", "action info", "action type")
+BY_DAEMON = ("service type", "service find", "action list", "action info", "action type", "param")  # it knows already
 LISTING, NAMED = 5, 60
 ASKED = ("command", "stdin", "files", "until", "lines", "sorted")  # the fields of a record that say what to do
 # What differs from run to run.
@@ -166,8 +166,10 @@ def _spin_time(call: Mapping[str, Any]) -> list[str]:
     if words[0] not in LOOKING or " ".join(words[:2]) in WITHOUT_SPIN_TIME:
         return []
     if not is_stand_in():
+        if {words[0], " ".join(words[:2])} & set(BY_DAEMON):
+            return []
         no_daemon = [] if " ".join(words[:2]) in WITHOUT_CHOICE else ["--no-daemon"]
-        return [] if " ".join(words[:2]) in BY_DAEMON else [*no_daemon, "--spin-time", str(LISTING)]
+        return [*no_daemon, "--spin-time", str(LISTING)]
     listing = words[1] in ("list", "find") or call.get("status", 0) != 0
     return ["--spin-time", str(LISTING if listing else NAMED)]
 
