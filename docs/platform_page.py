@@ -73,16 +73,59 @@ not pass these tests, in which the stand-in leaves no process, does not hang, or
 OTHERWISE_COLUMNS = ("test", "what the real one does")
 UNCOVERED = ("not covered", "why", "the error")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
-INNER = "launch files do not use it: a helper inside the real package"
+INNER = "launch files and tests do not use it"
+INNER_MODULE = "it is inside the real package"
 OF_CPP = "it is for C++"
 SINGLE = "it is for tests of one process without a launch description"
 LAUNCH = {
     "launch_ros.actions.ComposableNodeContainer": COMPOSABLE,
     "launch_ros.actions.LoadComposableNodes": COMPOSABLE,
     "launch_ros.descriptions.ComposableNode": COMPOSABLE,
-    "launch_ros.utilities.normalize_parameters": INNER,
     "launch_testing.actions.GTest": OF_CPP,
     "launch_testing.tools.launch_process": SINGLE,
+}
+INNER_NAMES = {
+    "launch": "SomeEntitiesType_types_tuple",
+    "launch.event_handlers": "event_named gen_handler",
+    "launch.frontend.entity": "TargetType",
+    "launch.frontend.parse_substitution": "ExtractSubstitution get_grammar_path",
+    "launch.launch_introspector": (
+        "format_action format_entities format_event_handler format_substitutions indent tree_like_indent"
+    ),
+    "launch.logging": "LaunchLogger",
+    "launch.utilities": (
+        "AsyncSafeSignalManager FilePath isclassinstance normalize_to_list_of_entities "
+        "visit_all_entities_and_collect_futures"
+    ),
+    "launch.utilities.type_utils": (
+        "coerce_list extract_type is_instance_of_valid_type is_normalized_substitution is_typing_list "
+        "is_valid_scalar_type"
+    ),
+    "launch_pytest.tools.process": "register_event_handler",
+    "launch_ros.actions": "get_composable_node_load_request",
+    "launch_ros.actions.lifecycle_transition": "match_node_name_goal match_node_name_start_goal",
+    "launch_ros.actions.node": "NodeActionExtension get_extensions instantiate_extension",
+    "launch_ros.utilities": (
+        "OptionalText PluginException add_node_name evaluate_parameter_dict get_node_name_count "
+        "get_upper_bound_caret_version is_root_namespace normalize_parameter_dict normalize_parameters "
+        "normalize_remap_rule normalize_remap_rules satisfies_version to_parameters_list"
+    ),
+    "launch_testing.actions": "PyTest",
+    "launch_testing.launch_test": "add_arguments parse_arguments",
+    "launch_testing.loader": (
+        "LoadTestsFromPythonModule PostShutdownTestLoader PreShutdownTestLoader slim_formatwarning"
+    ),
+    "launch_testing.test_result": "FailResult SkipResult",
+    "launch_testing.test_runner": "LaunchTestRunner",
+    "launch_testing.tools": "ProcessProxy basic_output_filter expect_output expected_output_from_file",
+    "rosidl_runtime_py.utilities": (
+        "get_action_namespaced_type get_namespaced_type get_service_namespaced_type is_action is_message is_service"
+    ),
+    "ament_copyright": "get_copyright_names get_licenses",
+    "ament_copyright.main": (
+        "add_copyright_year add_header add_missing_header get_comment get_string_from_years get_xunit_content "
+        "get_years_from_string"
+    ),
 }
 
 
@@ -131,18 +174,23 @@ def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
 
 
 def _uncovered() -> Iterator[tuple[str, str, str]]:
+    def error(name: str) -> str:
+        return f"'{name}' is not covered: this is the course's stand-in …"
+
     for name, reason in LAUNCH.items():
-        yield f"`{name}`", reason, f"'{name}' is not covered: this is the course's stand-in …"
+        yield f"`{name}`", reason, error(name)
+    yield (
+        "`launch_testing_ros`",
+        "it is a package of its own, and the course does not use it",
+        error("launch_testing_ros"),
+    )
     # The stand-ins are importable only where the real packages are not, so their text is read.
     found = re.search(r"^NOT_COVERED = (\{.*?^\})", SUBMODULES.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     assert found
-    for parent, names in ast.literal_eval(found[1]).items():
-        modules = ", ".join(f"`{parent}.{name}`" for name in names.split())
-        yield (
-            modules,
-            "it is inside the real package",
-            f"'{parent}.{names.split()[0]}' is not covered: this is the course's stand-in …",
-        )
+    for reason, parts in ((INNER_MODULE, ast.literal_eval(found[1])), (INNER, INNER_NAMES)):
+        for parent, names in parts.items():
+            full = [f"{parent}.{name}" for name in names.split()]
+            yield ", ".join(f"`{name}`" for name in full), reason, error(full[0])
     for option in ("--node-name", "--library-name"):
         called = f"`ros2 pkg create --build-type ament_cmake {option}`"
         yield called, OF_CPP, f"{called}, a C++ package, is not covered by this stand-in …"

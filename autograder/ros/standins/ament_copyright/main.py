@@ -10,6 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from standin_notice import guard
+
 from .headers import IDENTIFIERS, UNKNOWN, licence_of_text, read_header
 
 EXTENSIONS = ("c", "cc", "cpp", "cxx", "h", "hh", "hpp", "hxx", "cmake", "py")
@@ -117,3 +119,6 @@ def _write_xunit(path: Path, verdicts: Sequence[Verdict], elapsed: float) -> Non
             ET.SubElement(case, "failure", message=verdict.message)
     path.parent.mkdir(parents=True, exist_ok=True)
     ET.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
+
+
+__getattr__ = guard(__name__)

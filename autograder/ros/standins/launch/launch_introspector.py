@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from standin_notice import guard
+
 from .actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler
 from .launch_description import LaunchDescription
 from .launch_description_entity import LaunchDescriptionEntity
@@ -42,3 +44,6 @@ class LaunchIntrospector:
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
         """Return the launch description as text, one line an entity."""
         return "\n".join([f"{launch_description}", *_tree(launch_description.entities, "")])
+
+
+__getattr__ = guard(__name__)

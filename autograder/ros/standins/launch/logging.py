@@ -14,6 +14,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from standin_notice import guard
+
 _LOG_FORMAT = "{created:.7f} [{levelname}] [{name}]: {message}"
 _SCREEN_FORMATS = {
     "default": "[{levelname}] [{name}]: {message}",
@@ -194,3 +196,6 @@ def log_launch_config(*, logger: logging.Logger) -> None:
     """Tell where the log files are and how much is logged."""
     logger.info("All log files can be found below %s", launch_config.log_dir)
     logger.info("Default logging verbosity is set to %s", logging.getLevelName(logger.getEffectiveLevel()))
+
+
+__getattr__ = guard(__name__)

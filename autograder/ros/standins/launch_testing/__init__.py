@@ -37,7 +37,7 @@ _HOMES = {
     "post_shutdown_test": "markers",
     "ready_to_test_action_timeout": "markers",
 }
-_SUBMODULES = ("actions", "asserts", "event_handlers", "markers", "util")
+_SUBMODULES = ("actions", "asserts", "event_handlers", "markers", "tools", "util")
 _missing = guard(__name__)
 
 

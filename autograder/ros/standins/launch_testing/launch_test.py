@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+from standin_notice import guard
+
 from .loader import load_tests
 from .print_arguments import print_arguments_of_launch_description
 from .test_result import junit
@@ -77,6 +79,9 @@ def main() -> NoReturn:
     except Exception as error:
         parser.error(str(error))
     sys.exit(code)
+
+
+__getattr__ = guard(__name__)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from launch import LaunchDescription, LaunchDescriptionEntity
+from standin_notice import guard
 
 from .actions import ReadyToTest
 
@@ -162,3 +163,6 @@ def _given_to(function: Callable[..., Any], given: Mapping[str, Any]) -> Callabl
 
     call.__doc__ = function.__doc__
     return call
+
+
+__getattr__ = guard(__name__)

@@ -11,6 +11,7 @@ from launch import LaunchDescription, LaunchDescriptionSource, LaunchService
 from launch.actions import IncludeLaunchDescription, RegisterEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from launch.events.process import ProcessExited
+from standin_notice import guard
 
 from .io_handler import ActiveIoHandler
 from .loader import TestRun
@@ -127,3 +128,6 @@ class _Launch:
 
 def _run_tests(suite: unittest.TestSuite) -> TestResult:
     return cast(TestResult, unittest.TextTestRunner(verbosity=2, resultclass=TestResult).run(suite))
+
+
+__getattr__ = guard(__name__)

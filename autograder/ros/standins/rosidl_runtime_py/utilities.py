@@ -6,6 +6,7 @@ import importlib
 from typing import Any
 
 from rosidl_parser.definition import NamespacedType
+from standin_notice import guard
 
 
 def get_interface(identifier: str) -> Any:
@@ -54,3 +55,6 @@ def _split(identifier: str, kind: str | None) -> tuple[str, str, str]:
 
 def _load(package: str, kind: str, name: str) -> Any:
     return getattr(importlib.import_module(f"{package}.{kind}"), name)
+
+
+__getattr__ = guard(__name__)

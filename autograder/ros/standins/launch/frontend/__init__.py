@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from standin_notice import guard
 
+from ..utilities import type_utils
 from .entity import Entity
 from .expose import expose_action, expose_substitution
 from .parse_substitution import parse_if_substitutions, parse_substitution
@@ -17,6 +18,7 @@ __all__ = [
     "expose_substitution",
     "parse_if_substitutions",
     "parse_substitution",
+    "type_utils",
 ]
 
 __getattr__ = guard(__name__)

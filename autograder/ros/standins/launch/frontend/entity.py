@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+from standin_notice import guard
+
 
 class Entity(ABC):
     """An element with a type, attributes and children; it knows which of them were read."""
@@ -43,3 +45,6 @@ class Entity(ABC):
             AttributeError: the attribute is missing.
             TypeError: it is not of the type.
         """
+
+
+__getattr__ = guard(__name__)

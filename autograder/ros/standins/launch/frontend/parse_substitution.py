@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from standin_notice import guard
+
 from ..substitution import Substitution, TextSubstitution
 from .expose import instantiate_substitution
 
@@ -118,3 +120,6 @@ class _Reader:
     def _error(self, start: int) -> SubstitutionSyntaxError:
         line = self.text[start:].partition("\n")[0]
         return SubstitutionSyntaxError(f"this substitution has no end or cannot be read: {line}")
+
+
+__getattr__ = guard(__name__)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, get_args, get_origin
 
 import yaml
+from standin_notice import guard
 
 from ..launch_context import LaunchContext
 from ..substitution import Substitution, normalize_to_list_of_substitutions, perform_substitutions
@@ -146,3 +147,6 @@ def perform_typed_substitution(context: LaunchContext, value: Any, data_type: An
     if not is_uniform_list(items):
         raise ValueError(f"a list must hold items of one type, got {items}")
     return items
+
+
+__getattr__ = guard(__name__)

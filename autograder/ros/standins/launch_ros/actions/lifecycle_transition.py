@@ -12,6 +12,7 @@ from launch.event import Event
 from launch.event_handler import EventHandler
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from standin_notice import guard
 
 from ..event_handlers import OnStateTransition
 from ..events.lifecycle import ChangeState, StateTransition
@@ -117,3 +118,6 @@ class LifecycleTransition(Action):
                 context.unregister_event_handler(handler)
             except ValueError:
                 continue  # it was used: a handler for one event takes itself away
+
+
+__getattr__ = guard(__name__)

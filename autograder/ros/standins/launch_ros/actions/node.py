@@ -11,6 +11,7 @@ from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import ExecuteProcess
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from standin_notice import guard
 
 from .._temporary import temporary_parameter_file
 from ..substitutions import ExecutableInPackage
@@ -181,3 +182,6 @@ def _perform(context: LaunchContext, value: SomeSubstitutionsType) -> str:
 def _rule(name: str, value: Any) -> str:
     """Return a parameter as an argument of ``-p``."""
     return f"{name}:={yaml.dump(value)}"
+
+
+__getattr__ = guard(__name__)
