@@ -27,6 +27,7 @@ import pytest
 import yaml
 
 from autograder.ros import environment
+from tests.e2e.launch_cases.runner import at_rest
 
 HERE = Path(__file__).parent
 # Generous, because it only matters when something is wrong.
@@ -97,21 +98,12 @@ class Launch:
 
     def interrupt(self) -> int:
         """Do what Ctrl-C does and wait for the end; return the exit code."""
-        if not STAND_IN:
-            self._wait_until_idle()
-        self.send(signal.SIGINT)
-        return self.finish()
-
-    def _wait_until_idle(self) -> None:
-        """Wait until the launch waits for events, as it does by the time a person presses Ctrl-C.
-
-        In the real launch, Ctrl-C raises KeyboardInterrupt in whatever runs at that moment. A process whose end it was
-        handling then never counts as ended, and the launch waits for it without end.
-        """
         deadline = time.monotonic() + PATIENCE
-        while "poll" not in Path(f"/proc/{self._process.pid}/wchan").read_text():
+        while not at_rest(self._process.pid):
             assert time.monotonic() < deadline, f"the launch does not come to rest:\n{self.text}"
             time.sleep(0.01)
+        self.send(signal.SIGINT)
+        return self.finish()
 
     def members(self) -> dict[int, str]:
         """Return the command lines of all living processes of this launch, by process id."""
