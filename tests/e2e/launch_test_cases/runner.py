@@ -63,7 +63,7 @@ CHANGING = (
     (re.compile(r"^(test\S*) \((.*?)\.test\w*(?:\[.*\])?\)", re.MULTILINE), r"\1 (\2)"),
     (re.compile(r"(Ran 0 tests in Ns\n\n)NO TESTS RAN"), r"\1OK"),
     (re.compile(r"^( *)[~^]+\n", re.MULTILINE), ""),
-    (re.compile(r"^\S+\.py:\d+: in \S+\n(?: {4}.*\n)*", re.MULTILINE), ""),
+    (re.compile(r"^(?:\S+\.py|<frozen \S+>):\d+: in \S+\n(?: {4}.*\n)*", re.MULTILINE), ""),
     (re.compile(r"E   .*\n\nDuring handling of the above .*\n+"), ""),
     (re.compile(r"^([=-])\1{9,}$", re.MULTILINE), r"\1\1\1"),
     (re.compile(r"Unknown child process pid .*\n"), ""),
