@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from autograder.proof.population import Slipped, population
 from autograder.proof.prove import prove
 from autograder.proof.summary import summary
 from autograder.proof.survey import Fate, survey
-from autograder.proof.survivors import Surveyed, holds, mutant_counts, report
+from autograder.proof.survivors import Surveyed, holds, mutant_counts, reasons, report
 from autograder.result import write_atomically, write_json
 from autograder.sandbox import Tier
 
@@ -68,8 +69,9 @@ def verify(
 
     The reference and right answers in another style have every point. The untouched release has none. Each named
     mutant loses the checks that it names, and no other. No attack gains a point. Then come the mutants of every kind
-    in everything that students write: 97 in 100 lose a point, and every other one has a reason. A run that was stopped
-    goes on with those that are left. mutants.md, in the folder for the results, has the table.
+    in everything that students write: 97 in 100 lose a point, and every other one has a reason. One that has a reason
+    is graded only if it is named. A run that was stopped goes on with those that are left. mutants.md, in the folder
+    for the results, has the table.
 
     The exit status is 0 when all of this holds, and 1 otherwise.
     """
@@ -91,7 +93,9 @@ def verify(
 
         claims = prove(chosen, seed=seed, out=out, lanes=lanes, on_claim=show)
         surveyed = [
-            _survey(Surveyed(name, populations[name], ()), mutants[name], lanes, seed, out)
+            _survey(
+                Surveyed(name, populations[name], ()), mutants[name], {} if names else reasons(name), lanes, seed, out
+            )
             for name in chapters
             if mutants.get(name)
         ]
@@ -105,15 +109,20 @@ def verify(
     sys.exit(0 if all(claim.holds for claim in claims) and holds(surveyed) else 1)
 
 
-def _survey(chapter: Surveyed, mutants: list[Slipped], lanes: Lanes, seed: int, out: Path) -> Surveyed:
-    """Grade the mutants of a chapter, and say which survive."""
+def _survey(
+    chapter: Surveyed, mutants: list[Slipped], known: Mapping[str, str], lanes: Lanes, seed: int, out: Path
+) -> Surveyed:
+    """Grade the mutants of a chapter, and say which survive. Those that are known to survive are not graded again."""
 
     def show(fate: Fate) -> None:
         if not fate.killed:
             click.echo(f"{chapter.assignment} mutant {fate.id} {fate.killer or 'survives'}")
 
     kept = out / chapter.assignment / "mutants.jsonl"
-    found = replace(chapter, fates=survey(chapter.assignment, mutants, lanes, seed=seed, kept=kept, on_fate=show))
+    asked = [mutant for mutant in mutants if mutant.id not in known]
+    fates = survey(chapter.assignment, asked, lanes, seed=seed, kept=kept, on_fate=show)
+    survivors = tuple(Fate(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in known)
+    found = replace(chapter, fates=fates + survivors)
     killed = sum(fate.killed for fate in found.fates)
     click.echo(
         f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(found.unexplained)} without a reason"

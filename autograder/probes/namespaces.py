@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from autograder.harness import AutoHarness, Workspace
+from autograder.probes.qos import not_plain
 
 SPACE = "/robot7"
 SEEN_SECONDS = 5.0  # of real time until a name is seen in the graph; only a wrong program takes so long
 
 
-def left_behind(workspace: Workspace, package: str, executable: str, names: Iterable[str]) -> str:
+def left_behind(
+    workspace: Workspace, package: str, executable: str, names: Iterable[str], *, plain: bool = False
+) -> str:
     """Return which relative names a program does not have in the namespace in which it is started, in a sentence.
 
-    The names are its topics and services. The sentence is empty if it has all of them there.
+    The names are its topics and services. The sentence is empty if it has all of them there, and where `plain` asks for
+    it, if the queues of its topics are plain, as `not_plain` says.
     """
     wanted = [f"{SPACE}/{name}" for name in names]
     with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={SPACE}")) as harness:
@@ -25,8 +29,9 @@ def left_behind(workspace: Workspace, package: str, executable: str, names: Iter
 
         harness.wait_for(lambda: not missing(), SEEN_SECONDS)
         left = missing()
+        differs = not_plain(harness.node, *wanted) if plain else ""
     if not left:
-        return ""
+        return differs
     return (
         f"Started in the namespace {SPACE}, {executable} has no {' and no '.join(left)}: a relative name has no slash."
     )

@@ -19,7 +19,7 @@ BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
 LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
-FOR_PEOPLE = {"description", "reason", "msg"}  # arguments that hold words; the contract does not say which
+FOR_PEOPLE = {"description", "reason", "msg", "maintainer", "maintainer_email"}  # words, of which no contract
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Spot = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text
@@ -210,25 +210,37 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[Simple]:
         for at in range(len(positional) - 1):
             swapped = [*positional[:at], positional[at + 1], positional[at], *positional[at + 2 :]]
             yield "arguments", node, f"{function}({', '.join(swapped + named)})"
-    for at, keyword in enumerate(node.keywords):
-        if keyword.arg not in FOR_PEOPLE:
-            yield "keyword", node, f"{function}({', '.join(positional + named[:at] + named[at + 1 :])})"
 
 
 def _elements(source: Source, node: ast.AST) -> Iterator[Simple]:
-    if isinstance(node, ast.Dict):
-        pairs = [
-            f"{source.text(k) + ': ' if k else '**'}{source.text(v)}"
-            for k, v in zip(node.keys, node.values, strict=True)
-        ]
-        for at in range(len(pairs)):
-            yield "element", node, f"{{{', '.join(pairs[:at] + pairs[at + 1 :])}}}"
-    elif isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
+    if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
-        begin, end = "[]" if isinstance(node, ast.List) else "()"
         for at in range(len(elements)):
             rest = "".join(f"{element}, " for element in elements[:at] + elements[at + 1 :])
-            yield "element", node, f"{begin}{rest}{end}"
+            yield "element", node, f"({rest})"
+
+
+def left_out(source: Source, node: ast.AST) -> Iterator[Slip]:
+    """Yield the mutations that leave out an argument that has a name, or an element of a list or a dictionary."""
+    parts: list[tuple[ast.AST, ast.AST]] = []
+    if isinstance(node, ast.Call):
+        arguments: list[ast.expr | ast.keyword] = [*node.args, *node.keywords]
+        parts = [(each, each) for each in sorted(arguments, key=lambda each: (each.lineno, each.col_offset))]
+    elif isinstance(node, ast.List):
+        parts = [(each, each) for each in node.elts]
+    elif isinstance(node, ast.Dict) and None not in node.keys:
+        parts = [(key, value) for key, value in zip(node.keys, node.values, strict=True) if key is not None]
+    spans = [source.span(*part) for part in parts]
+    for at, ((part, _), (start, end)) in enumerate(zip(parts, spans, strict=True)):
+        if isinstance(node, ast.Call) and (not isinstance(part, ast.keyword) or part.arg in FOR_PEOPLE):
+            continue
+        if at + 1 < len(parts):
+            end = spans[at + 1][0]
+        elif at:
+            start = spans[at - 1][1]
+        else:
+            end = source.span(node)[1] - 1  # with the comma that may follow
+        yield "keyword" if isinstance(node, ast.Call) else "element", ((start, end, ""),)
 
 
 def _exceptions(source: Source, node: ast.AST) -> Iterator[Simple]:

@@ -14,7 +14,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course.cells import is_solution, origin
 from autograder.course.sync import Chapter
-from autograder.proof.operators import Slip, Source, Spot, classic, places
+from autograder.proof.operators import Slip, Source, Spot, classic, left_out, places
 from autograder.proof.slips import is_queue_length, robotic, wall_time, wide
 from autograder.proof.text_operators import text_slips
 
@@ -115,7 +115,8 @@ def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tu
         nodes.append(place.node)
         simple = itertools.chain(() if is_queue_length(place) else classic(source, place), robotic(source, place))
         yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
-        yield from ((function, slip) for slip in wide(source, place))
+        wider = itertools.chain(left_out(source, place.node), wide(source, place))
+        yield from ((function, slip) for slip in wider)
     yield from (("", slip) for slip in wall_time(source, nodes))
 
 

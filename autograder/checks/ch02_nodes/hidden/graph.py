@@ -9,6 +9,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.lockstep.failures import diagnose_ending
 from autograder.probes.namespaces import left_behind
+from autograder.probes.qos import not_plain
 
 check = group("graph")
 
@@ -37,13 +38,15 @@ def test_subscribes_scan(robot: Robot) -> None:
     _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
 
 
-@check(points=2, holds="scan", depends=("subscribes_scan",), doc=contract.QOS)
+@check(points=2, holds=("scan", "cmd-vel", "status"), depends=("subscribes_scan",), doc=contract.QOS)
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
-    """Its scan subscription matches a lidar that publishes best-effort."""
+    """Its scan subscription matches a lidar that publishes best-effort; commands and status have plain queues."""
     reason = qos_mismatch(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
+    differs = not_plain(robot.node, "/cmd_vel", "/status")
+    expect(not differs, differs, fraction=0.5)
 
 
 @check(points=1, holds=("cmd-vel", "twist"), depends=("starts",))

@@ -13,6 +13,7 @@ from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGG
 from autograder.checks.ch07_best_practices.support.robot import Processor, scan
 from autograder.harness import Workspace
 from autograder.probes.namespaces import left_behind
+from autograder.probes.qos import not_plain
 
 check = group("processor")
 SECONDS = 20.0
@@ -29,16 +30,18 @@ def test_endpoints(processor: Processor) -> None:
         expect(types == {kind}, f"{topic} is published as {', '.join(types) or 'nothing'} instead of {kind}.")
 
 
-@check(points=1, holds=("scan", "scan-filtered"), depends=("endpoints",), doc=QOS)
+@check(points=1, holds=("scan", "scan-filtered", "mean-topic"), depends=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
-    """It asks for scans as a lidar offers them, and offers its own likewise: best effort."""
+    """It asks for scans as a lidar offers them, and offers its own likewise: best effort; not so the mean."""
     taken = processor.node.get_subscriptions_info_by_topic("/scan")
     reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in taken)
     expect(not reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
     offered = processor.node.get_publishers_info_by_topic("/scan_filtered")
     reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in offered)
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+    differs = not_plain(processor.node, "/mean_distance")
+    expect(not differs, differs, fraction=0.75)
 
 
 @check(points=1, holds="relative", depends=("endpoints",))

@@ -170,13 +170,17 @@ def test_passes_on(start: Start, draw: Random) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics of all three nodes are relative: in a namespace, each takes them with it."""
+    """The topics of all three nodes have plain queues and are relative: in a namespace, each takes them with it."""
     topics = {
         THERMOMETER: ("temperature",),
         SMOOTHER: ("temperature", "smoothed"),
         GUARD: ("smoothed", "decision"),
     }
-    left = [said for name, names in topics.items() if (said := left_behind(workspace, contract.PACKAGE, name, names))]
+    left = [
+        said
+        for name, names in topics.items()
+        if (said := left_behind(workspace, contract.PACKAGE, name, names, plain=True))
+    ]
     expect(not left, " ".join(left))
 
 

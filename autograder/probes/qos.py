@@ -1,0 +1,23 @@
+"""The quality of service of a program's endpoints, where the contract gives the length of a queue and nothing else."""
+
+from __future__ import annotations
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+
+def not_plain(node: Node, *topics: str) -> str:
+    """Return which endpoint on the topics is not what `10` stands for, reliable and volatile; "" if all are.
+
+    The length of its queue is known to nobody but the program. `node` is the grader's; its own endpoints do not count.
+    """
+    for topic in topics:
+        published, taken = node.get_publishers_info_by_topic(topic), node.get_subscriptions_info_by_topic(topic)
+        for kind, peers in (("publisher", published), ("subscription", taken)):
+            for peer in (peer for peer in peers if peer.node_name != node.get_name()):
+                differs = "best effort" if peer.qos_profile.reliability != ReliabilityPolicy.RELIABLE else ""
+                if peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+                    differs = "transient local"
+                if differs:
+                    return f"The {kind} on {topic} is {differs}: a queue of 10 and no more is reliable and volatile."
+    return ""
