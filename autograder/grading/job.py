@@ -14,7 +14,7 @@ from autograder.sandbox import Tier
 class Scope:
     """How much of a suite is run. Anything but all of it is for the proof and for a replay, where nobody gets marks."""
 
-    only: tuple[str, ...] = ()  # the checks to run, in this order; all of them when empty
+    only: tuple[str, ...] = ()  # the checks to run; all of them when empty
     first_loss: bool = False  # whether to stop at the first check that does not pass
     pictures: bool = True  # whether checks leave pictures
     recordings: bool = False  # whether they leave whole recordings, too

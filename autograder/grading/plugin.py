@@ -102,8 +102,7 @@ class GradingPlugin:
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         if only := self._scope.only:
-            chosen = {check.id: item for item in items if (check := _declared_by(item))}
-            items[:] = [chosen[name] for name in only if name in chosen]
+            items[:] = [item for item in items if (check := _declared_by(item)) and check.id in only]
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)

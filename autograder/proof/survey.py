@@ -102,19 +102,13 @@ class Survey:
         if likely:
             yield self._killer(texts, self._suite.with_dependencies(*likely), built)
         if copied and able - likely:
-            yield self._killer(texts, self._ordered(mutant, able), built)
+            yield self._killer(texts, self._suite.with_dependencies(*able), built)
         if counted - able:
-            yield self._killer(texts, self._ordered(mutant, counted), "")
+            yield self._killer(texts, self._suite.with_dependencies(*counted), "")
 
     def _likely(self, mutant: Slipped) -> frozenset[str]:
         known = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
         return frozenset(name for name, _ in known.most_common(FIRST))
-
-    def _ordered(self, mutant: Slipped, wanted: frozenset[str]) -> tuple[str, ...]:
-        """Return checks, and what they depend on: those that killed in the same file come first."""
-        known = [name for name, _ in self._killers[mutant.file, ""].most_common() if name in wanted]
-        first = self._suite.with_dependencies(*known)
-        return (*first, *(name for name in self._suite.with_dependencies(*wanted) if name not in first))
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
         result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))

@@ -72,7 +72,9 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     what = f"With battery:={inputs.whole_battery}, the driver does not run."
     expect(DRIVER in nodes, f"{what} {launch_probe.trouble(harness.output)}".strip())
-    default = launches.safe_arguments()["battery"].default
+    declared = launches.safe_arguments().get("battery")
+    expect(declared is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
+    default = declared.default if declared else None
     said = "no default" if default is None else f"the default {default!r}"
     expect(default == "80", f"The argument battery has {said}, instead of '80'.", fraction=0.5)
 
