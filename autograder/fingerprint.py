@@ -18,6 +18,7 @@ from autograder.layout import Course
 NOT_READ = frozenset(
     {
         "bootstrap.py",
+        "bundle.py",
         "cli",
         "cluster",
         "course",

@@ -16,14 +16,20 @@ from autograder.result import write_json
 @click.option(
     "--out", required=True, type=click.Path(path_type=Path), help="The folder to make. It must not be there yet."
 )
+@click.option(
+    "--newest",
+    default="",
+    metavar="FOLDER",
+    help="Where students' machines find the newest release: `autograder update` and the doctor look there.",
+)
 @json_option
-def release(names: tuple[str, ...], out: Path, json_file: Path | None) -> None:
+def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | None) -> None:
     """Write the students' bundle of the chapters ID (all by default).
 
     The bundle holds the released notebooks, the packages that they give, the simulator, and the students' half of the
-    autograder. It holds no hidden check and no solution.
+    autograder. It holds no hidden check and no solution. `autograder update` mends a student's bundle by a later one.
     """
-    written = write_bundle(out, names)
+    written = write_bundle(out, names, newest)
     click.echo(f"{out}: {', '.join(written)}")
     if json_file is not None:
         write_json(json_file, {"out": str(out), "assignments": written})

@@ -9,11 +9,13 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterable
+from datetime import datetime, timezone
 from pathlib import Path
 
 import nbformat
 
 from autograder import layout
+from autograder.bundle import write_manifest
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
@@ -41,8 +43,10 @@ _VERBS = (
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
 
 
-def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
+def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
     """Write the students' bundle of these chapters (all by default) to the new folder `out`; return their names.
+
+    Its version is the present time. `newest` is the folder where students' machines find the newest release.
 
     Raises:
         UsageError: `out` exists, or a chapter does not exist. Nothing is written then.
@@ -67,6 +71,7 @@ def write_bundle(out: Path, names: tuple[str, ...] = ()) -> list[str]:
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
         readme = readme.replace("TITLE", layout.COURSE.title).replace("FIRST", chosen[0].assignment)
         (bundle / "README.md").write_text(readme, encoding="utf-8")
+        write_manifest(bundle, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
         bundle.rename(out)
     return [chapter.assignment for chapter in chosen]
 

@@ -23,4 +23,5 @@ def examine(system: System) -> tuple[Finding, ...]:
         machine.isolation(system),
         machine.space(system),
         machine.browser(system),
+        *machine.release(system),
     )

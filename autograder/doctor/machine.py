@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
+from autograder import layout
+from autograder.bundle import MANIFEST
 from autograder.doctor.finding import Finding, Status
 from autograder.doctor.system import System
 from autograder.ros import platform_versions
@@ -137,6 +140,18 @@ def _forbidden(system: System) -> tuple[str, str]:
     if any(system.read(mark) is not None for mark in _CONTAINER_MARKS):
         return "this container's security profile forbids it", _CONTAINER_OPTIONS
     return "the kernel or a security module forbids it", "sudo dmesg | tail"
+
+
+def release(system: System) -> tuple[Finding, ...]:
+    """Look at whether the course has a newer release than this bundle. The course itself is no release."""
+    own = json.loads(system.read(layout.ROOT / MANIFEST) or "{}")
+    newest = json.loads((system.read(Path(own["course"], MANIFEST)) if own.get("course") else None) or "{}")
+    if not own:
+        return ()
+    if newest and newest["version"] > own["version"]:
+        found = f"this is of {own['version']}, and the course has a newer one, of {newest['version']}"
+        return (Finding("release", Status.WEAK, found, "autograder update"),)
+    return (Finding("release", Status.OK, f"of {own['version']}"),)
 
 
 def space(system: System) -> Finding:

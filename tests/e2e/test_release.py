@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -86,6 +87,24 @@ def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
     )
     assert "check" in listed.stdout
     assert "verify" not in listed.stdout
+
+
+def test_a_release_of_one_chapter_mends_the_bundle_of_all(bundle: Path, tmp_path: Path) -> None:
+    mine = shutil.copytree(bundle, tmp_path / "mine")
+    later = tmp_path / "later"
+    assert run("02_nodes", "--out", str(later), "--newest", str(later)).exit_code == 0
+    answer = mine / "chapters" / "02_nodes" / "ws" / "src" / "mine.py"
+    answer.write_text("a student's")
+    gone = mine / "sim" / "world.py"
+    gone.write_text("spoilt")
+    update = [sys.executable, "-m", "autograder", "update", str(later)]
+    environment = {**os.environ, "PYTHONPATH": str(mine)}
+    done = subprocess.run(update, cwd=mine, env=environment, text=True, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert "mended; this is the release of 20" in done.stdout
+    assert answer.read_text() == "a student's"
+    assert gone.read_bytes() == (later / "sim" / "world.py").read_bytes()
+    assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (bundle / "chapters").iterdir()}
 
 
 def test_a_students_pytest_has_none_of_the_options_of_the_courses_own_tests(bundle: Path) -> None:

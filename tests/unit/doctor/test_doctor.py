@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render
+from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.platform_versions import PACKAGES
 
@@ -308,6 +309,19 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "no Chromium that starts",
         "sudo apt-get install chromium",
     ),
+    "a bundle that is older than the newest release": (
+        "release",
+        {
+            "read": {
+                **FILES,
+                ROOT / "release.json": '{"version": "2026-05-04", "course": "/srv/newest"}',
+                Path("/srv/newest/release.json"): '{"version": "2026-05-05"}',
+            }.get
+        },
+        Status.WEAK,
+        "this is of 2026-05-04, and the course has a newer one, of 2026-05-05",
+        "autograder update",
+    ),
     "a browser that does not start": (
         "browser",
         {"run": answers({"--version": Ran(1, "snap needed")})},
@@ -332,6 +346,12 @@ def test_a_lack_is_named_with_what_mends_it(
 def test_what_is_weak_does_not_make_a_machine_unfit_and_what_is_missing_does() -> None:
     assert healthy(examine(good(in_venv=False)))
     assert not healthy(examine(good(which=without("bwrap"))))
+
+
+def test_a_bundle_that_is_the_newest_is_fine_and_so_is_one_that_knows_of_no_other() -> None:
+    for told in ('"course": ""', '"course": "/srv/none"'):
+        read = {**FILES, ROOT / "release.json": f'{{"version": "2026-05-04", {told}}}'}.get
+        assert finding("release", read=read) == Finding("release", Status.OK, "of 2026-05-04")
 
 
 def test_a_sourced_jazzy_alone_is_fine_and_has_no_wheels_to_mend() -> None:

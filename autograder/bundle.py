@@ -1,0 +1,129 @@
+"""The students' bundle as it was released, and its mending by a later release.
+
+`release.json` in a bundle has the version, the digest of each file, and those of each notebook's cells. What has
+another digest has been written by the student, and a later release never touches it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder.exceptions import UsageError
+from autograder.result import write_atomically, write_json
+
+MANIFEST = "release.json"
+CHAPTERS = "chapters"  # where students write; the rest of a bundle is the course's
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a release says of itself.
+
+    Attributes:
+        version: when it was made, in UTC, so that a later one sorts after an earlier one.
+        course: the folder where the class finds its newest release, or an empty string.
+        files: the digest of each file, by its path in the bundle.
+        cells: for each notebook, the digest of each cell's text, by the cell's id.
+    """
+
+    version: str
+    course: str
+    files: dict[str, str]
+    cells: dict[str, dict[str, str]]
+
+
+def write_manifest(bundle: Path, version: str, course: str) -> None:
+    """Write the manifest of a bundle that is otherwise complete."""
+    files = {str(path.relative_to(bundle)): _digest(path.read_bytes()) for path in _files(bundle)}
+    cells = {
+        name: {cell.id: _digest(cell.source.encode()) for cell in nbformat.read(bundle / name, as_version=4).cells}
+        for name in files
+        if name.endswith(".ipynb")
+    }
+    write_json(bundle / MANIFEST, asdict(Manifest(version, course, files, cells)))
+
+
+def read_manifest(bundle: Path) -> Manifest:
+    """Read the manifest of a bundle.
+
+    Raises:
+        UsageError: there is none, or it cannot be read.
+    """
+    try:
+        return Manifest(**json.loads((bundle / MANIFEST).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError) as error:
+        raise UsageError(f"{bundle}: no release of the course: {error}") from None
+
+
+def mend(bundle: Path, newer: Path) -> tuple[list[str], list[str]]:
+    """Mend a student's bundle by a later release, of all chapters or of some.
+
+    Returns:
+        The files that were written, and those of the release that were not, because the student has changed them.
+
+    Raises:
+        UsageError: one of the folders is no bundle, or `newer` is the older one.
+    """
+    old, new = read_manifest(bundle), read_manifest(newer)
+    if new.version < old.version:
+        raise UsageError(f"{newer} is of {new.version}, and what is here is newer, of {old.version}")
+    written: list[str] = []
+    kept: list[str] = []
+    for name, digest in new.files.items():
+        source, target = newer / name, bundle / name
+        there = _digest(target.read_bytes()) if target.is_file() else None
+        ours = there in (None, old.files.get(name)) or not name.startswith(f"{CHAPTERS}/")
+        if there == digest:
+            continue
+        if name.endswith(".ipynb") and not ours:
+            mended = _mended(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
+            write_atomically(target, nbformat.writes(mended).encode())
+        elif ours:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, target)
+        (written if ours or name.endswith(".ipynb") else kept).append(name)
+    chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{CHAPTERS}/")}
+    others = {name for name in old.files if name.startswith(f"{CHAPTERS}/") and name.split("/")[1] not in chapters}
+    for name in old.files.keys() - new.files.keys() - others:
+        if (bundle / name).is_file() and _digest((bundle / name).read_bytes()) == old.files[name]:
+            (bundle / name).unlink()
+    files = {name: old.files[name] for name in others} | new.files
+    cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
+    write_json(bundle / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
+    return written, kept
+
+
+def _mended(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
+    """Return a student's notebook with the released cells in place of those that the student has not changed."""
+    new = {cell.id: cell for cell in released.cells}
+    cells = []
+    for cell in students.cells:
+        untouched = old.get(cell.id) == _digest(cell.source.encode())
+        if untouched and cell.id in new and cell.source != new[cell.id].source:
+            cells.append(new[cell.id])
+        elif not untouched or cell.id in new:
+            cells.append(cell)
+    before = None
+    for cell in released.cells:  # what is new comes after what stands before it in the release
+        if cell.id not in old:
+            place = next((index for index, there in enumerate(cells, start=1) if there.id == before), len(cells))
+            cells.insert(place if before else 0, cell)
+        before = cell.id
+    students.cells = cells
+    return students
+
+
+def _files(bundle: Path) -> Iterator[Path]:
+    return (path for path in sorted(bundle.rglob("*")) if path.is_file() and path.name != MANIFEST)
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

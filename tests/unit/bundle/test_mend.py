@@ -1,0 +1,108 @@
+"""A later release mends a student's bundle, and touches nothing that the student wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from autograder.bundle import mend, read_manifest, write_manifest
+from autograder.exceptions import UsageError
+
+NOTEBOOK = "chapters/02_nodes/02_nodes.ipynb"
+GIVEN = "chapters/02_nodes/ws/src/robot/setup.py"
+FIRST = {
+    "sim/world.py": "one",
+    "sim/gone.py": "one",
+    GIVEN: "given",
+    "chapters/02_nodes/ws/src/robot/node.py": "to do",
+    "chapters/03_interfaces/notes.md": "a chapter that a later release does not hold",
+}
+CELLS = {"title": "# Nodes", "old": "a mistake", "exercise": "# YOUR CODE HERE", "dropped": "of no use"}
+
+
+def release(folder: Path, files: dict[str, str], cells: dict[str, str], version: str) -> Path:
+    """Write a bundle of some files and one notebook."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    nbformat.write(
+        new_notebook(cells=[new_markdown_cell(text, id=id) for id, text in cells.items()]), folder / NOTEBOOK
+    )
+    write_manifest(folder, version, "")
+    return folder
+
+
+@pytest.fixture
+def bundle(tmp_path: Path) -> Path:
+    return release(tmp_path / "course", FIRST, CELLS, "1")
+
+
+@pytest.fixture
+def newer(tmp_path: Path) -> Path:
+    files = {name: f"{text}, mended" for name, text in FIRST.items() if "gone" not in name and "03_" not in name}
+    cells = {"title": "# Nodes", "new": "a hint", "old": "no mistake", "exercise": "# YOUR CODE HERE, please"}
+    return release(tmp_path / "newer", {**files, "sim/added.py": "new"}, cells, "2")
+
+
+def read(bundle: Path) -> NotebookNode:
+    return nbformat.read(bundle / NOTEBOOK, as_version=4)
+
+
+def write(bundle: Path, answer: str) -> None:
+    """Do what a student does: answer the exercise, add a cell, run one."""
+    notebook = read(bundle)
+    notebook.cells[2].source = answer
+    notebook.cells.insert(1, new_code_cell("1 + 1", id="own", execution_count=1))
+    nbformat.write(notebook, bundle / NOTEBOOK)
+    (bundle / GIVEN).write_text("a student's")
+    (bundle / "chapters/02_nodes/ws/src/robot/more.py").write_text("a student's")
+
+
+def test_what_nobody_has_changed_is_that_of_the_later_release(bundle: Path, newer: Path) -> None:
+    mend(bundle, newer)
+    for name in read_manifest(newer).files:
+        assert (bundle / name).read_bytes() == (newer / name).read_bytes(), name
+    assert not (bundle / "sim/gone.py").exists()
+    assert read_manifest(bundle).version == "2"
+
+
+def test_what_a_student_wrote_is_not_touched(bundle: Path, newer: Path) -> None:
+    write(bundle, "my answer")
+    written, kept = mend(bundle, newer)
+    assert kept == [GIVEN]
+    assert NOTEBOOK in written
+    assert [(cell.id, cell.source) for cell in read(bundle).cells] == [
+        ("title", "# Nodes"),
+        ("new", "a hint"),
+        ("own", "1 + 1"),
+        ("old", "no mistake"),
+        ("exercise", "my answer"),
+    ]
+    assert (bundle / GIVEN).read_text() == (bundle / "chapters/02_nodes/ws/src/robot/more.py").read_text()
+    assert (bundle / "chapters/02_nodes/ws/src/robot/node.py").read_text() == "to do, mended"
+
+
+def test_what_was_kept_once_is_kept_the_next_time(bundle: Path, newer: Path) -> None:
+    write(bundle, "my answer")
+    mend(bundle, newer)
+    before = [cell.source for cell in read(bundle).cells]
+    assert mend(bundle, newer)[1] == [GIVEN]
+    assert [cell.source for cell in read(bundle).cells] == before
+
+
+def test_a_chapter_that_the_later_release_does_not_hold_stays(bundle: Path, newer: Path) -> None:
+    mend(bundle, newer)
+    other = "chapters/03_interfaces/notes.md"
+    assert (bundle / other).is_file()
+    assert other in read_manifest(bundle).files  # a release after that can still mend it
+
+
+def test_an_older_release_and_what_is_none_are_refused(bundle: Path, newer: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is of 1, and what is here is newer, of 2"):
+        mend(newer, bundle)
+    with pytest.raises(UsageError, match="no release of the course"):
+        mend(bundle, tmp_path)
