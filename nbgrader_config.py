@@ -3,10 +3,11 @@
 The isolated grader (`autograder.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
 exchange folder of a class. Without it the folder is `.build/exchange`.
 
-`nbgrader autograde` grades one submission after the other. These commands grade a class on all cores and then book it:
+`nbgrader autograde` grades one submission after the other, and books what is graded already. These commands grade a
+class on all cores, or on a cluster by `--scheduler`, and then book it:
 
     autograder grade submitted --assignment ID --out .build/nbgrader/ID -j 8
-    nbgrader autograde ID --SandboxedGrade.resume=True
+    nbgrader autograde ID
 """
 
 from pathlib import Path

@@ -15,7 +15,7 @@ from nbformat.v4 import new_notebook
 from nbgrader.api import Gradebook
 from nbgrader.preprocessors import NbGraderPreprocessor
 from nbgrader.utils import is_grade, is_solution
-from traitlets import Bool, Integer, Unicode
+from traitlets import Integer, Unicode
 
 from autograder import feedback
 from autograder.exceptions import GraderError
@@ -35,14 +35,10 @@ class SandboxedGrade(NbGraderPreprocessor):
 
     seed = Integer(DEFAULT_SEED, help="The seed of every hidden input.").tag(config=True)
     isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation: bubblewrap or process.").tag(config=True)
-    resume = Bool(
-        False,
-        help="Book the result stored below `results` if its submission, suite and seed are the same. To grade a class "
-        "in parallel first: `autograder grade submitted --assignment ID --out .build/nbgrader/ID -j N`.",
-    ).tag(config=True)
     results = Unicode(
         ".build/nbgrader",
-        help="The folder of results, from the course directory. It gets ASSIGNMENT/STUDENT/result.json.",
+        help="The folder of results, from the course directory: ASSIGNMENT/STUDENT/result.json. What is graded is "
+        "booked, unless submission, suite, seed or isolation is another one.",
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -69,15 +65,10 @@ class SandboxedGrade(NbGraderPreprocessor):
                 out=results,
                 jobs=1,
                 isolation=Tier(self.isolation),
-                resume=self.resume,
+                resume=True,
             )
             if result.status is Status.NOT_GRADED:
                 raise GraderError(f"{student}: not graded, nothing is booked. {result.diagnosis.sentence}")
-            if result.isolation != self.isolation:
-                raise GraderError(
-                    f"{student}: the stored result was graded with the isolation {result.isolation!r}, not "
-                    f"{self.isolation!r}: grade it again, without SandboxedGrade.resume"
-                )
             self._copy_outputs(nb, results / student / NOTEBOOK)
             self._write_scores(nb, result, results / student)
             feedback.write(result, results / student)

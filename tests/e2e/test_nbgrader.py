@@ -153,7 +153,7 @@ def test_results_graded_in_parallel_before_can_be_booked(graded: Classroom, resu
     stored = graded.place / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns
     booked_before = graded.grades("flawed")
-    options = ("--SandboxedGrade.resume=True", f"--SandboxedGrade.results={stored}", "--student=flawed", "--force")
+    options = (f"--SandboxedGrade.results={stored}", "--student=flawed", "--force")
     graded.nbgrader("autograde", *options)
     assert (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns == before
     assert graded.grades("flawed") == booked_before

@@ -6,7 +6,7 @@ exchange folder of a class. Without it the folder is `.build/exchange`.
 `nbgrader autograde` grades one submission after the other. These commands grade a class on all cores and then book it:
 
     autograder grade submitted --assignment ID --out .build/nbgrader/ID -j 8
-    nbgrader autograde ID --SandboxedGrade.resume=True
+    nbgrader autograde ID
 """
 
 from pathlib import Path

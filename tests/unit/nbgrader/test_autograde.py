@@ -247,15 +247,6 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
 
 
-def test_a_result_of_a_weaker_isolation_is_not_booked(course: Any, verdict: Callable[..., Any]) -> None:
-    course.grade = lambda *a, **k: verdict(isolation="process")
-    course.submit("grace", course.released)
-    done = course.autograde("grace")
-    assert not done["success"]
-    assert "graded with the isolation 'process', not 'bubblewrap'" in done["log"]
-    assert course.grades("grace")["grade-graph"] == (None, 3.0, True)
-
-
 def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = course.released
     notebook.cells += [

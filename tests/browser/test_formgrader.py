@@ -1,0 +1,148 @@
+"""A class through nbgrader, with a person who grades question 2 in formgrader: the sums are the same everywhere."""
+
+from __future__ import annotations
+
+import csv
+import secrets
+import shutil
+import sys
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from urllib.parse import urljoin
+
+import nbformat
+import pytest
+from nbformat import NotebookNode
+from playwright.sync_api import Browser, expect
+
+from autograder import layout
+from autograder.checks import suites
+from autograder.course.forms import Form, in_form
+from autograder.course.sync import Chapter
+from autograder.export import load
+from autograder.proof.mutants import mutants, write_mutant, write_reference
+from tests.browser.jupyter import PATIENCE, serving
+from tests.e2e.classroom import Classroom
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.slow,
+    # What nbgrader does with SQLAlchemy.
+    pytest.mark.filterwarnings("ignore:Object of type <Submitted:sqlalchemy.exc.SAWarning"),
+]
+ASSIGNMENT = "09_assessment"
+CHOICES, QUESTION, MOST = "answers", "q2-answer", 6.0
+SCHEME = "Mark scheme, 6 points."
+
+
+@dataclass(frozen=True)
+class Student:
+    """One of the class: what the code is, and what a person gives for the words (None: there are none to read)."""
+
+    name: str
+    code: str
+    points: float | None
+
+
+def students(size: int) -> list[Student]:
+    """Return a class; every third or fourth has handed in what was released, and two of three have no code."""
+    codes = ["no code", "no code", "untouched"] if size == 3 else ["no code", "reference", "flawed", "untouched"]
+    found = []
+    for number in range(size):
+        code = codes[number % len(codes)]
+        points = None if code == "untouched" else (number + 1) % (2 * MOST + 1) / 2
+        found.append(Student(f"s{number:02}", code, points))
+    return found
+
+
+def hand_in(room: Classroom, student: Student) -> None:
+    """Put a student's work into the exchange, as `nbgrader submit` does."""
+    answer = None
+    if student.code in ("reference", "flawed"):
+        answer, sources = room.place / "answers" / student.name, suites.hidden(ASSIGNMENT).sources
+        flawed = next(mutant for mutant in mutants(ASSIGNMENT) if not mutant.slow)
+        write = write_reference if student.code == "reference" else partial(write_mutant, flawed)
+        write(sources, answer)
+    room.hand_in(student.name, answer)
+    handed_in = room.course / "submitted" / student.name / ASSIGNMENT
+    path = handed_in / f"{ASSIGNMENT}.ipynb"
+    notebook = nbformat.read(path, as_version=4)
+    if student.points is not None:
+        solved = in_form(Chapter(layout.chapter(ASSIGNMENT)).read(), Form.SOLVED)
+        cell_of(notebook, CHOICES).source = cell_of(solved, CHOICES).source
+        cell_of(notebook, QUESTION).source = f"The words of {student.name} about `package.xml`."
+    nbformat.write(notebook, path)
+    stamp = "2026-05-04 09:00:00.000000 UTC"
+    inbound = room.exchange / "ros2-python" / "inbound" / f"{student.name}+{ASSIGNMENT}+{stamp}+{secrets.token_hex(8)}"
+    inbound.parent.mkdir(parents=True, exist_ok=True)
+    shutil.move(handed_in, inbound)
+    (inbound / "timestamp.txt").write_text(stamp)
+    shutil.rmtree(room.course / "submitted")
+
+
+def cell_of(notebook: NotebookNode, name: str) -> NotebookNode:
+    return next(cell for cell in notebook.cells if cell.id == name)
+
+
+@pytest.mark.parametrize(
+    "size", [3, pytest.param(30, marks=[pytest.mark.nightly, pytest.mark.timeout(7200)])], ids=["3", "30"]
+)
+def test_what_a_person_gives_in_formgrader_is_added_everywhere(size: int, tmp_path: Path, chromium: Browser) -> None:
+    room, everybody = Classroom(tmp_path / "class", ASSIGNMENT), students(size)
+    room.nbgrader("generate_assignment")
+    for student in everybody:
+        hand_in(room, student)
+    room.nbgrader("collect")
+    graded = room.course / ".build" / "nbgrader" / ASSIGNMENT
+    room.grade("-j", "2", "--out", str(graded))
+    before = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
+    room.nbgrader("autograde")
+    after = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
+    assert after == before, "graded again instead of booked"
+    marks = {stored.result.student: stored.result.score for stored in load(graded)}
+    assert {student.name for student in everybody if marks[student.name]} == {
+        student.name for student in everybody if student.points is not None
+    }
+
+    grade_by_hand(room, everybody, tmp_path / "jupyter", chromium)
+
+    expected = {student.name: marks[student.name] + (student.points or 0.0) for student in everybody}
+    room.nbgrader("generate_feedback")
+    room.run(room.course, sys.executable, "-m", "nbgrader", "export", "--to=grades.csv")
+    with (room.course / "grades.csv").open(encoding="utf-8", newline="") as file:
+        exported = {row["student_id"]: float(row["score"]) for row in csv.DictReader(file, strict=True)}
+    assert exported == pytest.approx(expected)
+    most = suites.hidden(ASSIGNMENT).max_score + MOST
+    for student in everybody:
+        page = room.course / "feedback" / student.name / ASSIGNMENT / f"{ASSIGNMENT}.html"
+        assert f"(Score: {expected[student.name]:.1f} / {most:.1f})" in page.read_text(encoding="utf-8")
+
+
+def grade_by_hand(room: Classroom, everybody: list[Student], home: Path, chromium: Browser) -> None:
+    """Give each student's words their points in formgrader, which opens one submission after the other."""
+    home.mkdir()
+    points = {
+        f"The words of {student.name} about": student.points for student in everybody if student.points is not None
+    }
+    context = chromium.new_context(viewport={"width": 1100, "height": 900})
+    with serving("jupyter_server", home, room.course) as server:
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(f"{server.url}/login?token={server.token}")
+        page.goto(f"{server.url}/formgrader/gradebook/{ASSIGNMENT}/{ASSIGNMENT}")
+        listed = page.locator("a.name-hidden[href*='/submissions/']")
+        expect(listed).to_have_count(len(everybody), timeout=PATIENCE * 1000)
+        for link in [str(each.get_attribute("href")) for each in listed.all()]:
+            page.goto(urljoin(server.url, link))
+            words = page.locator("body").inner_text()
+            assert SCHEME in words
+            for text in [text for text in points if text in words]:
+                score = page.locator(f"input#{QUESTION}.score")
+                score.fill(f"{points.pop(text):g}")
+                with page.expect_response(
+                    lambda answer: "/api/grade/" in answer.url and answer.request.method == "PUT"
+                ):
+                    score.press("Tab")
+    context.close()
+    assert points == {}
