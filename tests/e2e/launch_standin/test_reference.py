@@ -24,20 +24,28 @@ def install(reference: Terminal) -> Path:
     return reference.root / "install"
 
 
-@pytest.mark.slow
-@pytest.mark.timeout(600)
-@pytest.mark.parametrize(("package", "file"), [("my_robot_package", "robot_system"), ("fleet", "chapter")])
-def test_it_runs_unmodified_with_all_nodes_and_their_parameters_until_ctrl_c(
-    start: Start, install: Path, package: str, file: str
-) -> None:
+def observe_and_interrupt(start: Start, install: Path, package: str, file: str) -> str:
+    """Launch, look at the nodes and their parameters, press Ctrl-C; return what the launch wrote."""
     launch = start("observed", f"package:={package}", f"file:={file}.launch.py", install=install)
     found = json.loads(launch.wait_for("found: (.*)")[1])
     assert set(found) == {f"/{node}" for node in NODES}
     assert found["/status_publisher"]["robot_name"] == "MyRobot01"
     assert found["/status_publisher"]["status_period"] == 1.0
     assert launch.interrupt() == 0
+    return str(launch.text)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize(("package", "file"), [("my_robot_package", "robot_system"), ("fleet", "chapter")])
+def test_it_runs_unmodified_with_all_nodes_and_their_parameters_until_ctrl_c(
+    start: Start, install: Path, package: str, file: str
+) -> None:
+    ended = observe_and_interrupt(start, install, package, file)
+    if "escalating to 'SIGKILL'" in ended:  # Fast DDS deadlocks at times; expect_clean_stop has the same rule
+        ended = observe_and_interrupt(start, install, package, file)
     for node in NODES:
-        assert re.search(rf"\[INFO\] \[{node}-\d+\]: process has finished cleanly", launch.text)
+        assert re.search(rf"\[INFO\] \[{node}-\d+\]: process has finished cleanly", ended)
 
 
 @pytest.mark.slow
