@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import signal
@@ -55,9 +56,10 @@ def _running() -> set[int]:
     """Return the fork servers that run directly below this process."""
     found = set()
     for task in Path("/proc/self/task").iterdir():
-        for child in (task / "children").read_text().split():
-            if "autograder.proof.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
-                found.add(int(child))
+        with contextlib.suppress(OSError):  # a thread, or a child, that has ended since
+            for child in (task / "children").read_text().split():
+                if "autograder.proof.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
+                    found.add(int(child))
     return found
 
 
