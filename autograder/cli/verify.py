@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -93,11 +93,9 @@ def verify(
 
         claims = prove(chosen, seed=seed, out=out, lanes=lanes, on_claim=show)
         surveyed = [
-            _survey(
-                Surveyed(name, populations[name], ()), mutants[name], {} if names else reasons(name), lanes, seed, out
-            )
-            for name in chapters
-            if mutants.get(name)
+            _survey(Surveyed(name, each, reasons(name, each)), mutants[name], bool(names), lanes, seed, out)
+            for name, each in populations.items()
+            if mutants[name]
         ]
     click.echo("\n" + table([(_name(claim), marks(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
@@ -109,19 +107,18 @@ def verify(
     sys.exit(0 if all(claim.holds for claim in claims) and holds(surveyed) else 1)
 
 
-def _survey(
-    chapter: Surveyed, mutants: list[Slipped], known: Mapping[str, str], lanes: Lanes, seed: int, out: Path
-) -> Surveyed:
-    """Grade the mutants of a chapter, and say which survive. Those that are known to survive are not graded again."""
+def _survey(chapter: Surveyed, mutants: Sequence[Slipped], named: bool, lanes: Lanes, seed: int, out: Path) -> Surveyed:
+    """Grade the mutants of a chapter. One that may survive is graded only if it is `named`."""
 
     def show(fate: Fate) -> None:
         if not fate.killed:
             click.echo(f"{chapter.assignment} mutant {fate.id} {fate.killer or 'survives'}")
 
     kept = out / chapter.assignment / "mutants.jsonl"
-    asked = [mutant for mutant in mutants if mutant.id not in known]
+    excused = {} if named else chapter.reasons
+    asked = [mutant for mutant in mutants if mutant.id not in excused]
     fates = survey(chapter.assignment, asked, lanes, seed=seed, kept=kept, on_fate=show)
-    survivors = tuple(Fate(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in known)
+    survivors = tuple(Fate(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in excused)
     found = replace(chapter, fates=fates + survivors)
     killed = sum(fate.killed for fate in found.fates)
     click.echo(

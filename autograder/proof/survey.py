@@ -8,7 +8,6 @@ counts only for checks that the reference passes in it.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import tempfile
 import time
@@ -22,6 +21,7 @@ from autograder import layout
 from autograder.building.build import build_workspace
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
+from autograder.fingerprint import digest
 from autograder.grading.job import Scope
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
@@ -180,10 +180,6 @@ def surveying(assignment: str, lanes: Lanes, seed: int) -> Iterator[Survey]:
 
 
 def _version(assignment: str) -> str:
-    """Return a digest of the suite and of the reference."""
+    """Return a digest of what the suite and the reference are read from."""
     suite = suites.hidden(assignment)
-    digest = hashlib.sha256(suite.version.encode())
-    for source in suite.sources:
-        for path in sorted(path for path in (layout.SOLUTIONS / source).rglob("*") if path.is_file()):
-            digest.update(str(path.relative_to(layout.SOLUTIONS)).encode() + path.read_bytes())
-    return digest.hexdigest()[:12]
+    return digest(assignment, (*suite.reads, *(f"{layout.COURSE.solutions}/{source}" for source in suite.sources)))

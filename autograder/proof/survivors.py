@@ -19,7 +19,7 @@ import yaml
 from autograder.checks import suites
 from autograder.course.markdown_table import table
 from autograder.exceptions import GraderError
-from autograder.proof.population import Population, population
+from autograder.proof.population import Population
 from autograder.proof.survey import FAILED, Fate
 
 KINDS = ("equivalent", "outside")
@@ -32,17 +32,17 @@ also those that nobody could kill. Left out as equivalent or as twins before gra
 
 @dataclass(frozen=True)
 class Surveyed:
-    """A chapter's population, and what became of it."""
+    """A chapter's population, why some of it may survive, and what became of it."""
 
     assignment: str
     population: Population
-    fates: tuple[Fate, ...]
+    reasons: Mapping[str, str]
+    fates: tuple[Fate, ...] = ()
 
     @property
     def survivors(self) -> dict[str, str]:
         """The ids of the mutants that no check killed, each with its reason or ""."""
-        known = reasons(self.assignment)
-        return {fate.id: known.get(fate.id, "") for fate in self.fates if not fate.killed}
+        return {fate.id: self.reasons.get(fate.id, "") for fate in self.fates if not fate.killed}
 
     @property
     def unexplained(self) -> list[str]:
@@ -51,8 +51,8 @@ class Surveyed:
         return [name for name, reason in self.survivors.items() if not reason or name in failed]
 
 
-def reasons(assignment: str) -> dict[str, str]:
-    """Return why mutants of a chapter may survive, by their ids.
+def reasons(assignment: str, population: Population) -> dict[str, str]:
+    """Return why mutants of a chapter's population may survive, by their ids.
 
     Raises:
         GraderError: a reason is of no kind or of two, or its mutants do not exist, or another reason has them.
@@ -65,7 +65,7 @@ def reasons(assignment: str) -> dict[str, str]:
         if len(kinds) != 1 or found.keys() & entry["mutants"]:
             raise GraderError(f"{path}: each mutant has one reason, which is {' or '.join(KINDS)}: mend {entry}")
         found |= dict.fromkeys(entry["mutants"], f"{kinds[0]}: {entry[kinds[0]]}")
-    if gone := found.keys() - {mutant.id for mutant in population(assignment).mutants}:
+    if gone := found.keys() - {mutant.id for mutant in population.mutants}:
         raise GraderError(f"{path}: there are no such mutants any more: {', '.join(sorted(gone))}")
     return found
 

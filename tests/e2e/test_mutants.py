@@ -74,8 +74,9 @@ def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes,
     "assignment", [pytest.param(name, marks=unless(name in now)) for now in [drawn(SURVEYED, 4)] for name in SURVEYED]
 )
 def test_a_drawn_part_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
-    mutants = {mutant.id: mutant for mutant in population(assignment).mutants}
-    chosen = drawn(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment).keys()
+    found = population(assignment)
+    mutants = {mutant.id: mutant for mutant in found.mutants}
+    chosen = drawn(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
     with surveying(assignment, lanes, 2026) as survey:
         fates = [survey.fate(mutants[name]) for name in sorted(chosen)]
     print(*fates, sep="\n")

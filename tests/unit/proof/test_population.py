@@ -28,7 +28,8 @@ def test_each_mutant_is_another_text_and_has_a_name_of_its_own(assignment: str) 
 
 @pytest.mark.parametrize("assignment", suites.graded())
 def test_each_reason_belongs_to_a_mutant_that_exists(assignment: str) -> None:
-    assert all(reason.startswith(survivors.KINDS) for reason in reasons(assignment).values())
+    found = reasons(assignment, population(assignment))
+    assert all(reason.startswith(survivors.KINDS) for reason in found.values())
 
 
 def test_a_name_outlives_changes_elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -43,24 +44,26 @@ def surveyed(*killers: str) -> Surveyed:
     """Return what became of a chapter's first mutants."""
     mutants = population(ASSIGNMENT).mutants[: len(killers)]
     fates = tuple(Fate(mutant.id, killer, 1.0, "") for mutant, killer in zip(mutants, killers, strict=True))
-    return Surveyed(ASSIGNMENT, Population(mutants, 2), fates)
+    return Surveyed(ASSIGNMENT, Population(mutants, 2), {}, fates)
 
 
-def with_reason(monkeypatch: pytest.MonkeyPatch, text: str, folder: Path) -> None:
+def with_reason(found: Surveyed, monkeypatch: pytest.MonkeyPatch, text: str, folder: Path) -> Surveyed:
+    """Return the same with the reasons of a file with this text."""
     real = suites.hidden(ASSIGNMENT)
     twin = replace(real, files=tuple(folder / "hidden" / path.name for path in real.files))
     assert isinstance(twin, Suite)
     monkeypatch.setattr(suites, "hidden", lambda assignment: twin)
     (folder / "survivors.yaml").write_text(text)
+    return replace(found, reasons=reasons(ASSIGNMENT, found.population))
 
 
 def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     found = surveyed(*["starts"] * 39, "")
     survivor = found.fates[-1].id
-    with_reason(monkeypatch, "[]", tmp_path)
+    found = with_reason(found, monkeypatch, "[]", tmp_path)
     assert found.unexplained == [survivor]
     assert not holds([found])
-    with_reason(monkeypatch, f"- {{equivalent: so it is, mutants: ['{survivor}']}}", tmp_path)
+    found = with_reason(found, monkeypatch, f"- {{equivalent: so it is, mutants: ['{survivor}']}}", tmp_path)
     assert found.survivors == {survivor: "equivalent: so it is"}
     assert holds([found])
     assert "39/40" in report([found])
@@ -73,14 +76,16 @@ def test_too_many_survivors_are_too_many_whatever_their_reasons(
 ) -> None:
     found = surveyed(*["starts"] * 38, "", "")
     names = [fate.id for fate in found.fates[-2:]]
-    with_reason(monkeypatch, f"- {{outside: nobody says so, mutants: {names}}}", tmp_path)
+    found = with_reason(found, monkeypatch, f"- {{outside: nobody says so, mutants: {names}}}", tmp_path)
     assert found.unexplained == []
     assert not holds([found])
 
 
 def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     found = surveyed(*["starts"] * 39, FAILED)
-    with_reason(monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.fates[-1].id}']}}", tmp_path)
+    found = with_reason(
+        found, monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.fates[-1].id}']}}", tmp_path
+    )
     assert not holds([found])
 
 
@@ -95,6 +100,5 @@ def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPa
 def test_a_reason_that_fits_nothing_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, said: str
 ) -> None:
-    with_reason(monkeypatch, text, tmp_path)
     with pytest.raises(GraderError, match=said):
-        reasons(ASSIGNMENT)
+        with_reason(Surveyed(ASSIGNMENT, population(ASSIGNMENT), {}), monkeypatch, text, tmp_path)
