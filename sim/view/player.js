@@ -4,12 +4,14 @@
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const AHEAD = 2; // s: how far the path of the newest command is drawn
 
+const inflate = text => {
+  const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));
+};
 // The text of `pack`: base64, deflated, the bytes of a number apart, changes instead of values.
 const unpack = async packed => {
   if (!packed) return null;
-  const bytes = Uint8Array.from(atob(packed.data), letter => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const planes = new Uint8Array(await inflate(packed.data).arrayBuffer());
   const count = planes.length / 4, columns = packed.columns, sums = new Array(columns).fill(0), rows = [];
   for (let cell = 0; cell < count; cell++) {
     const coded = planes[cell] + planes[count + cell] * 256 + planes[2 * count + cell] * 65536
@@ -25,8 +27,7 @@ const column = async packed => Float64Array.from(await unpack(packed), row => ro
 
 const unpackSaid = async said => {
   if (!said) return [];
-  const stream = new Blob([Uint8Array.from(atob(said.texts), letter => letter.charCodeAt(0))]).stream();
-  const texts = await new Response(stream.pipeThrough(new DecompressionStream("deflate"))).json();
+  const texts = await inflate(said.texts).json();
   return Array.from(await column(said.times), (time, place) => [time, texts[place]]);
 };
 

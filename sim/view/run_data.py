@@ -81,8 +81,11 @@ def pack(values: npt.ArrayLike, step: float) -> dict[str, Any]:
     change = np.diff(whole, axis=0, prepend=np.zeros((1, whole.shape[1]), dtype=np.int64))
     zigzag = np.where(change < 0, -2 * change - 1, 2 * change).astype("<u4")
     planes = zigzag.reshape(-1, 1).view(np.uint8).T.tobytes()
-    data = base64.b64encode(zlib.compress(planes, 9)).decode("ascii")
-    return {"columns": whole.shape[1], "step": step, "data": data}
+    return {"columns": whole.shape[1], "step": step, "data": _deflated(planes)}
+
+
+def _deflated(data: bytes) -> str:
+    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
 
 
 def _world(world: World) -> dict[str, Any]:
@@ -173,8 +176,7 @@ def _said(lines: tuple[Line, ...]) -> dict[str, Any] | None:
     """Return what the programs wrote, or as much as there is room for; None if they wrote nothing."""
     most = len(lines)
     while shown := shorten(lines, most):
-        texts = json.dumps([text for _, text in shown]).encode()
-        data = base64.b64encode(zlib.compress(texts, 9)).decode("ascii")
+        data = _deflated(json.dumps([text for _, text in shown]).encode())
         if len(data) <= MOST_LOG_BYTES:
             return {"times": pack([seconds for seconds, _ in shown], MILLI), "texts": data}
         most //= 2
