@@ -19,7 +19,7 @@ BOUNDARY = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 ARITHMETIC |= {ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "//")}
 LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning", "fatal": "error"}
-FOR_PEOPLE = {"description", "reason", "msg", "maintainer", "maintainer_email"}  # words, of which no contract
+FOR_PEOPLE = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}  # words
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Spot = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text

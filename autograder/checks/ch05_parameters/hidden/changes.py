@@ -165,6 +165,21 @@ def test_passes(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.4, "After these requests")
 
 
+@check(points=1, holds=("lets-pass", "validate", "apply-rate"), depends=("contradiction", "rate_change", "passes"))
+@hint("Pass over a name that you do not know: neither return nor break at it, wherever it stands in the request.")
+def test_beside_others(robot: Robot, draw: random.Random) -> None:
+    """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
+    other = robot.parameters.values("use_sim_time")
+    bad: dict[str, Value] = {"safety_distance": round(draw.uniform(1.1, 2.5), 2)}
+    for request in ({**other, **bad}, {**bad, **other}):
+        expect(not robot.change(request).accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+    for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
+        rate: dict[str, Value] = {"control_frequency": frequency}
+        request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
+        _change(robot, request)
+        expect_rate(robot.command_rate(), frequency, f"After {_told(request)}")
+
+
 def _change(robot: Robot, request: dict[str, Value]) -> None:
     answer = robot.change(request)
     expect(answer.accepted, f"It refused {_told(request)}: “{answer.reason}”.")
