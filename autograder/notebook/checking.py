@@ -112,7 +112,9 @@ def _line(result: dict[str, Any]) -> Line:
 
 
 def _row(line: Line) -> str:
-    mark = f'<span style="color:{COLOURS[line.outcome]}">{SYMBOLS[line.outcome]} {line.outcome.words}</span>'
+    # The colour stands beside the words: there is none that can be read on white as well as on black.
+    style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
+    mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.words}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
     if line.message:
         row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'
