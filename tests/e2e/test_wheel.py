@@ -36,6 +36,10 @@ def test_a_student_checks_a_chapter_by_the_installed_wheel(tmp_path: Path) -> No
         for part in (bundle / code).iterdir():  # what is imported is the wheel's
             if part.name != "checks":
                 shutil.rmtree(part) if part.is_dir() else part.unlink()
+    shutil.rmtree(bundle / "assets" / "worlds")
     chapter = bundle / "chapters" / CHAPTER
+    names = "from autograder import layout; print(*(layout.world(name) for name in ('maze', 'office')))"
+    for world in run(fresh / "bin" / "python", "-c", names, cwd=chapter).split():
+        assert Path(world).is_relative_to(fresh)
     shutil.copytree(layout.SOLUTIONS / PACKAGE, chapter / "ws" / "src" / PACKAGE, dirs_exist_ok=True)
     assert "visible checks passed" in run(fresh / "bin" / "autograder", "check", CHAPTER, cwd=chapter)
