@@ -11,10 +11,12 @@ from dataclasses import dataclass
 
 from nbformat import NotebookNode
 
+from autograder.course.cells import is_solution
 from autograder.course.findings import Finding
 from autograder.course.solution_markers import BEGIN, END
 
 WORDS_A_MINUTE = 120.0  # of a technical text, for somebody who reads English as a second language
+FLUENT_WORDS_A_MINUTE = 200.0  # for the bound on what is read and run at one go
 MINUTES_A_CELL = 1.0  # read a code cell, run it, look at what it shows
 MINUTES_A_LINE = 1.2  # think, write and mend
 LONGEST_IN_MINUTES = 100.0
@@ -23,11 +25,15 @@ _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
 @dataclass(frozen=True)
 class Effort:
-    """What there is to do in a chapter: words to read, code cells to run, lines to write without the empty ones."""
+    """What there is to do in a chapter: words to read, code cells to run, lines to write without the empty ones.
+
+    `at_one_go` is the longest time in minutes, of somebody fluent, in which nothing is to be written.
+    """
 
     words: int
     cells: int
     lines: int
+    at_one_go: float = 0.0
 
     @property
     def reading(self) -> float:
@@ -45,7 +51,14 @@ def effort(source: NotebookNode) -> Effort:
     texts = [cell.source for cell in source.cells if cell.cell_type == "markdown"]
     code = [cell.source for cell in source.cells if cell.cell_type == "code"]
     lines = [line for cell in code for answer in _ANSWER.findall(cell) for line in answer.split("\n") if line.strip()]
-    return Effort(sum(len(text.split()) for text in texts), len(code), len(lines))
+    stretches = [0.0]
+    for cell in source.cells:
+        if is_solution(cell):
+            stretches.append(0.0)
+        else:
+            prose = cell.cell_type == "markdown"
+            stretches[-1] += len(cell.source.split()) / FLUENT_WORDS_A_MINUTE if prose else MINUTES_A_CELL
+    return Effort(sum(len(text.split()) for text in texts), len(code), len(lines), max(stretches))
 
 
 def promise(needed: Effort) -> str:

@@ -13,7 +13,15 @@ from pathlib import Path
 from autograder.checks import suites
 from autograder.course.findings import Finding
 from autograder.course.markdown_table import table
-from autograder.course.minutes import MINUTES_A_CELL, MINUTES_A_LINE, WORDS_A_MINUTE, Effort, effort, told
+from autograder.course.minutes import (
+    FLUENT_WORDS_A_MINUTE,
+    MINUTES_A_CELL,
+    MINUTES_A_LINE,
+    WORDS_A_MINUTE,
+    Effort,
+    effort,
+    told,
+)
 from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
 from autograder.course.sync import chapters
 from autograder.layout import CHAPTERS, COURSE, judged_later
@@ -55,14 +63,18 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
             HEAD,
             "## Chapters\n",
             *table(
-                ("chapter", "title", "points", "words", "code cells", "lines to write", "time of a beginner"),
+                (
+                    *("chapter", "title", "points", "words", "code cells", "lines to write", "time of a beginner"),
+                    "minutes at one go",
+                ),
                 [
                     (f"[{n}]({n}/{n}.ipynb)", t, f"{points[n]:g}" if points[n] else "", *_effort(efforts[n]))
                     for n, t in titles.items()
                 ],
             ),
             f"The time is counted: a minute for {WORDS_A_MINUTE:g} words, {MINUTES_A_CELL:g} minute for a code cell, "
-            f"{MINUTES_A_LINE:g} minutes for a line to write.\n",
+            f"{MINUTES_A_LINE:g} minutes for a line to write. *At one go* is the longest time "
+            f"before a cell to write or between two, for a reader of {FLUENT_WORDS_A_MINUTE:g} words a minute.\n",
             "## Objectives\n",
             *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, covered)),
             "## The chapter's contents\n",
@@ -77,7 +89,8 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
 
 
 def _effort(needed: Effort) -> tuple[str, ...]:
-    return str(needed.words), str(needed.cells), str(needed.lines), told(needed.reading + needed.writing)
+    counted = (str(needed.words), str(needed.cells), str(needed.lines), told(needed.reading + needed.writing))
+    return *counted, f"{needed.at_one_go:.1f}"
 
 
 def _points(covered: SyllabusCoverage, name: str) -> float:

@@ -6,6 +6,9 @@ import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from autograder.course.minutes import Effort, effort, promise, told, wrong_promise
+from autograder.course.sync import Chapter, chapters
+
+from .notebooks import code, prose, solution
 
 EXERCISE = """%%writefile turn.py
 def turn():
@@ -19,7 +22,19 @@ BOOK = new_notebook(cells=[new_markdown_cell("# Turn around"), new_code_cell(EXE
 
 
 def test_words_cells_and_the_lines_of_answers_are_counted() -> None:
-    assert effort(BOOK) == Effort(words=3, cells=2, lines=2)
+    assert effort(BOOK) == Effort(words=3, cells=2, lines=2, at_one_go=pytest.approx(2 + 3 / 200))
+
+
+def test_the_longest_time_without_anything_to_write_is_counted() -> None:
+    write, again = (code(EXERCISE, name, nbgrader=solution(name)) for name in ("turn", "again"))
+    run, first, second = code("turn()", "run"), prose("word " * 100, "first"), prose("word " * 400, "second")
+    book = new_notebook(cells=[first, write, run, second, again])
+    assert effort(book).at_one_go == pytest.approx(1 + 2.0)
+
+
+@pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
+def test_nobody_reads_and_runs_for_half_an_hour_before_there_is_something_to_write(chapter: Chapter) -> None:
+    assert effort(chapter.read()).at_one_go <= 30.0
 
 
 def test_the_promise_has_a_time_to_read_and_a_time_to_write() -> None:
