@@ -12,6 +12,7 @@ import numpy as np
 from autograder.exceptions import UsageError
 from autograder.notebook.driving import DriveReport
 from autograder.notebook.notices import Notice
+from autograder.notebook.simulator_session import SimulatorSession
 from autograder.result import write_json
 from sim import Recording
 
@@ -78,11 +79,11 @@ class ScoreTable:
         return [(place, *score.cells) for place, score in zip(places, self.scores, strict=True)]
 
 
-def score(drive: DriveReport | Notice, run: str = "") -> ScoreTable | Notice:
+def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> ScoreTable | Notice:
     """Add a drive to the table of one's own drives in that world, and show the table.
 
     Args:
-        drive: what `drive(...)` returned, in a world with a goal.
+        drive: what `drive(...)` returned, or what `simulator(...)` has recorded, in a world with a goal.
         run: a name for the run; "run 3" and so on by default.
 
     Returns:
@@ -93,6 +94,8 @@ def score(drive: DriveReport | Notice, run: str = "") -> ScoreTable | Notice:
     """
     if isinstance(drive, Notice):
         return drive
+    if drive.recording is None:
+        return Notice("There is no run to score.")
     kept = _read()
     newest = score_of(drive.recording, run or f"run {len(kept) + 1}")
     kept.append(newest)
@@ -103,7 +106,7 @@ def score(drive: DriveReport | Notice, run: str = "") -> ScoreTable | Notice:
 
 
 def score_of(recording: Recording, run: str) -> Score:
-    """Return the score of the first robot's way to the first goal.
+    """Return the score of the way to the first goal, of that robot which did best.
 
     Raises:
         UsageError: the world has no goal.
@@ -111,7 +114,12 @@ def score_of(recording: Recording, run: str) -> Score:
     world = recording.simulation.world
     if not world.goals:
         raise UsageError(f"the world {world.name!r} has no goal: drive in another one, such as 'maze'")
-    goal, track = world.goals[0], recording.poses[:, 0, :2]
+    return min((_of_robot(recording, run, robot) for robot in range(recording.poses.shape[1])), key=lambda s: s.rank)
+
+
+def _of_robot(recording: Recording, run: str, robot: int) -> Score:
+    world = recording.simulation.world
+    goal, track = world.goals[0], recording.poses[:, robot, :2]
     gaps = np.hypot(*(track - (goal.x, goal.y)).T) - goal.radius
     there = gaps <= 0.0
     end = int(np.argmax(there)) if there.any() else len(track) - 1
@@ -122,8 +130,8 @@ def score_of(recording: Recording, run: str) -> Score:
         left=round(max(0.0, float(gaps.min())), 2),
         metres=round(float(np.hypot(*np.diff(track[: end + 1], axis=0).T).sum()), 2),
         margin=0.0
-        if recording.collided[: end + 1, 0].any()
-        else round(float(recording.clearances[: end + 1, 0].min()), 3),
+        if recording.collided[: end + 1, robot].any()
+        else round(float(recording.clearances[: end + 1, robot].min()), 3),
     )
 
 

@@ -11,6 +11,7 @@ from autograder.notebook import score
 from autograder.notebook.driving import DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.scoring import FILE, Score, ScoreTable, score_of
+from autograder.notebook.simulator_session import SimulatorSession
 from sim import Command, Goal, Pose, RobotSpec, Simulation, World, box, run
 
 ROOM = World.from_segments(
@@ -35,6 +36,22 @@ def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
     assert fast.margin == pytest.approx(0.82, abs=0.01)  # to the side walls
     slow = score_of(drive(0.1).recording, "slow")
     assert (slow.arrived, slow.left) == (None, pytest.approx(2.5 - slow.metres, abs=0.02))
+
+
+def test_of_several_robots_the_one_counts_that_did_best() -> None:
+    hall = World.from_segments(
+        box(6.0, 4.0).tolist(),
+        name="a hall",
+        starts=[Pose(-2.0, 1.0, 0.0), Pose(-2.0, -1.0, 0.0)],
+        goals=[Goal(1.0, -1.0, 0.5)],
+    )
+    robots = Simulation(hall, (RobotSpec(name="one"), RobotSpec(name="two")))
+    session = SimulatorSession()
+    assert isinstance(score(session), Notice)
+    session.recording = run(robots, lambda state, scans: {"two": Command(linear=0.5)}, 10.0)
+    table = score(session, "both")
+    assert isinstance(table, ScoreTable)
+    assert table.newest.arrived == pytest.approx(2.5 / 0.5, abs=0.6)
 
 
 def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first() -> None:
