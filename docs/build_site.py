@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import nbformat
@@ -35,7 +36,17 @@ KEPT_BACK = ("checks.md", "cluster", "*.py", "__pycache__")
 # Of the robot on the start page: it turns when something is nearer than ROOM within AHEAD of its bow.
 AHEAD, ROOM = math.radians(50.0), 0.6
 FOLDER_OF_A_LINK = re.compile(r"\]\((?:docs|\.\./chapters)/")
-FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md")
+FROM_ELSEWHERE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-commands.md", "chapters/glossary.md")
+ENTRY = re.compile(r"^(?P<words>[^\n:]+)\n: (?P<text>.+(?:\n  .+)*)", re.MULTILINE)
+# What is no prose: code, headings, links and pictures, tables, choices of a question, tags.
+NO_PROSE = re.compile(
+    r"^(?P<fence>```|~~~).*?^(?P=fence)|`[^`]*`|^#.*?$|!?\[[^\]]*\]\([^)]*\)|^\|.*?$|^- \w\) .*?$|<[^>]*>",
+    re.MULTILINE | re.DOTALL,
+)
+GUIDES = ("students.md", "instructors.md", "authors.md", "first_check.md", "trust.md", "troubleshooting.md", "index.md")
+# Words whose first use means something else: verbs of every day, the actions of a launch file, packages of pip.
+EVERYWHERE = {"Build", "Source"}
+MEANT_OTHERWISE = {"04_launch": {"Action"}, "05_parameters": {"Action"}, "students": {"Package"}}
 
 
 def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
@@ -51,24 +62,69 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
         shutil.copy(layout.ROOT / name, SOURCE)
     for page in SOURCE.glob("*.md"):  # the site has the pages of all folders in one
         page.write_text(FOLDER_OF_A_LINK.sub("](", page.read_text(encoding="utf-8")), encoding="utf-8")
+    words = write_glossary(SOURCE / "glossary.md")
+    for name in GUIDES:
+        guide = SOURCE / name
+        (linked,) = link_first_uses([guide.read_text(encoding="utf-8")], meant(words, guide.stem))
+        guide.write_text(linked, encoding="utf-8")
     shutil.copytree(screenshots, SOURCE / "made")
     (SOURCE / "chapters").mkdir()
     for chapter in chapters():
-        write_chapter(chapter, SOURCE / "chapters")
+        write_chapter(chapter, SOURCE / "chapters", words)
     (SOURCE / "made" / "proof.md").write_text(proof_table(), encoding="utf-8")
     write_run(SOURCE / "_extra" / "run.html")
     sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going", "-d", str(SITE / "doctrees")]
     return subprocess.run([*sphinx, str(SOURCE), str(HTML)], capture_output=True, text=True, check=False)
 
 
-def write_chapter(chapter: Chapter, folder: Path) -> None:
-    """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since."""
+def write_glossary(page: Path) -> frozenset[str]:
+    """Make of a page's list of definitions a glossary of Sphinx's, to which pages link; return its words."""
+    text, words = page.read_text(encoding="utf-8"), set()
+    for entry in list(ENTRY.finditer(text)):
+        names = entry["words"].split(", ")
+        words.update(names)
+        text = text.replace(entry[0], "```{glossary}\n" + "\n".join(names) + f"\n  {entry['text']}\n```")
+    page.write_text(text, encoding="utf-8")
+    return frozenset(words)
+
+
+def meant(words: frozenset[str], page: str) -> set[str]:
+    """Return the words of the glossary that a page uses in their meaning there."""
+    return set(words - EVERYWHERE - MEANT_OTHERWISE.get(page, set()))
+
+
+def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
+    """Return a page's texts with the first use of each word, in prose, as a link to the glossary."""
+    linked = []
+    for text in texts:
+        for word in sorted(words, key=len, reverse=True):
+            taken = [found.span() for found in NO_PROSE.finditer(text)]
+            pattern = r"\s+".join(map(re.escape, word.split()))
+            for use in re.finditer(rf"\b{pattern}s?\b", text, re.IGNORECASE):
+                if not any(use.start() < stop and start < use.end() for start, stop in taken):
+                    shown = " ".join(use[0].split())
+                    text = f"{text[: use.start()]}{{term}}`{shown} <{word}>`{text[use.end() :]}"
+                    words = words - {word}
+                    break
+        linked.append(text)
+    return linked
+
+
+def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozenset()) -> None:
+    """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since.
+
+    The first use of each of the words leads to the glossary.
+    """
     notebook = in_form(chapter.read(), Form.RELEASED)
     report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
     if report.is_file():
         executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
         if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
             notebook = executed
+    prose = [cell for cell in notebook.cells if cell.cell_type == "markdown"]
+    linked = link_first_uses([cell.source for cell in prose], meant(words, chapter.assignment))
+    for cell, text in zip(prose, linked, strict=True):
+        cell.source = text
     nbformat.write(notebook, folder / chapter.path.name)
     if (chapter.folder / "figures").is_dir():
         shutil.copytree(chapter.folder / "figures", folder / "figures", dirs_exist_ok=True)

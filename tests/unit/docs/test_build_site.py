@@ -12,6 +12,7 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 from autograder import layout
 from autograder.course.sync import Chapter
 
+GLOSSARY = layout.CHAPTERS / "glossary.md"
 MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
 
 
@@ -31,6 +32,31 @@ def test_outputs_are_those_of_the_same_cells(
     MADE["write_chapter"](chapter, site)
     (cell,) = nbformat.read(site / "10_mapping.ipynb", as_version=4).cells
     assert len(cell.outputs) == shown
+
+
+def test_the_glossary_is_one_of_sphinx(tmp_path: Path) -> None:
+    page = tmp_path / "glossary.md"
+    page.write_text(
+        "# Glossary\n\nQoS, quality of service\n: Whether messages may be lost.\n  Or not.\n\nNode\n: A name.\n"
+    )
+    assert MADE["write_glossary"](page) == {"QoS", "quality of service", "Node"}
+    first = "```{glossary}\nQoS\nquality of service\n  Whether messages may be lost.\n  Or not.\n```"
+    assert page.read_text() == f"# Glossary\n\n{first}\n\n```{{glossary}}\nNode\n  A name.\n```\n"
+
+
+def test_the_first_use_of_a_word_in_prose_leads_to_the_glossary() -> None:
+    texts = ["# A node\n\n`node`, [a node](x.md)\n\n| node |", "Two **nodes** and a quality\nof service.", "One node."]
+    assert MADE["link_first_uses"](texts, {"Node", "Service", "quality of service"}) == [
+        texts[0],
+        "Two **{term}`nodes <Node>`** and a {term}`quality of service <quality of service>`.",
+        texts[2],
+    ]
+
+
+def test_each_exception_names_a_word_of_the_glossary() -> None:
+    words = {word for entry in MADE["ENTRY"].finditer(GLOSSARY.read_text()) for word in entry["words"].split(", ")}
+    assert MADE["EVERYWHERE"].union(*MADE["MEANT_OTHERWISE"].values()) <= words
+    assert {name for name in MADE["MEANT_OTHERWISE"] if name[0].isdigit()} <= set(layout.assignments())
 
 
 def test_the_table_of_the_proof_has_each_graded_chapter() -> None:
