@@ -21,7 +21,8 @@ from autograder.course.sync import Chapter, chapters
 from autograder.exceptions import UsageError
 
 # Files and whole folders that are copied beside the course.
-COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", ".devcontainer")
+IMAGE = (".binder", ".devcontainer")
+COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.lock", "LICENSE", *IMAGE)
 STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
