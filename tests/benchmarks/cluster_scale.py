@@ -1,0 +1,100 @@
+"""Measure how a class goes faster on more workers, and draw it for docs/cluster.md.
+
+`python -m tests.benchmarks.cluster_scale RESULTS` takes the durations of gradings from stored results; each submission
+waits for one of them instead of being graded. So 64 workers fit on any machine. They are Dask's own, with a connection
+each, and share a process; the scheduler is in it, too. `... draw` draws again what was measured.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from distributed import LocalCluster
+
+from autograder.cluster.connection import PRELOAD, connected
+from autograder.export import load
+from tests.benchmarks.bench_cluster import seconds
+
+MEASURED = Path(__file__).parents[2] / "docs" / "scale.json"
+WORKERS = (1, 4, 16, 64)
+SUBMISSIONS = 5000  # for the most workers; fewer have fewer, so that all take equally long
+
+
+def main(results: str) -> None:
+    """Measure all at the same time, since they wait, and draw."""
+    if results != "draw":
+        pauses = [stored.result.seconds for stored in load(Path(results))]
+        commands = [[sys.executable, "-m", __spec__.name, json.dumps(pauses), str(workers)] for workers in WORKERS]
+        running = [subprocess.Popen(command, stdout=subprocess.PIPE) for command in commands]
+        measured = [json.loads(process.communicate()[0]) for process in running]
+        told = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measured}
+        MEASURED.write_text(json.dumps(told, indent=1) + "\n")
+    draw()
+
+
+def measure(pauses: list[float], workers: int) -> dict[str, float]:
+    """Return the figures of one cluster."""
+    serve = [sys.executable, "-m", __spec__.name, "serve", str(workers)]
+    with subprocess.Popen(serve, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as cluster:
+        assert cluster.stdout is not None
+        address = cluster.stdout.readline().strip()
+        with connected(address, 0, Path()) as client:
+            client.wait_for_workers(workers)
+            submissions = SUBMISSIONS * workers // WORKERS[-1]
+            spent, work = seconds(client, submissions, pauses)
+        cluster.communicate()
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return {
+        "workers": workers,
+        "submissions": submissions,
+        "seconds": round(spent, 1),
+        "speed_up": round(work / spent, 2),
+        "client_mib": round(memory),
+    }
+
+
+def serve(workers: int) -> None:
+    """Run a cluster until standard input ends."""
+    options = {"preload": [PRELOAD]}
+    with LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=False,
+        protocol="tcp",
+        dashboard_address=None,
+        memory_limit=None,
+        scheduler_kwargs=options,
+        **options,
+    ) as cluster:
+        print(cluster.scheduler_address, flush=True)
+        sys.stdin.read()
+
+
+def draw() -> None:
+    """Draw the speed-up beside the ideal one."""
+    measured = json.loads(MEASURED.read_text())["measured"]
+    workers = [point["workers"] for point in measured]
+    plt.rcParams["svg.hashsalt"] = "scale"
+    figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
+    axes.plot(workers, workers, "--", color="0.6", label="as many times as there are workers")
+    axes.plot(workers, [point["speed_up"] for point in measured], "o-", color="#005a8c", label="measured")
+    axes.set(xscale="log", yscale="log", xlabel="workers", ylabel="times as fast as one worker", xticks=workers)
+    axes.set(yticks=workers, xticklabels=workers, yticklabels=workers)
+    axes.minorticks_off()
+    axes.legend()
+    figure.savefig(MEASURED.with_suffix(".svg"), metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "serve":
+        serve(int(sys.argv[2]))
+    elif len(sys.argv) == 3:
+        print(json.dumps(measure(json.loads(sys.argv[1]), int(sys.argv[2]))))
+    else:
+        main(sys.argv[1])
