@@ -39,6 +39,7 @@ _VERBS = (
     "notebooks",
     "release",
     "replay",
+    "similar",
     "verify",
 )
 WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))

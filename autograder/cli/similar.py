@@ -1,0 +1,58 @@
+"""`autograder similar`: which submissions of a class are alike."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import click
+
+from autograder.cli.options import json_option
+from autograder.course.release import write_bundle
+from autograder.exceptions import StudentError, UsageError
+from autograder.grading.batch import discover
+from autograder.intake import read_submission
+from autograder.layout import COURSE
+from autograder.result import write_json
+
+
+@click.command()
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--assignment", required=True, metavar="ID", help="The assignment that the submissions answer.")
+@click.option("--out", required=True, type=click.Path(path_type=Path, file_okay=False), help="The folder for the page.")
+@click.option(
+    "--least",
+    type=click.FloatRange(0, 100),
+    default=50.0,
+    show_default=True,
+    metavar="PERCENT",
+    help="How much of a student's own text has to be in another's.",
+)
+@json_option
+def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, json_file: Path | None) -> None:
+    """Show which submissions at PATHS have passages alike that the release does not give.
+
+    It is a hint to read both texts, and no verdict. No mark changes.
+    """
+    try:
+        from autograder.lms.similar import code, pairs, write_pairs
+    except ModuleNotFoundError as error:
+        if error.name != "copydetect":
+            raise
+        raise UsageError("this needs copydetect: run `.venv/bin/pip install copydetect`") from None
+    codes = {}
+    with tempfile.TemporaryDirectory() as name:
+        write_bundle(Path(name) / "given", (assignment,))
+        given = code(read_submission(Path(name) / "given" / COURSE.chapters / assignment, assignment))
+    for entry in discover(paths, assignment):
+        try:
+            codes[entry.student] = code(read_submission(entry.path, assignment))
+        except StudentError as error:
+            click.echo(f"Not compared: {entry.student}: {error}", err=True)
+    found = pairs(codes, given, least / 100)
+    for pair in found:
+        shares = " and ".join(f"{100 * share:.0f} %" for share in pair.shares)
+        click.echo(f"{pair.names[0]} and {pair.names[1]}: {shares} of their own text alike")
+    click.echo(f"{len(found)} pairs to read, no verdict: {write_pairs(found, out)}")
+    if json_file is not None:
+        write_json(json_file, [{"students": pair.names, "shares": pair.shares} for pair in found])

@@ -1,0 +1,83 @@
+"""Which submissions of a class have passages alike that the course did not give: a hint to read both, and no verdict.
+
+Passages are compared as copydetect does: names and strings are one sign each, so that renaming hides nothing.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+
+import nbformat
+from copydetect.detector import CodeFingerprint, compare_files
+from copydetect.utils import get_token_coverage, highlight_overlap
+from markupsafe import Markup
+
+from autograder.feedback.pages import SUMMARY, environment
+from autograder.intake import Submission
+from autograder.result import write_atomically
+
+PASSAGE = 50  # signs of a passage that counts: about three lines
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two submissions, the share of their own text that is alike, and their texts with the passages marked."""
+
+    names: tuple[str, str]
+    shares: tuple[float, float]
+    texts: tuple[Markup, Markup]
+
+
+def code(submission: Submission) -> str:
+    """Return the Python of a submission: its modules and the code cells of its notebook."""
+    texts = [f"# {file.path}\n{_text(file.data)}" for file in submission.source if file.path.suffix == ".py"]
+    if submission.notebook is not None:
+        try:
+            cells = nbformat.reads(_text(submission.notebook), as_version=4).cells
+            texts += [cell.source for cell in cells if cell.cell_type == "code"]
+        except Exception:  # whatever a student's file makes nbformat raise; the modules are compared all the same
+            texts.append("")
+    return "\n".join(texts)
+
+
+def pairs(codes: Mapping[str, str], given: str, least: float) -> list[Pair]:
+    """Return the pairs of which one has at least the share `least` of its own text in the other, most alike first."""
+    gift = _fingerprint(given)
+    prints = {name: _fingerprint(text) for name, text in codes.items()}
+    for found in prints.values():
+        found.hashes -= gift.hashes
+        found.hash_idx = {key: places for key, places in found.hash_idx.items() if key in found.hashes}
+        found.token_coverage = get_token_coverage(found.hash_idx, PASSAGE, len(found.filtered_code))
+    alike = []
+    for one, two in combinations(prints, 2):
+        first, second = prints[one], prints[two]
+        _, shares, slices = compare_files(first, second)
+        if max(shares) >= least and max(shares) > 0:
+            texts = (_marked(first.raw_code, slices[0]), _marked(second.raw_code, slices[1]))
+            alike.append(Pair((one, two), (min(1.0, shares[0]), min(1.0, shares[1])), texts))
+    return sorted(alike, key=lambda pair: (-max(pair.shares), pair.names))
+
+
+def write_pairs(found: Sequence[Pair], out: Path) -> Path:
+    """Write a page with the texts of each pair side by side, and return its path."""
+    out.mkdir(parents=True, exist_ok=True)
+    page = out / SUMMARY
+    write_atomically(page, environment().get_template("similar.html.j2").render(pairs=found).encode())
+    return page
+
+
+def _text(data: bytes) -> str:
+    return data.decode("utf-8", errors="replace").replace("\r\n", "\n")
+
+
+def _fingerprint(text: str) -> CodeFingerprint:
+    """Return all passages of a text: those that are there do not depend on a hash's luck."""
+    return CodeFingerprint("submission.py", PASSAGE, 1, fp=io.StringIO(text))
+
+
+def _marked(text: str, slices: object) -> Markup:
+    return Markup(highlight_overlap(text, slices, "<mark>", "</mark>", escape_html=True)[0])

@@ -1,0 +1,84 @@
+"""A hint of similar submissions: renaming hides nothing, what the course gives counts for nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path, PurePosixPath
+
+import nbformat
+import pytest
+
+from autograder.cli import main
+from autograder.intake import SubmittedFile, detect_layout
+from autograder.lms.similar import code, pairs, write_pairs
+
+GIVEN = "\n".join(f"def given_{n}(a, b):\n    return [a * {n} + b, (a - b) / {n + 1}]" for n in range(9))
+OWN = """
+def nearest(scan):
+    best = None
+    for index, distance in enumerate(scan.ranges):
+        if scan.range_min <= distance <= scan.range_max and (best is None or distance < best[1]):
+            best = (index, distance)
+    return best
+"""
+RENAMED = OWN.replace("best", "closest").replace("distance", "metres").replace("nearest", "find")
+OTHER = """
+class Finder:
+    def __call__(self, scan):
+        valid = [r for r in scan.ranges if r > scan.range_min]
+        while valid and valid[-1] > scan.range_max:
+            valid.pop()
+        assert len(valid) < 1000, f"{len(valid)} are too many"
+        return min(valid, default=float("inf"))
+"""
+
+
+def test_a_renamed_copy_is_found_and_what_the_course_gives_is_taken_out() -> None:
+    codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
+    (found,) = pairs(codes, GIVEN, 0.5)
+    assert found.names == ("alice", "bob")
+    assert found.shares == pytest.approx((1.0, 1.0))
+    assert "closest" in found.texts[1].partition("<mark>")[2]
+    assert len(pairs(codes, "", 0.5)) == 3
+
+
+def test_who_changed_nothing_is_like_nobody() -> None:
+    assert pairs({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0) == []
+
+
+def test_the_page_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
+    text = "# <script>\n" + OWN
+    page = write_pairs(pairs({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
+    assert page.count("<mark>") == page.count("</mark>") >= 2
+    assert "<script>" not in page
+    assert "<bob>" not in page
+    assert "no verdict" in page
+
+
+def test_the_code_of_a_submission_is_its_modules_and_its_notebooks_cells() -> None:
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("x = 1"), nbformat.v4.new_markdown_cell("y")])
+    files = {
+        "02_nodes.ipynb": nbformat.writes(notebook).encode(),
+        "ws/src/p/p/node.py": b"z = 2\xff",
+        "ws/src/p/a.md": b"w",
+    }
+    submitted = [SubmittedFile(PurePosixPath(path), data) for path, data in files.items()]
+    assert code(detect_layout(submitted, "02_nodes")) == "# p/p/node.py\nz = 2\ufffd\nx = 1"
+    submitted[0] = SubmittedFile(submitted[0].path, b"no notebook")
+    assert "z = 2" in code(detect_layout(submitted, "02_nodes"))
+
+
+def test_the_verb_compares_a_class_and_names_whom_it_cannot_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items():
+        node = tmp_path / "class" / name / "src" / "p" / "node.py"
+        node.parent.mkdir(parents=True)
+        node.write_text(text)
+    (tmp_path / "class" / "dave.zip").write_bytes(b"no zip")
+    with pytest.raises(SystemExit) as ended:
+        main(["similar", str(tmp_path / "class"), "--assignment", "02_nodes", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 0
+    told = capsys.readouterr()
+    assert "alice and bob: 100 % and 100 % of their own text alike" in told.out
+    assert "carol" not in told.out
+    assert "Not compared: dave: dave.zip is not a folder" in told.err
