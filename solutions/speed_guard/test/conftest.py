@@ -77,11 +77,11 @@ class Robot(Node):
         self.sensor.publish(Range(range=distance))
         self.until(lambda: len(self.seen) > count)
 
-    def ask(self, speed, turn=0.0):
+    def ask(self, speed, turn=0.0, side=0.0):
         """Let the planner publish a command; return the answer on cmd_vel."""
         self.number += 1.0
         wanted = Twist()
-        wanted.linear.x, wanted.angular.z = speed, turn
+        wanted.linear.x, wanted.linear.y, wanted.angular.z = speed, side, turn
         wanted.linear.z = self.number  # comes back in the answer; a stop has 0 there
         self.planner.publish(wanted)
         self.until(lambda: self.number in [command.linear.z for command in self.commands])

@@ -56,11 +56,13 @@ def test_the_newest_distance_counts(robot, guard):
 
 
 def test_a_turn_stays_as_it_is(robot, guard):
-    """Only linear.x is changed."""
+    """Only linear.x is changed: each other field stays, on a clear way and where it brakes."""
     guard(timeout=PATIENT)
-    robot.see(0.2)
-    answer = robot.ask(0.8, turn=0.7)
-    assert (answer.linear.x, answer.angular.z) == (0.0, 0.7)
+    for distance, speed in ((4.0, 0.8), (0.2, 0.0)):
+        robot.see(distance)
+        answer = robot.ask(0.8, turn=0.7, side=0.1)
+        fields = answer.linear.x, answer.linear.y, answer.angular.z
+        assert fields == pytest.approx((speed, 0.1, 0.7))
 
 
 def test_each_command_has_one_answer(robot, guard):

@@ -65,7 +65,8 @@ def test_the_two_distances_can_be_chosen():
 
 
 def test_distances_that_make_no_sense_are_refused():
-    """It raises ValueError unless 0 <= stop_distance < slow_distance."""
+    """It raises ValueError unless 0 <= stop_distance < slow_distance, whatever is wanted."""
     for stop, slow in ((-0.1, 1.0), (1.0, 1.0), (2.0, 1.0)):
-        with pytest.raises(ValueError):
-            safe_speed(0.8, 1.0, stop, slow)
+        for wanted in (0.8, -0.8):
+            with pytest.raises(ValueError):
+                safe_speed(wanted, 1.0, stop, slow)

@@ -58,7 +58,7 @@ LINES = (
         promise="at slow_distance and farther, the speed is the wanted one.",
         points=1,
         hints=(
-            "What does it return for a wall at 4 m, exactly? Not only: more than 0.",
+            "What does it return for a wall at 4 m, exactly, and at slow_distance itself? Not only: more than 0.",
             contract.MUTATE,
         ),
         doc=contract.APPROX,
@@ -95,7 +95,7 @@ LINES = (
         hints=(
             "The contract's lines have an order: the first that fits decides. "
             "Which line comes before the unknown ones?",
-            "Ask for -0.3 m/s with a wall in front, and with no distance at all.",
+            "Ask for -0.3 m/s with a wall in front, and with each way of not knowing: None, and math.nan.",
         ),
     ),
     Line(
@@ -107,17 +107,19 @@ LINES = (
         hints=(
             "The defaults are only defaults.",
             "Choose both distances anew, far from 0.5 and 1.5, and ask on and beside the new line.",
+            "0 is a stop_distance, too.",
         ),
     ),
     Line(
         id="refused",
         holds=("refused", "function-lines"),
         title="A test fails when distances that make no sense are accepted.",
-        promise="it raises ValueError unless 0 <= stop_distance < slow_distance.",
+        promise="it raises ValueError unless 0 <= stop_distance < slow_distance, whatever is wanted.",
         points=2,
         hints=(
             "with pytest.raises(ValueError): ...",
-            "The condition has two parts: 0 <= stop_distance, and stop_distance < slow_distance.",
+            "The condition has two parts: 0 <= stop_distance, and stop_distance < slow_distance. Equal ones break it.",
+            "It is the first line of the contract: it counts on the way back, too.",
         ),
         doc=contract.RAISES,
     ),

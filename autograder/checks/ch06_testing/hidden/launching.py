@@ -31,12 +31,12 @@ LINES = (
     Line(
         id="configuration",
         holds="launch-promise",
-        title="A test fails when the launched node does not get its configuration.",
-        promise="guard.launch.py starts the node with config/guard.yaml.",
+        title="A test fails when the launched node does not get both distances of its configuration.",
+        promise="guard.launch.py starts the node with config/guard.yaml, which has two distances.",
         points=2,
         hints=(
             "At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?",
-            "At 0.4 m: the defaults say stop, the configuration does not.",
+            "At 0.4 m, the configuration allows a fifth of the speed: asked for 0.8 m/s, 0.16 m/s and nothing else.",
         ),
         doc=contract.INTEGRATION,
     ),
@@ -49,6 +49,7 @@ LINES = (
         hints=(
             "A launch file that can be read has not yet started anything that lives.",
             "Ask the launched node something over its topics, and count on the answer within a deadline.",
+            "Look for its name among the nodes of the domain.",
         ),
         doc=contract.INTEGRATION,
     ),

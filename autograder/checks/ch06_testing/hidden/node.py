@@ -63,11 +63,11 @@ LINES = (
     Line(
         id="first_distance",
         holds=("first-distance", "node-lines"),
-        title="A test fails when the robot drives before the first distance has come.",
-        promise="a distance is not known before the first one has come.",
+        title="A test fails when the robot drives before the first distance has come, or may not drive back then.",
+        promise="a distance is not known before the first one has come, and the way back is free all the same.",
         points=1,
         hints=(
-            "Ask before you show it any distance.",
+            "Ask before you show it any distance, for a speed ahead and for one back.",
             contract.MUTATE,
         ),
     ),
@@ -85,12 +85,12 @@ LINES = (
     Line(
         id="turn",
         holds=("turn", "node-lines"),
-        title="A test fails when a turn is lost on the way.",
+        title="A test fails when a turn, or another field, does not come out as it went in.",
         promise="all fields but linear.x stay as they are.",
         points=1,
         hints=(
-            "A Twist has other fields than linear.x.",
-            "Ask with a turn, and look at angular.z of the answer.",
+            "A Twist has other fields than linear.x: ask with a turn and a sideways speed, and look at both.",
+            "On a clear way nothing is changed. Ask with a turn where the guard brakes, too.",
         ),
         doc=contract.TWIST,
     ),
@@ -148,7 +148,8 @@ LINES = (
         "and none before the first.",
         points=3,
         hints=(
-            "There are three things to see: nothing before the first command, zeros after the last, and only once.",
+            "There are four things to see: nothing before the first command, zeros after the last, only once, "
+            "and once more after the next command.",
             "That nothing comes can only be seen by spinning for some time, and counting afterwards.",
         ),
     ),

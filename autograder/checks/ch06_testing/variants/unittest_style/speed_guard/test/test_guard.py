@@ -49,10 +49,10 @@ class Harness:
         self.echo.get(timeout=8.0)
         self.answer(-1.0)
 
-    def answer(self, x, z=0.0):
+    def answer(self, x, z=0.0, y=0.0):
         """Publish a command and return what comes."""
         message = Twist()
-        message.linear.x, message.angular.z = x, z
+        message.linear.x, message.linear.y, message.angular.z = x, y, z
         self.raw.publish(message)
         return self.out.get(timeout=8.0)
 
@@ -94,6 +94,7 @@ def test_unknown_at_first():
     """It does not move before it has seen."""
     with guarded(timeout=30.0) as harness:
         assert harness.answer(0.5).linear.x == 0.0
+        assert harness.answer(-0.5).linear.x == -0.5
 
 
 def test_newest():
@@ -107,7 +108,8 @@ def test_newest():
 def test_turn():
     """A turn goes through."""
     with guarded(timeout=30.0) as harness:
-        assert harness.answer(0.5, z=-1.25).angular.z == -1.25
+        answer = harness.answer(0.5, z=-1.25, y=0.25)
+        assert (answer.linear.y, answer.angular.z) == (0.25, -1.25)
 
 
 def test_one_answer():
@@ -137,6 +139,7 @@ def test_watchdog():
     """One stop after a silence, none before it."""
     with guarded(timeout=0.15) as harness:
         assert harness.silence(0.5)
-        harness.answer(-0.5)
-        assert harness.out.get(timeout=8.0) == Twist()
-        assert harness.silence(0.5)
+        for _ in range(2):
+            harness.answer(-0.5)
+            assert harness.out.get(timeout=8.0) == Twist()
+            assert harness.silence(0.5)
