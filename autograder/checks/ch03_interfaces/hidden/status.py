@@ -74,6 +74,9 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
 @hint("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.")
 def test_status_stamp(reporter: Reporter) -> None:
     """Each status carries the time at which it was put together."""
+    reporter.publish_battery(0.5)
+    reporter.publish_joints([0.5])
+    reporter.run(0.5)  # so that the time at which a sensor was heard is another one, too
     stamp = reporter.status().header.stamp
     newest = reporter.messages(TOPIC)[-1].seconds
     age = reporter.now_ns / 1e9 - (reporter.seconds - newest) - (stamp.sec + stamp.nanosec / 1e9)
@@ -126,12 +129,13 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
 @hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
-    for percentage in (math.nan, 1.0 + draw.uniform(0.02, 0.09), -draw.uniform(0.02, 0.09)):
+    near, far = draw.uniform(0.001, 0.004), draw.uniform(0.02, 0.09)  # a percentage that is near would round into it
+    for percentage in (math.nan, 1.0 + far, -far, 1.0 + near, -near):
         reporter.publish_battery(0.5)
         reporter.run(0.1)
         reporter.publish_battery(percentage)
         said = reporter.status().battery_level
-        expect(said == UNKNOWN, f"At percentage {percentage:.2f} battery_level is {said}, instead of {UNKNOWN}.")
+        expect(said == UNKNOWN, f"At percentage {percentage:.4f} battery_level is {said}, instead of {UNKNOWN}.")
 
 
 @check(points=1, holds="charging", depends=NEEDS, doc=contract.BATTERY)

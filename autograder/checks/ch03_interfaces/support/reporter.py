@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from rclpy.time import Time
 from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Header
 
 from autograder.checks import expect
 from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE, STATUS
@@ -16,6 +18,7 @@ from autograder.harness import AutoHarness, Workspace
 BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
 OFFERS = {BATTERY: BatteryState, JOINTS: JointState}
 PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
+STALE_NS = 700_000_000  # how old what a sensor says is when it is said
 HEARD_SECONDS = 1.5  # until a battery that has spoken shows in the status; a status may be wrong, too
 ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, generous where time is real
 
@@ -30,12 +33,17 @@ class Reporter(AutoHarness):
 
     def publish_battery(self, percentage: float, *, status: int = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING) -> None:
         """Let the battery speak, from 0.0 to 1.0; the message is on its way until time goes on."""
-        self.publish(BATTERY, BatteryState(percentage=percentage, power_supply_status=status))
+        message = BatteryState(header=self._header(), percentage=percentage, power_supply_status=status)
+        self.publish(BATTERY, message)
 
     def publish_joints(self, positions: Sequence[float]) -> None:
         """Let the joints speak."""
         names = [f"joint_{number}" for number in range(len(positions))]
-        self.publish(JOINTS, JointState(name=names, position=list(positions)))
+        self.publish(JOINTS, JointState(header=self._header(), name=names, position=list(positions)))
+
+    def _header(self) -> Header:
+        """Return a header whose stamp is older than a status may be."""
+        return Header(stamp=Time(nanoseconds=self.now_ns - STALE_NS).to_msg())
 
     def status(self) -> Any:
         """Return the status that comes next; fail the check if none does."""

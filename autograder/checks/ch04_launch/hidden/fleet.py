@@ -26,13 +26,14 @@ def test_two_robots(launches: Launches) -> None:
 @check(points=2, holds="included", depends=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
 @hint("path leads to launch/robot.launch.py in the package's share folder.")
+@hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
 def test_includes(launches: Launches) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
     wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
     nodes = launch_probe.settle(launches.renamed_fleet(), wanted)
     expect(
         nodes == wanted,
-        "The checks put a robot.launch.py with one node, wheels, beside your file; it started "
+        "The checks put a robot.launch.py with one node, wheels, and report:=false beside your file; it started "
         f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(wanted)}.",
     )
 

@@ -55,13 +55,21 @@ def generate_launch_description():
 '''
 
 WITH_ONE_NODE = '''
-"""A robot.launch.py with one node of another name: only who includes this file starts it."""
+"""A robot.launch.py with one node of another name and another default: only who includes this file starts it."""
 
 from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import UnlessCondition
+from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    """Start the driver as wheels."""
-    return LaunchDescription([Node(package='my_robot_bringup', executable='driver', name='wheels')])
+    """Start the driver as wheels, where report has the default of this file."""
+    return LaunchDescription([
+        DeclareLaunchArgument('report', default_value='false'),
+        Node(
+            package='my_robot_bringup', executable='driver', name='wheels',
+            condition=UnlessCondition(LaunchConfiguration('report'))),
+    ])
 '''
