@@ -69,9 +69,9 @@ def verify(
 
     The reference and right answers in another style have every point. The untouched release has none. Each named
     mutant loses the checks that it names, and no other. No attack gains a point. Then come the mutants of every kind
-    in everything that students write: 97 in 100 lose a point, and every other one has a reason. One that has a reason
-    is graded only if it is named. A run that was stopped goes on with those that are left. mutants.md, in the folder
-    for the results, has the table.
+    in everything that students write. Of those that somebody could tell from the reference, 97 in 100 lose a point, and
+    every other one has a reason. One that has a reason is graded only if it is named. A run that was stopped goes on
+    with those that are left. mutants.md, in the folder for the results, has the table.
 
     The exit status is 0 when all of this holds, and 1 otherwise.
     """

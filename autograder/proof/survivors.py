@@ -23,11 +23,12 @@ from autograder.proof.population import Population
 from autograder.proof.survey import FAILED, Fate
 
 KINDS = ("equivalent", "outside")
-LEAST_KILLED, LEAST_KILLED_OF_ALL = 0.95, 0.97  # shares of a chapter's mutants, and of all chapters'
+LEAST_KILLED, LEAST_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
 HEAD = """# The mutants
 
-Every slip of every operator in what students write, graded up to the first check that it loses. `killed/all` counts
-also those that nobody could kill. Left out as equivalent or as twins before grading: """
+Every slip of every operator in what students write, graded up to the first check that it loses. A cell is
+`killed/all`. The score is killed / (all - equivalent); mutants outside of the contract count as not killed.
+Left out as equivalent or as twins before grading: """
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,16 @@ class Surveyed:
     def survivors(self) -> dict[str, str]:
         """The ids of the mutants that no check killed, each with its reason or ""."""
         return {fate.id: self.reasons.get(fate.id, "") for fate in self.fates if not fate.killed}
+
+    @property
+    def killed(self) -> int:
+        """How many mutants a check killed."""
+        return len(self.fates) - len(self.survivors)
+
+    @property
+    def killable(self) -> int:
+        """How many mutants were graded, without the survivors that are equivalent to the reference."""
+        return len(self.fates) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
     def unexplained(self) -> list[str]:
@@ -72,9 +83,9 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
 
 def holds(surveyed: Sequence[Surveyed]) -> bool:
     """Return whether enough mutants were killed, of each chapter and of all, and every other one has a reason."""
-    shares = [1 - len(each.survivors) / len(each.fates) for each in surveyed]
-    lived, graded = sum(len(each.survivors) for each in surveyed), sum(len(each.fates) for each in surveyed)
-    enough = min(shares, default=1.0) >= LEAST_KILLED and lived <= (1 - LEAST_KILLED_OF_ALL) * graded
+    killed, killable = sum(each.killed for each in surveyed), sum(each.killable for each in surveyed)
+    enough = all(each.killed >= LEAST_KILLED * each.killable for each in surveyed)
+    enough = enough and killed >= LEAST_KILLED_OF_ALL * killable
     return enough and not any(each.unexplained for each in surveyed)
 
 
@@ -94,16 +105,20 @@ def mutant_counts(surveyed: Iterable[Surveyed]) -> dict[str, dict[str, list[int]
 def report(surveyed: Sequence[Surveyed]) -> str:
     """Return the table chapter x operator, and all survivors with their places, as Markdown."""
     left_out = sum(each.population.left_out for each in surveyed)
-    return "\n".join([f"{HEAD}{left_out}.\n", *_table(mutant_counts(surveyed)), *_survivors(surveyed)])
+    return "\n".join([f"{HEAD}{left_out}.\n", *_table(surveyed), *_survivors(surveyed)])
 
 
-def _table(found: Mapping[str, Mapping[str, list[int]]]) -> Iterator[str]:
+def _table(surveyed: Sequence[Surveyed]) -> Iterator[str]:
+    found = mutant_counts(surveyed)
     operators = sorted({name for rows in found.values() for name in rows}, key=lambda name: (name == "all", name))
     rows = []
     for operator in operators:
         cells = [chapter.get(operator, [0, 0]) for chapter in found.values()]
         both = [[sum(cell[i] for cell in cells) for i in (0, 1)], *cells]
         rows.append((operator, *(f"{killed}/{every}" if every else "" for killed, every in both)))
+    scores = [(each.killed, each.killable) for each in surveyed]
+    scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
+    rows.append(("without the equivalent", *(f"{killed}/{killable}" for killed, killable in scores)))
     yield from table(("operator", "all", *(name[:2] for name in found)), rows)
 
 

@@ -66,19 +66,23 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     found = with_reason(found, monkeypatch, f"- {{equivalent: so it is, mutants: ['{survivor}']}}", tmp_path)
     assert found.survivors == {survivor: "equivalent: so it is"}
     assert holds([found])
-    assert "39/40" in report([found])
+    assert "| 39/40" in report([found])
+    assert "39/39" in report([found])
+    assert (found.killed, found.killable) == (39, 39)
     assert "equivalent: so it is" in report([found])
     assert mutant_counts([found])[ASSIGNMENT]["all"] == [39, 40]
 
 
-def test_too_many_survivors_are_too_many_whatever_their_reasons(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+@pytest.mark.parametrize(("kind", "killable", "enough"), [("equivalent", 38, True), ("outside", 40, False)])
+def test_the_score_leaves_out_the_equivalent_and_counts_those_outside_of_the_contract(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: str, killable: int, enough: bool
 ) -> None:
     found = surveyed(*["starts"] * 38, "", "")
     names = [fate.id for fate in found.fates[-2:]]
-    found = with_reason(found, monkeypatch, f"- {{outside: nobody says so, mutants: {names}}}", tmp_path)
+    found = with_reason(found, monkeypatch, f"- {{{kind}: so it is, mutants: {names}}}", tmp_path)
     assert found.unexplained == []
-    assert not holds([found])
+    assert (found.killed, found.killable) == (38, killable)
+    assert holds([found]) == enough
 
 
 def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
