@@ -154,7 +154,7 @@ def _constants(source: Source, node: ast.AST) -> Iterator[Simple]:
     value = node.value
     if isinstance(value, bool):
         yield "constant", node, str(not value)
-    elif isinstance(value, str):
+    elif isinstance(value, str) and " " not in value:  # a sentence is for people, and no name
         yield "name", node, repr(f"{value}s" if value else "x")
     elif isinstance(value, int | float):
         yield from ((name, node, text) for name, text in numbers(value))

@@ -96,7 +96,7 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
     reporter.set_battery(draw.randrange(60, 101))
-    for bad in (-draw.uniform(0.1, 5.0), math.nan, math.inf):
+    for bad in (-draw.uniform(0.1, 0.9), -draw.uniform(1.5, 5.0), math.nan, math.inf):
         legs = [draw.uniform(1.0, 9.0), bad]
         draw.shuffle(legs)
         _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")

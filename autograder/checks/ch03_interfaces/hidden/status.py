@@ -112,7 +112,7 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
     """battery_level is the newest battery state in whole percent."""
     levels = [0, 100, *(draw.randrange(1, 100) for _ in range(CASES))]
     for number, level in enumerate(levels):
-        offset = (-0.3, 0.3)[number % 2] if 0 < level < 100 else 0.0
+        offset = (-0.47, 0.47)[number % 2] if 0 < level < 100 else 0.0
         reporter.publish_battery(draw.random())
         reporter.publish_battery((level + offset) / 100.0)
         said = reporter.status().battery_level
