@@ -7,6 +7,7 @@ from math import inf, isclose, isnan, nan
 from statistics import fmean
 
 from rclpy.qos import ReliabilityPolicy
+from sensor_msgs.msg import LaserScan
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import HISTORY, LOGGING, PACKAGE, QOS, TOLERANCE
@@ -24,6 +25,8 @@ SECONDS = 20.0
 @hint("create_publisher twice and create_subscription once, in __init__; the names are relative.")
 def test_endpoints(processor: Processor) -> None:
     """sensor_processor takes scan and offers scan_filtered and mean_distance."""
+    names = processor.nodes()
+    expect("/sensor_processor" in names, f"The node is called {', '.join(names)}, it should be /sensor_processor.")
     expect(processor.takes("/scan"), "It does not subscribe to scan as sensor_msgs/msg/LaserScan.")
     for topic, kind in (("/scan_filtered", "sensor_msgs/msg/LaserScan"), ("/mean_distance", "std_msgs/msg/Float32")):
         types = {peer.topic_type for peer in processor.node.get_publishers_info_by_topic(topic)}
@@ -109,14 +112,19 @@ def test_blind_scan(processor: Processor) -> None:
 
 @check(points=2, holds="warns", depends=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
-def test_warns_now_and_then(processor: Processor) -> None:
-    """While the lidar sees nothing, it warns, at most once a second."""
-    before = processor.output.count("[WARN]")
-    processor.show(*(scan([nan]) for _ in range(round(SECONDS * 10))))
-    warnings = processor.output.count("[WARN]") - before
-    expect(warnings > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
-    expect(warnings > 1, f"Blind for {SECONDS:.0f} s, it warned only once.", fraction=0.5)
-    expect(warnings <= SECONDS + 2, f"Blind for {SECONDS:.0f} s, it warned {warnings} times.", fraction=0.5)
+def test_warns_now_and_then(fresh_processor: Processor) -> None:
+    """While the lidar sees nothing, it warns, at most once a second; while it sees something, it does not."""
+    seeing, half = scan([0.05, 1.0, nan, inf, -inf, 9.0]), round(SECONDS * 10) // 2
+    needless = _warnings(fresh_processor, [seeing] * 5)
+    warnings = _warnings(fresh_processor, [scan([inf, nan, -inf, 0.05])] * half)
+    of_none = _warnings(fresh_processor, [scan([])] * half)
+    expect(warnings + of_none > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
+    expect(warnings + of_none > 1, f"Blind for {SECONDS:.0f} s, it warned only once.", fraction=0.5)
+    many = f"Blind for {SECONDS:.0f} s, it warned {warnings + of_none} times."
+    expect(warnings + of_none <= SECONDS + 2, many, fraction=0.5)
+    expect(not needless, "It warned of a scan that keeps a finite distance.", fraction=0.5)
+    expect(warnings > 0, "Infinities are no finite distance, and it did not warn of a scan of them.", fraction=0.5)
+    expect(of_none > 0, "It did not warn of scans without any beam.", fraction=0.5)
 
 
 @check(points=1, holds="any-length", depends=("filtered",))
@@ -127,6 +135,13 @@ def test_any_lidar(processor: Processor) -> None:
         filtered, _ = processor.show(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
+
+
+def _warnings(processor: Processor, scans: list[LaserScan]) -> int:
+    """Return how often it warns when it is shown these scans."""
+    before = processor.output.count("[WARN]")
+    processor.show(*scans)
+    return processor.output.count("[WARN]") - before
 
 
 def _alike(got: float, wanted: float) -> bool:

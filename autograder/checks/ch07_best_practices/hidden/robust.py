@@ -9,12 +9,21 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch07_best_practices.support.contract import ERRORS, LOGGING, QOS, RANDOM, ROBUST, RULE_STATUS
+from autograder.checks.ch07_best_practices.support.contract import (
+    ERRORS,
+    LOGGING,
+    PACKAGE,
+    QOS,
+    RANDOM,
+    ROBUST,
+    RULE_STATUS,
+)
 from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, expected
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, made, make
+from autograder.probes.namespaces import left_behind
 from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence
 
 check = group("robust")
@@ -35,14 +44,17 @@ def test_once_a_second(workspace: Workspace) -> None:
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 
-@check(points=2, holds="once-a-second", depends=("once_a_second",), doc=QOS)
+@check(points=2, holds=("once-a-second", "robust-relative"), depends=("once_a_second",), doc=QOS)
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.", "STATUS_QOS, not 10.")
+@hint("'status' is relative, '/status' is not.")
 def test_late_joiners(workspace: Workspace) -> None:
-    """A node that joins late can have the last status immediately: it is offered transient local."""
+    """A node that joins late can have the last status immediately, in any namespace: it is offered transient local."""
     with Robust(workspace) as harness:
         offered = harness.node.get_publishers_info_by_topic(WORDS)
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
+    left = left_behind(workspace, PACKAGE, "robust_node", ("status",))
+    expect(not left, left, fraction=0.5)
 
 
 @check(points=3, holds=("failed", "ok", "generator", "read-sensor"), depends=("once_a_second",))
@@ -63,6 +75,14 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     ended = (succeeded.value, failed.raised)
     said_of = f"With the probabilities 0 and 1, read_sensor returned {ended[0]!r} and raised {ended[1] or 'nothing'}"
     expect(ended == ("Success", "SensorError"), f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
+    *_, equal = calls(
+        workspace,
+        ROBUST,
+        make("Mock", module="unittest.mock", **{"random.return_value": probability}),
+        call("read_sensor", made(0), probability),
+    )
+    said_of = f"When the generator says {probability}, and the probability is that, read_sensor raised {equal.raised}"
+    expect(equal.value == "Success", f"{said_of}: only a number below it is a failure.", fraction=0.5)
     twice_asked = random.Random(seed)
     wanted_third = [twice_asked.random() for _ in range(3)][2]
     asked = third.value == wanted_third
@@ -144,7 +164,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     expect(logged == wanted, f"It recovered after {counts} errors, and logged {logged or 'nothing of it'}.")
 
 
-@check(points=2, holds="catch", depends=("once_a_second",), doc=ERRORS)
+@check(points=2, holds=("catch", "handed-on"), depends=("once_a_second",), doc=ERRORS)
 @hint("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen.")
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
@@ -157,14 +177,17 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
             call("init", module="rclpy"),
             make("RuntimeError", "a bug", module="builtins"),
             make("Mock", module="unittest.mock", **generator),
-            make("RobustNode", generator=made(2)),
+            make("RobustNode", generator=made(2), namespace="hall"),
             call("timer_callback", on=3),
+            call("get_namespace", on=3),
             network=True,
         )
-        built, called = outcomes[3:]
+        built, called, within = outcomes[3:]
         expect(not built.raised, f"RobustNode(generator=...) raised {built.raised}: {built.message}")
         expect(bool(called.raised), f"A bug in timer_callback raised {bug}, and it was swallowed.")
         expect(called.raised == bug, f"A bug in timer_callback raised {called.raised} instead of the {bug} itself.")
+        said = f"RobustNode(namespace='hall') is in {within.value}: its kwargs are for Node."
+        expect(within.value == "/hall", said, fraction=0.5)
 
 
 @check(points=1, holds=("failure-probability", "seed", "max-errors"), depends=("once_a_second",))

@@ -16,10 +16,16 @@ from autograder.checks.ch07_best_practices.support.contract import (
     UTILS,
 )
 from autograder.harness import Workspace
-from autograder.probes.calls import Outcome, call, calls, make, same, value
+from autograder.probes.calls import Outcome, call, calls, made, make, same, value
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
+DEFAULT_HISTORY = 100
+SEQUENCES = {
+    "a tuple": ("builtins", "tuple", ()),
+    "an array.array": ("array", "array", ("d",)),
+    "a numpy array": ("numpy", "array", ()),
+}
 
 
 @check(points=1, holds=("mask", "places"), doc=REP_117)
@@ -112,6 +118,31 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
+@check(points=1, holds="sequences", depends=("keeps_places", "mean"))
+@hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
+def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
+    """The readings may come as a tuple, as an array.array or as a numpy array."""
+    near, far = round(draw.uniform(LOW, 3.0), 2), round(draw.uniform(3.0, HIGH), 2)
+    readings, kept = [near, nan, far, 3 * HIGH, inf], [near, nan, far, nan, inf]
+    wanted = [kept, fmean([near, far, 3 * HIGH]), kept, fmean([near, far])]
+    for kind, (module, name, first) in SEQUENCES.items():
+        outcomes = calls(
+            workspace,
+            UTILS,
+            make(name, *first, readings, module=module),
+            make("DataProcessor", 2),
+            call("mask_invalid", made(0), LOW, HIGH),
+            call("mean_distance", made(0)),
+            call("process", made(0), LOW, HIGH, on=1),
+            call("average", on=1),
+        )[2:]
+        for called, outcome, right in zip(
+            ("mask_invalid", "mean_distance", "process", "average"), outcomes, wanted, strict=True
+        ):
+            seen = value(outcome, f"{called} of {kind}")
+            expect(same(seen, right), f"With {readings} as {kind}, {called} returned {seen} instead of {right}.")
+
+
 @check(points=2, holds=("history", "process"), depends=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
@@ -123,6 +154,10 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
         same(average, wanted),
         f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {wanted:.4f}.",
     )
+    many = [round(draw.uniform(1.0, 5.0), 3) for _ in range(DEFAULT_HISTORY + 7)]
+    average, wanted = value(_processed(workspace, None, [[mean] for mean in many])[-1], "average()"), fmean(many[7:])
+    said = f"After {len(many)} scans, DataProcessor().average() is {average}; the newest 100 have {wanted:.4f}."
+    expect(same(average, wanted), said, fraction=0.75)
 
 
 @check(points=1, holds=("process", "average"), depends=("bounded_history", "no_mean"))
@@ -154,7 +189,8 @@ def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
     return list(masked)
 
 
-def _processed(workspace: Workspace, history: int, scans: list[list[float]]) -> list[Outcome]:
-    """Let a DataProcessor take scans; return the outcomes, `average()`'s last."""
+def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[Outcome]:
+    """Let a DataProcessor, of the default history if None, take scans; return the outcomes, `average()`'s last."""
+    sizes = () if history is None else (history,)
     process = [call("process", readings, LOW, HIGH, on=0) for readings in scans]
-    return calls(workspace, UTILS, make("DataProcessor", history), *process, call("average", on=0))
+    return calls(workspace, UTILS, make("DataProcessor", *sizes), *process, call("average", on=0))
