@@ -18,6 +18,7 @@ from autograder.harness.drive import SCAN_SECONDS
 OFFERS = {"/scan": LaserScan, "/status": String}
 LISTENS = {"/cmd_vel": Twist}
 SETTLED = 0.25  # s: a controller at 10 Hz has answered a scan by then
+WRITTEN_SECONDS = 5.0  # of real time until a line that was logged is read; only a silent node takes so long
 
 
 class Robot(AutoHarness):

@@ -101,7 +101,7 @@ class RobotController(Node):
 
         No scan yet, a newest scan older than SCAN_TIMEOUT, or no forward reading that
         counts: stand still. Something nearer than SAFETY_DISTANCE: turn at TURN_RATE on the
-        spot, and warn at most once a second. Otherwise: FORWARD_SPEED, straight on.
+        spot, and warn once a second. Otherwise: FORWARD_SPEED, straight on.
         """
         command = Twist()
         clearance = self.current_clearance()

@@ -56,7 +56,7 @@ def assemble(node):
         what = verdict(scan)
         decide(what)
         if what is left:
-            node.get_logger().warning("Something is in the way", throttle_duration_sec=2.0)
+            node.get_logger().warning("Something is in the way", throttle_duration_sec=1.0)
 
     def beat():
         with lock:
