@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from random import Random
 
-from autograder.checks import expect, group, hint
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     COOL,
@@ -20,6 +21,7 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
 from autograder.probes.namespaces import left_behind
+from autograder.probes.parameters import NodeParameters
 
 check = group("nodes")
 BUILT = ("installs",)
@@ -128,15 +130,20 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         _expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
 
 
-@check(points=2, holds="hot-cool", depends=("hysteresis",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("hot-cool", "at-start"), depends=("hysteresis",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__.")
+@hint("self.hot = ... in __init__ is read once; get_parameter in a callback is not.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
-    """Guard decides by its parameters hot and cool; it ends with an error at the start unless cool is less than hot."""
+    """Guard decides by hot and cool as they were at its start, which fails unless cool is less than hot."""
     cool = round(draw.uniform(20.0, 30.0), 1)
     hot = round(cool + draw.uniform(5.0, 10.0), 1)
     with start(GUARD, hot=hot, cool=cool) as harness:
         temperatures = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
         _expect_decisions(harness, temperatures, f"With hot {hot} and cool {cool}: ", hot=hot, cool=cool)
+        with suppress(CheckFailed):  # it may refuse, or have no services of parameters
+            NodeParameters(harness, f"/{GUARD}").change({"hot": hot + 5.0, "cool": cool - 5.0})
+        where = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
+        _expect_decisions(harness, [hot + 1.0, cool - 1.0], where, hot=hot, cool=cool, fraction=0.5)
     for impossible in (hot, hot + 5.0):
         refused = refuses(workspace, types, GUARD, hot=hot, cool=impossible)
         expect(refused, f"guard started with hot {hot} and cool {impossible}.", fraction=0.5)

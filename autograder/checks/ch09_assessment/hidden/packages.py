@@ -35,15 +35,17 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
 
-@check(points=1, holds="packages", doc=contract.INTERFACES_DOC)
-@hint("Which tool installs what the generated code needs when it runs?", "Two tags, besides the generators'.")
+@check(points=1, holds=("packages", "stamp-package"), doc=contract.INTERFACES_DOC)
+@hint("Which tool installs what the generated code needs when it runs?", "Three tags, besides the generators'.")
 def test_interface_manifest(workspace: Workspace) -> None:
-    """package.xml of motor_guard_interfaces says that it holds messages, and what these need when they run."""
+    """package.xml of motor_guard_interfaces says that it holds messages, and what these need."""
     found = manifest.read(source_of(workspace, INTERFACES))
     group = "rosidl_interface_packages"
     expect(group in found.groups, f"package.xml does not say <member_of_group>{group}.", fraction=0.5)
     lacks = {"rosidl_default_runtime"} - found.needs("exec")
     expect(not lacks, "package.xml has no exec_depend on rosidl_default_runtime.", fraction=0.5)
+    declared = "builtin_interfaces" in found.needs("build") & found.needs("exec")
+    expect(declared, "package.xml has no depend on builtin_interfaces, whose Time the messages hold.", fraction=0.5)
 
 
 @check(points=2, holds="packages", depends=("messages_are_generated",), doc=contract.PACKAGES_DOC)
