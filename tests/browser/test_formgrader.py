@@ -135,6 +135,7 @@ def grade_by_hand(room: Classroom, everybody: list[Student], home: Path, chromiu
         expect(listed).to_have_count(len(everybody), timeout=PATIENCE * 1000)
         for link in [str(each.get_attribute("href")) for each in listed.all()]:
             page.goto(urljoin(server.url, link))
+            page.wait_for_function("window.formgrader?.grades?.loaded")  # before, it does not hear what is typed
             words = page.locator("body").inner_text()
             assert SCHEME in words
             for text in [text for text in points if text in words]:
