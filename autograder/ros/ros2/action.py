@@ -18,7 +18,7 @@ from rclpy.action import (
 )
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.filling import filled
+from autograder.ros.ros2.filling import add_values, filled, given_values
 from autograder.ros.ros2.parsing import Outcome, Verb
 from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
@@ -107,7 +107,7 @@ def _type(args: argparse.Namespace) -> Outcome:
 def _send_goal_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
     parser.add_argument("action_type", help="Type of the ROS action (e.g. 'my_interfaces/action/Fibonacci')")
-    parser.add_argument("goal", help="Goal request values in YAML format (e.g. '{order: 10}')")
+    add_values(parser, "goal", "Goal request values in YAML format (e.g. '{order: 10}')")
     parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
     add_session_arguments(parser)
 
@@ -116,7 +116,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
     from rosidl_runtime_py import message_to_yaml
 
     action_class = graph.load_class(args.action_type, "action")
-    goal, _ = filled(action_class.Goal, args.goal, "message fields", stamps=False)
+    goal, _ = filled(action_class.Goal, given_values(args, "goal"), "message fields", stamps=False)
 
     def on_feedback(message: Any) -> None:
         print(f"Feedback:\n    {message_to_yaml(message.feedback)}")

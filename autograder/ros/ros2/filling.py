@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import argparse
+import sys
 from typing import Any
 
 import yaml
 from rosidl_runtime_py import set_message_fields
 
 from autograder.ros.ros2.exceptions import Ros2Error
+
+
+def add_values(parser: argparse.ArgumentParser, name: str, text: str) -> None:
+    """Add an argument for values in YAML, {} by default, and `--stdin`; `text` is its help."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument(name, nargs="?", default="{}", help=text)
+    group.add_argument("--stdin", action="store_true", help="Read the values from standard input")
+
+
+def given_values(args: argparse.Namespace, name: str) -> str:
+    """Return the YAML text that the user gave, as the argument `name` or on standard input."""
+    return sys.stdin.read() if args.stdin else str(getattr(args, name))
 
 
 def filled(interface: Any, text: str, noun: str, *, stamps: bool = True) -> tuple[Any, list[Any]]:

@@ -68,12 +68,15 @@ def _visible(names_and_types: Any, include_hidden: bool) -> NamesAndTypes:
     return sorted((name, types) for name, types in names_and_types if include_hidden or not has_hidden_part(name))
 
 
-def find_node(session: Session, text: str, *, include_hidden: bool = True) -> NodeName | None:
-    """Wait for the node that the user named; `None` if it does not show up."""
+def find_node(
+    session: Session, text: str, *, include_hidden: bool = True, timeout: float | None = None
+) -> NodeName | None:
+    """Wait for the node that the user named; `None` if it does not show up before `timeout`."""
     wanted = NodeName.parse(text)
     if wanted.hidden and not include_hidden:
         return None
-    return wanted if session.wait_for(lambda: wanted in node_names(session, include_hidden=True)) else None
+    there = session.wait_for(lambda: wanted in node_names(session, include_hidden=True), timeout)
+    return wanted if there else None
 
 
 def full_topic_name(node: Node, topic: str) -> str:

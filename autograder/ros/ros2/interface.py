@@ -21,13 +21,17 @@ def _kind_arguments(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def _chosen(args: argparse.Namespace) -> list[tuple[str, dict[str, list[str]]]]:
-    """Return a heading and the interfaces by package, for each kind asked for, all kinds by default."""
+def _chosen(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tuple[str, dict[str, list[str]]]]:
+    """Return a heading and the interfaces by package, for each kind asked for, all kinds by default.
+
+    Raises:
+        LookupError: one of `packages` does not exist, or has no interfaces.
+    """
     from rosidl_runtime_py import get_action_interfaces, get_message_interfaces, get_service_interfaces
 
     getters = {"msg": get_message_interfaces, "srv": get_service_interfaces, "action": get_action_interfaces}
     asked = [kind for _, kind, _ in _KINDS if getattr(args, f"only_{kind}s")]
-    return [(plural, getters[kind]()) for _, kind, plural in _KINDS if not asked or kind in asked]
+    return [(plural, getters[kind](packages)) for _, kind, plural in _KINDS if not asked or kind in asked]
 
 
 def _list(args: argparse.Namespace) -> Outcome:
@@ -46,19 +50,17 @@ def _packages(args: argparse.Namespace) -> Outcome:
 
 
 def _package_arguments(parser: argparse.ArgumentParser) -> None:
+    _kind_arguments(parser)
     parser.add_argument("package_name", help="Name of the ROS package (e.g. 'std_msgs')")
 
 
 def _package(args: argparse.Namespace) -> Outcome:
-    from rosidl_runtime_py import get_interfaces
-
     try:
-        found = get_interfaces([args.package_name])
+        chosen = _chosen(args, (args.package_name,))
     except LookupError as error:
         return _message(error)
-    for package in sorted(found):
-        for name in sorted(found[package]):
-            print(f"{package}/{name}")
+    for name in sorted(name for _, found in chosen for name in found.get(args.package_name, ())):
+        print(f"{args.package_name}/{name}")
     return None
 
 

@@ -37,7 +37,8 @@ _TYPES = {
 @contextmanager
 def _parameters(args: argparse.Namespace) -> Iterator[NodeParameters]:
     with open_session(args) as session:
-        found = graph.find_node(session, args.node_name, include_hidden=args.include_hidden_nodes)
+        timeout = getattr(args, "timeout", None)
+        found = graph.find_node(session, args.node_name, include_hidden=args.include_hidden_nodes, timeout=timeout)
         if found is None:
             raise Ros2Error("Node not found")
         yield NodeParameters(session, found.full_name)
@@ -47,6 +48,7 @@ def _node_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("node_name", help="Name of the ROS node")
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+    parser.add_argument("--timeout", metavar="N", type=int, help="Wait for N seconds until node becomes available")
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ import argparse
 import time
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.filling import filled
+from autograder.ros.ros2.filling import add_values, filled, given_values
 from autograder.ros.ros2.parsing import Outcome, Verb, positive_float
 from autograder.ros.ros2.session import NAMED_QUIET, add_session_arguments, open_session
 
@@ -86,11 +86,10 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_name", help="Name of the ROS service to call to (e.g. '/add_two_ints')")
     parser.add_argument("service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')")
-    parser.add_argument(
+    add_values(
+        parser,
         "values",
-        nargs="?",
-        default="{}",
-        help="Values to fill the service request with in YAML format (e.g. '{data: true}'), "
+        "Values to fill the service request with in YAML format (e.g. '{data: true}'), "
         "otherwise the request will be sent with default values",
     )
     parser.add_argument(
@@ -100,7 +99,7 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _call(args: argparse.Namespace) -> Outcome:
     service_class = graph.load_class(args.service_type, "srv")
-    request, _ = filled(service_class.Request, args.values, "field", stamps=False)
+    request, _ = filled(service_class.Request, given_values(args, "values"), "field", stamps=False)
     with open_session(args) as session:
         client = session.node.create_client(service_class, args.service_name)
         if not client.service_is_ready():

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.filling import filled
+from autograder.ros.ros2.filling import add_values, filled, given_values
 from autograder.ros.ros2.parsing import Outcome, positive_float, unsigned_int
 from autograder.ros.ros2.qos import add_qos_arguments, chosen_profile
 from autograder.ros.ros2.session import Session, add_session_arguments, open_session
@@ -22,11 +22,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `ros2 topic pub`."""
     parser.add_argument("topic_name", help="Name of the ROS topic to publish to (e.g. '/chatter')")
     parser.add_argument("message_type", help="Type of the ROS message (e.g. 'std_msgs/msg/String')")
-    parser.add_argument(
+    add_values(
+        parser,
         "values",
-        nargs="?",
-        default="{}",
-        help='Values to fill the message with in YAML format (e.g. "data: Hello World"), otherwise the message will '
+        'Values to fill the message with in YAML format (e.g. "data: Hello World"), otherwise the message will '
         "be published with default values; a header may be 'auto' and a time 'now'",
     )
     parser.add_argument(
@@ -71,7 +70,7 @@ def run(args: argparse.Namespace) -> Outcome:
     if args.max_wait_time_secs is not None and wanted == 0:
         return "--max-wait-time-secs option is only effective with --wait-matching-subscriptions, --once or --times"
     message_class = graph.load_class(args.message_type, "msg")
-    message, stamps = filled(message_class, args.values, "field")
+    message, stamps = filled(message_class, given_values(args, "values"), "field")
     with open_session(args, node_name=args.node_name) as session:
         publisher = session.node.create_publisher(message_class, args.topic_name, chosen_profile(args))
         if not _wait_for_subscriptions(session, publisher, wanted, args.max_wait_time_secs):

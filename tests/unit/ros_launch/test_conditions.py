@@ -65,3 +65,8 @@ def test_a_launch_configuration_is_compared_with_a_text(
 def test_a_condition_that_is_none_is_refused_at_once() -> None:
     with pytest.raises(TypeError, match=r"LogInfo: condition must be a launch.Condition such as IfCondition.*got str"):
         LogInfo(msg="", condition="true")
+
+
+def test_a_condition_describes_itself(context: LaunchContext) -> None:
+    condition = IfCondition("true")
+    assert condition.describe() == repr(condition)

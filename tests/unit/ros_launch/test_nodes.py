@@ -57,6 +57,7 @@ def test_a_node_gets_name_namespace_and_remappings(run: Run) -> None:
         "-r", "__ns:=/robot_1", "-r", "scan:=front/scan", "-r", "cmd:=/cmd_vel",
     ]  # fmt: skip
     assert node.node_name == "/robot_1/driver"
+    assert node.expanded_remapping_rules == [("scan", "front/scan"), ("cmd", "/cmd_vel")]
 
 
 def test_a_node_without_a_name_keeps_its_own(run: Run) -> None:

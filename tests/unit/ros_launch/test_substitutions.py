@@ -181,3 +181,10 @@ def test_a_choice_needs_a_value() -> None:
 )
 def test_a_substitution_describes_itself_without_a_context(substitution: Any, description: str) -> None:
     assert substitution.describe() == description
+
+
+@pytest.mark.parametrize("kind", [AndSubstitution, OrSubstitution])
+def test_both_sides_can_be_asked_for(context: LaunchContext, kind: Any) -> None:
+    decision = kind("true", ["f", LaunchConfiguration("rest", default="alse")])
+    assert [context.perform_substitution(part) for part in decision.left] == ["true"]
+    assert [context.perform_substitution(part) for part in decision.right] == ["f", "alse"]

@@ -13,6 +13,10 @@ class Condition:
     def __init__(self, *, predicate: Callable[[LaunchContext], bool]) -> None:
         self._predicate = predicate
 
+    def describe(self) -> str:
+        """Return a description, that of `repr`."""
+        return repr(self)
+
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether the condition holds in `context`."""
         return self._predicate(context)

@@ -76,6 +76,7 @@ class AndSubstitution(AllSubstitution):
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
+        self.left, self.right = self.args
 
 
 class OrSubstitution(AnySubstitution):
@@ -83,6 +84,7 @@ class OrSubstitution(AnySubstitution):
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
+        self.left, self.right = self.args
 
 
 def _comparable(value: Any) -> list[Substitution]:

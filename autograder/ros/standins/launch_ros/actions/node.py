@@ -64,6 +64,7 @@ class Node(ExecuteProcess):
         self._remappings = [self._pair(rule) for rule in remappings or ()]
         self.expanded_node_name = _NO_NAME
         self.expanded_node_namespace = _NO_NAMESPACE
+        self.expanded_remapping_rules: list[tuple[str, str]] | None = None
 
     @staticmethod
     def _pair(rule: Any) -> RemapRule:
@@ -159,6 +160,7 @@ class Node(ExecuteProcess):
     def _remap_arguments(self, context: LaunchContext) -> list[str]:
         rules = list(context.launch_configurations.get("ros_remaps", ()))
         rules += [(_perform(context, before), _perform(context, after)) for before, after in self._remappings]
+        self.expanded_remapping_rules = rules or None
         return [argument for before, after in rules for argument in ("-r", f"{before}:={after}")]
 
     def _warn_of_twins(self, context: LaunchContext) -> None:
