@@ -85,6 +85,14 @@ def test_the_score_leaves_out_the_equivalent_and_counts_those_outside_of_the_con
     assert holds([found]) == enough
 
 
+def test_a_pair_has_the_reason_of_its_halves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    pair = next(mutant.id for mutant in population(ASSIGNMENT).mutants if mutant.operator == "pair")
+    one, other = pair.split(" + ")
+    text = f"- {{outside: who cares, mutants: ['{one}']}}\n- {{equivalent: the same, mutants: ['{other}']}}"
+    found = Surveyed(ASSIGNMENT, population(ASSIGNMENT), {})
+    assert with_reason(found, monkeypatch, text, tmp_path).reasons[pair] == "outside: who cares"
+
+
 def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     found = surveyed(*["starts"] * 39, FAILED)
     found = with_reason(
