@@ -13,7 +13,7 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
 from autograder import feedback
-from autograder.course.sync import Chapter, chapters
+from autograder.course.sync import chapters
 from autograder.gallery import Gallery
 from autograder.layout import ROOT
 from autograder.result import Artifact, Result
@@ -108,12 +108,12 @@ def test_the_run_on_the_start_page_plays_by_keyboard(site: Path, page: Page) -> 
     expect(run.locator("output").first).not_to_have_text("0.00 s")
 
 
-@pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
-def test_each_word_of_the_glossary_is_linked_once_in_a_chapter(site: Path, chapter: Chapter) -> None:
-    text = (site / "chapters" / f"{chapter.assignment}.html").read_text(encoding="utf-8")
-    words = re.findall(r'href="\.\./glossary\.html#(term-[^"]+)"', text)
-    assert len(words) >= 5
-    assert len(words) == len(set(words))
+def test_each_word_of_the_glossary_is_linked_once_in_a_chapter(site: Path) -> None:
+    for chapter in chapters():  # no parameter: see CHAPTER
+        text = (site / "chapters" / f"{chapter.assignment}.html").read_text(encoding="utf-8")
+        words = re.findall(r'href="\.\./glossary\.html#(term-[^"]+)"', text)
+        assert len(words) >= 5, chapter.assignment
+        assert len(words) == len(set(words)), chapter.assignment
 
 
 def test_links_inside_lead_somewhere(site: Path) -> None:
