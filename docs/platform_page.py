@@ -194,8 +194,6 @@ def _uncovered() -> Iterator[tuple[str, str, str]]:
     for option in ("--node-name", "--library-name"):
         called = f"`ros2 pkg create --build-type ament_cmake {option}`"
         yield called, OF_CPP, f"{called}, a C++ package, is not covered by this stand-in …"
-    hello = "`ros2 doctor hello`"
-    yield hello, "it asks other machines", f"{str(NotCoveredError(hello)).partition(';')[0]} …"
     for word, command in COMMANDS.items():
         missing = [f"ros2 {word} {verb}" for verb in command.not_covered] if command.module else [f"ros2 {word}"]
         for called in missing:

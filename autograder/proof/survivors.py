@@ -78,7 +78,7 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
         found |= dict.fromkeys(entry["mutants"], f"{kinds[0]}: {entry[kinds[0]]}")
     for pair in (mutant.id for mutant in population.mutants if mutant.operator == "pair"):
         halves = [found[name] for name in pair.split(" + ") if name in found]
-        if len(halves) == 2:  # what neither half shows, both together do not show; outside outweighs equivalent
+        if len(halves) == 2:  # if no check sees the pair, either; outside outweighs equivalent
             found.setdefault(pair, max(halves, key=lambda reason: reason.startswith("outside")))
     if gone := found.keys() - {mutant.id for mutant in population.mutants}:
         raise GraderError(f"{path}: there are no such mutants any more: {', '.join(sorted(gone))}")

@@ -24,7 +24,7 @@ COMMANDS = {
     "component": Command("Various component related sub-commands"),
     "control": Command("Various control related sub-commands"),
     "daemon": Command("Various daemon related sub-commands"),
-    "doctor": Command("Check ROS setup and other potential issues", "doctor"),
+    "doctor": Command("Check ROS setup and other potential issues", "doctor", ("hello",)),
     "interface": Command("Show information about ROS interfaces", "interface"),
     "launch": Command("Run a launch file", "launch"),
     "lifecycle": Command("Various lifecycle related sub-commands", "lifecycle"),
@@ -38,7 +38,7 @@ COMMANDS = {
     "test": Command("Run a ROS2 launch test"),
     "topic": Command("Various topic related sub-commands", "topic", ("delay",)),
     "trace": Command("Trace ROS 2 nodes"),
-    "wtf": Command("Use `wtf` as alias to `doctor`", "doctor"),
+    "wtf": Command("Use `wtf` as alias to `doctor`", "doctor", ("hello",)),
 }
 
 
