@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import Diagnosis, Kind
@@ -216,22 +217,32 @@ def require_written(output: str) -> None:
         raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, detail))
 
 
-def with_files(workspace: Workspace, name: str, package: str, files: Mapping[str, str]) -> Workspace:
-    """Return a copy of a workspace's install space in which files of a package's share folder are replaced.
+def with_files(
+    workspace: Workspace,
+    name: str,
+    package: str,
+    files: Mapping[str, str],
+    programs: Mapping[str, str] = MappingProxyType({}),
+) -> Workspace:
+    """Return a copy of a workspace's install space in which files and programs of a package are replaced.
 
     Args:
         workspace: the built workspace; it is left as it is.
         name: of the copy, one that no other copy has.
         package: the package.
         files: texts by path below `share/PACKAGE`.
+        programs: texts of executables, by name.
     """
     root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
     shutil.copytree(workspace.install, root / "install", symlinks=True)
-    for path, text in files.items():
-        target = root / "install" / package / "share" / package / path
+    prefix = root / "install" / package
+    texts = {prefix / "share" / package / path: (text, 0o644) for path, text in files.items()}
+    texts |= {prefix / "lib" / package / path: (text, 0o755) for path, text in programs.items()}
+    for target, (text, mode) in texts.items():
         target.parent.mkdir(parents=True, exist_ok=True)
         target.unlink(missing_ok=True)
         target.write_text(text)
+        target.chmod(mode)
     return replace(workspace, root=root)
 
 

@@ -17,6 +17,7 @@ from autograder.probes.launch_probe import Argument, shown_arguments, with_files
 CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
+KILLS_ITSELF = "#!/bin/sh\nkill -KILL $$\n"
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
@@ -58,6 +59,10 @@ class Launches:
         """Return safe_start.launch.py as it runs with these arguments."""
         return self._harness(SAFE, arguments, {})
 
+    def killed(self) -> LaunchHarness:
+        """Return safe_start.launch.py above a self-test that a signal kills."""
+        return self._harness(SAFE, {}, {}, self_test=KILLS_ITSELF)
+
     def safe_arguments(self) -> dict[str, Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
         return self._shown(SAFE)
@@ -72,22 +77,28 @@ class Launches:
         return self._arguments[file]
 
     def _harness(
-        self, file: str, arguments: Mapping[str, object], listens: Mapping[str, type], robot: str | None = None
+        self,
+        file: str,
+        arguments: Mapping[str, object],
+        listens: Mapping[str, type],
+        robot: str | None = None,
+        self_test: str | None = None,
     ) -> LaunchHarness:
-        key = f"{file} {robot} {sorted(arguments.items())}"
+        key = f"{file} {robot} {self_test} {sorted(arguments.items())}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
-            copy = self._copy(file, robot)
+            copy = self._copy(file, robot, self_test)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=ON_STDOUT)
             self._harnesses[key] = self._stack.enter_context(harness)
         return self._harnesses[key]
 
-    def _copy(self, file: str, robot: str | None) -> Workspace:
-        name = robot or file.partition(".")[0]
+    def _copy(self, file: str, robot: str | None, self_test: str | None = None) -> Workspace:
+        name = robot or ("killed" if self_test else file.partition(".")[0])
         if name not in self._copies:
             files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
                 files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)
-            self._copies[name] = with_files(self._workspace, name, PACKAGE, files)
+            programs = {"self_test": self_test} if self_test else {}
+            self._copies[name] = with_files(self._workspace, name, PACKAGE, files, programs)
         return self._copies[name]

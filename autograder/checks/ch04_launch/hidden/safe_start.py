@@ -46,21 +46,20 @@ def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 
 
-@check(points=3, holds="self-test", doc=contract.EVENTS)
+@check(points=2, holds="self-test", doc=contract.EVENTS)
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 @hint("return [Shutdown(reason='...')] where it is not 0.")
 def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
     """When the self-test fails, the driver is never started and everything ends."""
-    harness = launches.safe(battery=inputs.empty)
-    harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
-    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
-    launch_probe.require_written(harness.output)
-    started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started. {launch_probe.trouble(harness.output)}".strip())
-    what = f"With the battery at {inputs.empty} %,"
-    expect("driver" not in started, f"{what} the driver was started.")
-    expect(over, f"{what} the driver was not started, but the launch goes on.", fraction=0.5)
-    expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
+    _expect_refusal(launches.safe(battery=inputs.empty), f"With the battery at {inputs.empty} %,")
+
+
+@check(points=1, holds="self-test", depends=("fails_safe",), doc=contract.EVENTS)
+@hint("The exit status of a process that a signal has killed is the signal's number, below 0.")
+@hint("Only 0 is success: event.returncode == 0.")
+def test_killed(launches: Launches) -> None:
+    """When a signal kills the self-test, the driver is never started and everything ends."""
+    _expect_refusal(launches.killed(), "When the self-test is killed,")
 
 
 @check(points=1, holds="battery", depends=("order",))
@@ -98,6 +97,17 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """When the driver ends by itself, with exit status 0, everything ends too."""
     _expect_end(launches.safe(battery=inputs.whole_battery), signal.SIGINT, "The driver ended with exit status 0")
+
+
+def _expect_refusal(harness: LaunchHarness, what: str) -> None:
+    harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
+    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
+    launch_probe.require_written(harness.output)
+    started = launch_probe.started(harness.output)
+    expect("self_test" in started, f"The self-test was not started. {launch_probe.trouble(harness.output)}".strip())
+    expect("driver" not in started, f"{what} the driver was started.")
+    expect(over, f"{what} the driver was not started, but the launch goes on.", fraction=0.5)
+    expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
 def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> None:
