@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder.checks import expect, group, hint
+from autograder.checks.ch01_package_structure.hidden.given import DANCE, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -52,7 +53,7 @@ def test_marker(installed_dance: Installed) -> None:
     )
 
 
-@check(points=2, holds="program", depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="program", depends=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
 def test_executable(installed_dance: Installed) -> None:
@@ -115,3 +116,11 @@ def test_tests_stay(grown: Grown) -> None:
     """Its tests are not installed as a module called test, also with an __init__.py beside them."""
     strays = sorted(name for name in grown.installed.modules if name.split(".")[0] == "test")
     expect(not strays, f"{', '.join(strays[:2])} was installed: it would hide Python's own module test.")
+
+
+@check(points=1, holds="given", depends=("builds",), doc=contract.COLCON)
+@hint("The tests were right from the start, the linters' too: take them as they were given.")
+@hint("A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.")
+def test_given_tests(workspace: Workspace) -> None:
+    """The tests that were given with square_dance find a fault in it, the linters' tests, too."""
+    expect_given_tests(workspace, DANCE)

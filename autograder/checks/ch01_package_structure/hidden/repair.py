@@ -6,6 +6,7 @@ import random
 from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
+from autograder.checks.ch01_package_structure.hidden.given import ALARM, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -35,7 +36,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=2, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
 def test_alarm_executable(installed_alarm: Installed) -> None:
@@ -112,3 +113,11 @@ def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw
     with robots.alarm(workspace, "--params-file", str(path)) as harness:
         robots.expect_alarm(harness, round(draw.uniform(0.66, 0.76), 2), True)
         robots.expect_alarm(harness, round(draw.uniform(0.84, 0.98), 2), False)
+
+
+@check(points=1, holds="alarm-given", depends=("alarm_builds",), doc=contract.COLCON)
+@hint("The tests were right from the start, the linters' too: take them as they were given.")
+@hint("A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.")
+def test_alarm_given_tests(workspace: Workspace) -> None:
+    """The tests that were given with wall_alarm find a fault in it, the linters' tests, too."""
+    expect_given_tests(workspace, ALARM)
