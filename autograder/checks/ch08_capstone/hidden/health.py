@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
@@ -26,29 +27,38 @@ check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 SILENT = PARAMETERS[MONITOR]["silence_timeout"].default
 MARGIN = 0.1  # s
+LATE, EARLY = 5.0, -2.0  # s: how old the stamps of a lidar with another clock are; of 2 s ahead, more than SILENT
 STAMPED = 0.2  # s between a report's stamp and its arrival, generous for a machine that is busy
 
 
 @check(
     points=3,
-    holds=("monitor", "level", "health-header"),
+    holds=("monitor", "level", "silent", "health-header"),
     depends=("processor", "controller", "monitor"),
     doc=contract.NODES_DOC,
 )
-@hint("A topic that was never heard is silent, too: start with None for each.")
+@hint("A topic that was never heard is silent, too, from the first report on: start with None for each.")
+@hint("What counts is when a message arrives, by self.get_clock().now(), not what its stamp says.")
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
 def test_health_levels(system: System) -> None:
     """Twice a second it reports: FAILED before anything was seen, OK when all is well, DEGRADED when blind."""
-    _expect_report(system.first.reports[-1:], FAILED, DEAD, "Before the first scan")
+    first = system.first.reports
+    _expect_reports(first[-1:], FAILED, DEAD, "Before the first scan")
+    # The controller may begin later, so that cmd_vel is silent, too, at first.
+    early = next((r.message for r in first if r.message.level != FAILED or not _silent(r) >= DEAD), None)
+    said = "" if early is None else describe_report(early)
+    expect(early is None, f"Before the first scan, an early report said {said}: nothing was heard yet.", fraction=0.5)
     began = system.seconds
-    system.see(OPEN, 3.0)
-    reports = system.messages(began).reports
-    _expect_report(reports[-1:], OK, set(), "With scans for 3 s", fraction=0.25)
+    reports = system.see(OPEN, 3.0).reports
+    _expect_reports(reports, OK, set(), "With scans for 3 s", fraction=0.25)
     rate = system.harness.rate("/health", began)
     expect(1.6 <= rate <= 2.4, f"It published {rate:.1f} reports a second, instead of 2.", fraction=0.5)
     _expect_stamped(system, reports[-1])
-    blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0)
-    _expect_report(blind.reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
+    blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0).reports
+    _expect_reports(blind, DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
+    _expect_reports(system.see(OPEN, 1.0).reports, OK, set(), "When it sees again", fraction=0.5)
+    late = system.see(OPEN, 1.5, age=LATE).reports
+    _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier,", fraction=0.5)
 
 
 @check(points=3, holds=("silent", "silent-field", "monitor", "health-header"), depends=("health_levels",))
@@ -68,10 +78,15 @@ def test_dead_sensor(system: System, slow_system: SharedSystem) -> None:
     period = mean_period(reports)
     paced = is_paced(period, 0.5, system.harness.time)
     expect(paced, f"It published a report every {period:.2f} s, instead of two a second.", fraction=0.5)
-    _expect_report(reports[-1:], FAILED, DEAD, "4 s after the last scan", fraction=0.5)
+    later = [r for r in reports if r.seconds - began > SAID_WITHIN]
+    _expect_reports(later, FAILED, DEAD, "2 to 4 s after the last scan", fraction=0.5)
     system.see(OPEN, SAID_WITHIN)
     back = system.harness.messages("/health")[-1:]
-    _expect_report(back, OK, set(), f"{SAID_WITHIN:.0f} s after the lidar came back", fraction=0.75)
+    _expect_reports(back, OK, set(), f"{SAID_WITHIN:.0f} s after the lidar came back", fraction=0.75)
+    system.see(OPEN, 1.0, age=EARLY)
+    again = system.wait(SAID_WITHIN).reports[-1:]
+    said = f"{SAID_WITHIN:.0f} s after the last scan, whose stamp was {-EARLY:.0f} s ahead of the clock,"
+    _expect_reports(again, FAILED, DEAD, said, fraction=0.75)
     if system.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
         _expect_ros_time(slow_system.get(*PROGRAMS))
 
@@ -80,7 +95,7 @@ def _expect_ros_time(system: System) -> None:
     """Fail the check if silence is measured by another clock than that of ROS."""
     system.see(OPEN, 2.0)
     reports = system.wait(SAID_WITHIN).reports
-    _expect_report(reports[-1:], FAILED, DEAD, f"{SAID_WITHIN:.0f} s of ROS time after the last scan", fraction=0.5)
+    _expect_reports(reports[-1:], FAILED, DEAD, f"{SAID_WITHIN:.0f} s of ROS time after the last scan", fraction=0.5)
     _expect_stamped(system, reports[-1])
 
 
@@ -93,16 +108,20 @@ def _expect_stamped(system: System, report: Stamped) -> None:
     expect(abs(age) <= STAMPED, f"By its stamp, a report of health was {age:.1f} s old when it came.", fraction=0.5)
 
 
-def _expect_report(
-    reports: tuple[Stamped, ...] | list[Stamped], level: int, silent: set[str], situation: str, *, fraction: float = 0.0
+def _expect_reports(
+    reports: Sequence[Stamped], level: int, silent: set[str], situation: str, *, fraction: float = 0.0
 ) -> None:
-    """Fail the check unless there is a report with this level that names these topics."""
+    """Fail the check unless there is a report, and each one has this level and names these topics."""
     expect(bool(reports), f"{situation}, no report came on health.", fraction=fraction)
-    report = reports[0].message
-    given = {str(topic).lstrip("/") for topic in report.silent}
     wanted = f"level {contract.LEVELS[level]}, silent: {', '.join(sorted(silent)) or 'none'}"
-    expect(
-        report.level == level and given == silent,
-        f"{situation}, health said {describe_report(report)}; the contract asks {wanted}.",
-        fraction=fraction,
-    )
+    for report in reports:
+        expect(
+            report.message.level == level and _silent(report) == silent,
+            f"{situation}, health said {describe_report(report.message)}; the contract asks {wanted}.",
+            fraction=fraction,
+        )
+
+
+def _silent(report: Stamped) -> set[str]:
+    """Return the topics that a report calls silent."""
+    return {str(topic).lstrip("/") for topic in report.message.silent}

@@ -12,6 +12,7 @@ from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
 from autograder.checks.ch08_capstone.hidden.edges import OPEN, expect_exact_limits, newest_clearance, said_of_edge
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
+from autograder.checks.ch08_capstone.hidden.standstill import beside, expect_turn_kept
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONTROLLER,
@@ -42,6 +43,7 @@ STALE = PARAMETERS[CONTROLLER]["data_timeout"].default
 MARGIN = 0.09  # s around a time-out, a little less than the time between two commands
 REAL_MARGIN = 0.25  # s, where time is real
 EDGE = 0.03  # m around the safety distance, a twentieth of it
+BLIND = scan(Part(-35.0, 35.0, math.nan))
 ENDS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
     "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
@@ -183,7 +185,7 @@ def test_drives(driving: System, draw: random.Random) -> None:
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
 
 
-@check(points=3, holds=("turn", "more-room", "starts-turn", "ends-turn"), depends=("drives",))
+@check(points=3, holds=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"), depends=("drives",))
 @hint("Compare left with right when the turn begins, and remember the choice.")
 @hint("The remembered turn ends when the way is clear again, not when the sides look different.")
 def test_turns(driving: System, draw: random.Random) -> None:
@@ -192,7 +194,7 @@ def test_turns(driving: System, draw: random.Random) -> None:
         driving.see(OPEN)
         near, tight = draw.uniform(0.25, NEAR - 0.1), draw.uniform(0.7, 1.2)
         obstacle = Part(-10.0, 10.0, near)
-        narrow, other = _beside(-sign, tight), _beside(sign, tight - 0.4)
+        narrow, other = beside(-sign, tight), beside(sign, tight - 0.4)
         situation = f"With something {near:.2f} m ahead and less room on the {'right' if sign > 0 else 'left'}"
         expect_turning(driving.see(scan(obstacle, narrow)).commands, situation, side, TURN)
         later = f"{situation}, once it turns and the sides have changed,"
@@ -207,6 +209,7 @@ def test_turns(driving: System, draw: random.Random) -> None:
         else:
             expect_turning(said, situation, "left", TURN, fraction=0.5)
     expect_exact_limits(driving)
+    expect_turn_kept(driving, lambda: driving.see(BLIND), "When it saw again after nan from every beam ahead")
 
 
 @check(points=3, holds=("untrusted", "newest"), depends=("drives",))
@@ -216,9 +219,7 @@ def test_stops(driving: System, slow_system: SharedSystem) -> None:
     """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
     expect_still(driving.first.commands, "Before the first scan")
     driving.see(OPEN)
-    expect_still(
-        driving.see(scan(Part(-35.0, 35.0, math.nan))).commands, "With nan from every beam ahead", fraction=0.25
-    )
+    expect_still(driving.see(BLIND).commands, "With nan from every beam ahead", fraction=0.25)
     driving.see(OPEN)
     margin = MARGIN if driving.harness.time == LOCKSTEP else REAL_MARGIN
     began = driving.seconds
@@ -234,13 +235,14 @@ def test_stops(driving: System, slow_system: SharedSystem) -> None:
         slow = slow_system.get(PROCESSOR, CONTROLLER)
         slow.see(OPEN)
         slow.wait(STALE + margin)
-        blind = slow.wait(1.0).commands
-        expect_still(blind, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
+        still = slow.wait(1.0).commands
+        expect_still(still, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
 
 
-@check(points=2, holds=("enable", "disabled", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
+@check(points=2, holds=("enable", "disabled", "keeps-turn", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
+@hint("Held still, the robot does not choose a turn anew, and does not forget the one that it has begun.")
 def test_enable(driving: System, shared_system: SharedSystem) -> None:
     """The service enable holds the robot still, and lets it go again."""
     try:
@@ -262,8 +264,11 @@ def _hold_and_release(system: System) -> None:
     answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
     expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
     expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
+    expect_turn_kept(system, lambda: _hold(system), "Let go after it was held still")
 
 
-def _beside(sign: float, distance: float) -> Part:
-    """Return something at the left (1) or the right (-1)."""
-    return Part(90.0 * sign - 20.0, 90.0 * sign + 20.0, distance)
+def _hold(system: System) -> None:
+    """Hold the robot still for a moment, and let it go."""
+    system.call(SetBool, "/enable", SetBool.Request(data=False))
+    system.wait(0.3)
+    system.call(SetBool, "/enable", SetBool.Request(data=True))
