@@ -62,11 +62,12 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     started = time.monotonic()
     found, _ = find_packages(workspace.root / "src")
     bundle = interface_bundle(found, wanted)
-    logs = [install_bundle(bundle, workspace)] if bundle else []
+    if bundle:
+        install_bundle(bundle, workspace)
     if set(wanted) - set(bundle):
         skipped = ["--packages-skip", *bundle] if bundle else []
-        logs.append(colcon_build(workspace, "--packages-up-to", *wanted, *skipped))
-    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)), "\n".join(filter(None, logs)))
+        colcon_build(workspace, "--packages-up-to", *wanted, *skipped)
+    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)))
 
 
 def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> Observed:

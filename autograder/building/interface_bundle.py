@@ -38,8 +38,8 @@ def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[st
     return bundle if _closure(found, tuple(bundle)) == set(bundle) else {}
 
 
-def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> str:
-    """Put a bundle's built packages into a workspace's install space; return the end of colcon's output."""
+def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
+    """Put a bundle's built packages into a workspace's install space."""
     entry = Cache.default("bundles").get(_key(bundle, workspace), partial(_make, bundle, workspace))
     note = json.loads((entry / NOTE).read_text())
     for name in bundle:
@@ -47,7 +47,6 @@ def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> str:
             continue
         shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
         relocate(workspace.install / name, note["install"], str(workspace.install))
-    return str(note["log"])
 
 
 def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
@@ -55,13 +54,13 @@ def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
     shutil.rmtree(alone.root, ignore_errors=True)  # of a build that failed, and is tried again for another package
     for name, folder in bundle.items():
         shutil.copytree(folder, alone.root / "src" / name, symlinks=True)
-    log = colcon_build(alone, "--packages-select", *bundle)
+    colcon_build(alone, "--packages-select", *bundle)
     for name in bundle:
         if not (alone.install / name).is_dir():
             sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
-            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence, log))
+            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
         shutil.copytree(alone.install / name, entry / "install" / name, symlinks=True)
-    (entry / NOTE).write_text(json.dumps({"install": str(alone.install), "log": log}))
+    (entry / NOTE).write_text(json.dumps({"install": str(alone.install)}))
     shutil.rmtree(alone.root)
 
 

@@ -70,7 +70,6 @@ def _without_times(result: Result) -> dict[str, Any]:
         timed.pop("seconds")
     data.pop("started")
     data.pop("phases")
-    data["build"].pop("log")  # colcon prints how long it took
     return data
 
 

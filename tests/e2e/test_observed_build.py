@@ -58,8 +58,7 @@ def test_packages_that_build_are_built_by_one_run_of_colcon(workspace: Workspace
     marker.parent.mkdir()
     marker.touch()
     seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
-    assert (seen.build.ok, seen.diagnosis) == (True, OK)
-    assert "2 packages finished" in seen.build.log
+    assert (seen.build.ok, seen.build.log, seen.diagnosis) == (True, "", OK)
     assert all((workspace.install / name / "share" / name / "package.xml").is_file() for name in ("bad", "good"))
 
 

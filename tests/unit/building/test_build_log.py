@@ -79,25 +79,30 @@ Call Stack (most recent call first):
         (
             SETUP + SYNTAX + COLCON,
             'Starting >>> pkg\nTraceback (most recent call last):\n  File "setup.py", line 8\n    nam=,\n        ^\n'
-            "SyntaxError: invalid syntax\nFailed   <<< pkg [0.27s, exited with code 1]",
+            "SyntaxError: invalid syntax\nFailed   <<< pkg [exited with code 1]",
             "setup.py, line 8: SyntaxError: invalid syntax",
         ),
         (
             SETUP + RAISED + COLCON,
             'Starting >>> pkg\nTraceback (most recent call last):\n  File "setup.py", line 5, in <module>\n'
             "distutils.errors.DistutilsSetupError: 'packages' must be a list\n"
-            "Failed   <<< pkg [0.27s, exited with code 1]",
+            "Failed   <<< pkg [exited with code 1]",
             "setup.py, line 5: distutils.errors.DistutilsSetupError: 'packages' must be a list",
         ),
         (NODE, NODE.replace("/tmp/cell-1/", "").rstrip(), "ImportError: cannot import name 'version'"),
         (MESSAGE, SHORT, "pkg/Status, 'strin wrong': 'strin' is an invalid message name. It should have the pattern"),
-        (COLCON, "Failed   <<< pkg [0.27s, exited with code 1]", ""),
+        (COLCON, "Failed   <<< pkg [exited with code 1]", ""),
         (
             "--- stderr: pkg\n\n---\nerror: can't copy 'resource/pkg'",
             "error: can't copy 'resource/pkg'",
             "error: can't copy 'resource/pkg'",
         ),
         ("--- stderr: pkg\nerror: no\n---", "--- stderr: pkg\nerror: no\n---", "error: no"),
+        (
+            "[0.123s] ERROR:colcon.colcon_core: no\nFinished <<< a [1min 2.5s]\nSummary: 1 package finished [62.9s]",
+            "ERROR:colcon.colcon_core: no\nFinished <<< a\nSummary: 1 package finished",
+            "",
+        ),
         ("Traceback (most recent call last):", "", ""),
     ],
 )
