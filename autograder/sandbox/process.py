@@ -20,6 +20,7 @@ from autograder.sandbox.procfs import Tree, children, cpu_seconds, measure, name
 
 _TICK = 0.1  # s between two looks at the clock while the process is silent
 _MEASURE = 0.25  # s between two measurements of the tree
+_MANY = 8  # at least so many processes fill the memory together: then it is their number, not what one of them holds
 
 
 class Ending(str, Enum):
@@ -199,10 +200,13 @@ class Process:
                 if now - measured > _MEASURE:
                     measured = now
                     tree = self._measure()
-                    if tree.memory > self._limits.memory or self._ran_out():
-                        self._end(Ending.MEMORY)
-                    elif tree.threads > self._limits.threads:
+                    if tree.threads > self._limits.threads:
                         self._end(Ending.THREADS)
+                    elif tree.memory > self._limits.memory:
+                        many = tree.largest < self._limits.memory / _MANY
+                        self._end(Ending.THREADS if many else Ending.MEMORY)
+                    elif self._ran_out():
+                        self._end(Ending.MEMORY)
                     elif (now_there := self._files()) > files + self._limits.files:
                         self._end(Ending.FILES)
                     else:

@@ -19,6 +19,7 @@ class Tree:
     pids: tuple[int, ...]
     threads: int
     memory: int
+    largest: int  # memory of the process that has most
 
 
 def measure(*roots: int, most: int = sys.maxsize) -> Tree:
@@ -28,21 +29,22 @@ def measure(*roots: int, most: int = sys.maxsize) -> Tree:
     faster than it can be counted.
     """
     pids: list[int] = []
-    threads = memory = 0
+    threads = memory = largest = 0
     pending = list(roots)
     while pending and threads <= most:
         pid = pending.pop()
         try:
             tasks = os.listdir(f"/proc/{pid}/task")
-            resident = int(_read(f"/proc/{pid}/statm").split()[1])
+            resident = int(_read(f"/proc/{pid}/statm").split()[1]) * _PAGE
         except (OSError, IndexError, ValueError):
             continue
         pids.append(pid)
         threads += len(tasks)
-        memory += resident * _PAGE
+        memory += resident
+        largest = max(largest, resident)
         for task in tasks:
             pending += _started_by(pid, task)
-    return Tree(tuple(pids), threads, memory)
+    return Tree(tuple(pids), threads, memory, largest)
 
 
 def cpu_seconds(pids: Iterable[int]) -> float:

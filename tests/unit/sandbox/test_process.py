@@ -109,6 +109,13 @@ signal.pause()
         assert process.ending is Ending.MEMORY
 
 
+def test_memory_that_many_small_processes_hold_is_a_matter_of_their_number() -> None:
+    code = "import os, signal\nfor _ in range(40): os.fork() or signal.pause()\nsignal.pause()"
+    with Process(_python(code), Limits(memory=120 * MIB)) as process:
+        assert process.wait(LONG)
+        assert process.ending is Ending.THREADS
+
+
 def test_threads_of_the_whole_tree_are_limited() -> None:
     code = "import threading\nfor _ in range(60): threading.Thread(target=threading.Event().wait).start()"
     with Process(_python(code), Limits(threads=30)) as process:
