@@ -65,7 +65,8 @@ def in_cell(
         command = make_command(scratch)
         if tier is Tier.BUBBLEWRAP:
             command = bubblewrap.cell(command, scratch=scratch, size=CELL_SCRATCH)
-        environment = {**without_wheel_bootstrap(os.environ), TIER_VARIABLE: tier.value}
+        own = {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log")}
+        environment = {**without_wheel_bootstrap(os.environ), **own}
         with Process(command, limits, environment=environment, pass_fds=pass_fds) as process:
             yield process, scratch
     finally:
