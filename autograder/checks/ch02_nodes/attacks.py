@@ -33,6 +33,7 @@ from autograder.proof.mutants import Mutant, mutants, write_mutant, write_refere
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
+LEAVE_LINK = "import os\nif not os.path.islink('../../install/all'): os.symlink('/', '../../install/all')\n"
 WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
 
@@ -166,7 +167,7 @@ def attacks() -> tuple[Attack, ...]:
         Attack(
             "build link",
             "setup.py leaves a link out of the install space, which a mount would follow",
-            package_writer(None, files={"setup.py": "import os\nos.symlink('/', '../../install/all')\n"}),
+            package_writer(None, files={"setup.py": LEAVE_LINK}),
             everything,
             frozenset({Kind.BUILD_FAILED}),
         ),

@@ -1,0 +1,155 @@
+"""Attackers in a class change nobody else's result, and nothing of them stays on the machine."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import cycle, islice
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+
+from autograder.checks import Outcome, suites
+from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
+from autograder.diagnosis import Kind
+from autograder.grading.batch import Entry
+from autograder.grading.pipeline import NOTEBOOK, RESULT
+from autograder.proof.cases import cases
+from autograder.proof.claims import Attack, CaseKind
+from autograder.result import Result, from_json
+from autograder.sandbox import cgroup
+from tests.e2e.witness import grade_seen
+
+Writers = list[tuple[str, Callable[[Path], None]]]
+FEW = ("threshold", "ten_hertz")  # of the checks, for the small class
+# What a student reads first. A payload that changes nothing leaves the sentence of the error that the program has.
+SENTENCES = {
+    **dict.fromkeys(
+        ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "It published 5.0 commands"
+    ),
+    **dict.fromkeys(("spoofed ROS", "constants"), "the robot drove forward at 0.30 m/s: it should turn left"),
+    "nan commands": "was told to move at nan m/s and nan rad/s",
+    "grader's name": "is called grader, which is the grader's own name",
+    "build link": "left install/all, which leads out of the install space",
+    "shadowed rclpy": "ended by itself (exit status 0)",
+    "fork bomb": "started far too many threads or processes",
+    "notebook link": "there is no folder ws/src",
+}
+# Of root without control groups, a fork bomb stops the machine.
+ATTACKS = {attack.id: attack for attack in attacks() if attack.id != "fork bomb" or "pids" in cgroup.bounds()}
+
+
+def write_notebook(folder: Path) -> None:
+    """Hand in the reference as a notebook."""
+    package_writer(None)(folder / "answer")
+    text = (folder / "answer" / "src" / PACKAGE / CONTROLLER).read_text()
+    (folder / "submission").mkdir()
+    nbformat.write(
+        new_notebook(cells=[new_code_cell(WRITEFILE + text, id="answer")]),
+        folder / "submission" / f"{ASSIGNMENT}.ipynb",
+    )
+
+
+def honest(number: int) -> Writers:
+    """Return so many honest submissions: a notebook, a slow node, a build that fails, then those of the proof."""
+    broken = package_writer(None, files={"setup.py": "print('it begins')\nraise ValueError('no version')\n"})
+    own: Writers = [("notebook", write_notebook), ("slow", package_writer("five_hertz")), ("no build", broken)]
+    kinds = (CaseKind.REFERENCE, CaseKind.VARIANT, CaseKind.MUTANT)
+    return [*own, *((case.name, case.write) for case in cases(ASSIGNMENT) if case.kind in kinds)][:number]
+
+
+def hostile(names: Iterable[str]) -> Writers:
+    """Return the attacks of these names."""
+    return [(name, ATTACKS[name].write) for name in names if name in ATTACKS]
+
+
+def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Result]:
+    """Grade submissions below a witness; return their results."""
+    entries = []
+    for student, write in writers:
+        write(folder := place / "submitted" / student)
+        entries.append(Entry(student, folder / "submission" if (folder / "submission").is_dir() else folder))
+    grade_seen(place, ASSIGNMENT, entries, only)
+    stored = {student: place / "results" / student / RESULT for student, _ in writers}
+    return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
+
+
+def without_times(folder: Path) -> dict[str, Any]:
+    """Return the files of a result by name; of those that hold times, all but the times."""
+    files: dict[str, Any] = {path.name: path.read_bytes() for path in folder.iterdir()}
+    files[RESULT] = result = json.loads(files[RESULT])
+    for timed in (result, result["build"], *result["checks"]):
+        del timed["seconds"]
+    for field in ("started", "phases", "held_up"):
+        del result[field]
+    if NOTEBOOK in files:
+        files[NOTEBOOK] = json.loads(files[NOTEBOOK])
+        for cell in files[NOTEBOOK]["cells"]:
+            cell["metadata"].pop("execution", None)
+    return files
+
+
+def first_sentence(result: Result) -> str:
+    """Return what a student reads first."""
+    if result.diagnosis.kind is not Kind.OK:
+        return result.diagnosis.sentence
+    return next((check.message for check in result.checks if check.outcome is Outcome.FAILED), "")
+
+
+def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:
+    """Require of each attack that it gained nothing, and that its page says what is wrong."""
+    for student, result in results.items():
+        attack = ATTACKS[student.partition(", ")[0]]
+        assert attack.verify(result, frozenset(only)) == "", student
+        assert SENTENCES[attack.id] in first_sentence(result), student
+
+
+@pytest.mark.parametrize(
+    ("size", "names", "checks"),
+    [
+        pytest.param(4, ("thief", "fork bomb"), FEW, id="6"),
+        pytest.param(
+            15,
+            ("thief", "fork bomb", "notebook tricks", "build link", "spoofed ROS"),
+            (),
+            id="20",
+            marks=[pytest.mark.nightly, pytest.mark.timeout(3600)],
+        ),
+    ],
+)
+def test_attackers_change_nothing_of_the_others(
+    tmp_path: Path, size: int, names: tuple[str, ...], checks: tuple[str, ...]
+) -> None:
+    only = suites.hidden(ASSIGNMENT).with_dependencies(*checks)
+    good, bad = honest(size), hostile(names)
+    mixed = [*(one for pair in zip(bad, good, strict=False) for one in pair), *good[len(bad) :]]  # at the same time
+    graded(tmp_path / "without", good, only)
+    results = graded(tmp_path / "with", mixed, only)
+    require_held({student: results[student] for student, _ in bad}, only)
+    for student, _ in good:
+        alone, beside = (without_times(tmp_path / place / "results" / student) for place in ("without", "with"))
+        assert beside == alone, student
+
+
+def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
+    """Write an attack with a file of its own: equal submissions are graded once."""
+    attack.write(folder)
+    path = folder / "submission"
+    (path if path.is_dir() else folder / "src" / PACKAGE).joinpath("number.txt").write_text(f"{number}")
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.timeout(7200)
+@pytest.mark.parametrize("size", [200])
+def test_of_a_row_of_attacks_nothing_is_left(tmp_path: Path, size: int) -> None:
+    only = suites.hidden(ASSIGNMENT).with_dependencies(*FEW)
+    row = [
+        (f"{attack.id}, {number}", partial(write_one_of_many, attack, number))
+        for number, attack in enumerate(islice(cycle(ATTACKS.values()), size))
+    ]
+    require_held(graded(tmp_path, row, only), only)

@@ -1,0 +1,123 @@
+"""A witness of a grading: it sees all processes, files, mounts, memory and shared memory that the grading leaves.
+
+It is a process with a scratch folder, shared memory and a control group of its own. The kernel gives it every process
+below it that has lost its parent. It sees nothing of what else runs on the machine.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from autograder.grading.batch import Entry, OnResult, Request, grade_all
+from autograder.grading.job import Scope
+from autograder.grading.parallel import map_parallel
+from autograder.grading.pipeline import DEFAULT_SEED, grade_submission
+from autograder.result import Result
+from autograder.sandbox import Limits, cgroup
+from autograder.sandbox.limits import GIB, MIB
+from autograder.sandbox.procfs import measure, name
+
+ROOT = Path(__file__).resolve().parents[2]
+PR_SET_CHILD_SUBREAPER = 36  # prctl(2)
+
+
+def grade_seen(place: Path, assignment: str, entries: Sequence[Entry], only: tuple[str, ...] = ()) -> None:
+    """Grade submissions by some checks into `place`/results below a witness, and require that nothing else is left."""
+    place.mkdir(exist_ok=True, parents=True)
+    scratch = tempfile.mkdtemp(prefix="witness-", dir="/tmp")  # the path of a kernel's sockets must be short
+    found = [[entry.student, str(entry.path)] for entry in entries]
+    job = json.dumps({"place": str(place), "assignment": assignment, "entries": found, "only": only})
+    space = ["bwrap", "--die-with-parent", "--unshare-user", "--unshare-ipc", "--dev-bind", "/", "/"]
+    space += ["--tmpfs", "/dev/shm", "--tmpfs", scratch, "--chdir", str(ROOT)]
+    group = cgroup.make(Limits(memory=32 * GIB, threads=8192))
+    command = group.enter([*space, "--", sys.executable, "-m", "tests.e2e.witness", job])
+    environment = {**os.environ, "TMPDIR": scratch}
+    try:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        seen = json.loads((place / "seen.json").read_text())
+        assert (seen["status"], seen["after"]) == (0, seen["before"]), done.stderr
+        assert [path for folder in group.folders for path in folder.iterdir() if path.is_dir()] == []
+        assert _held(group) < 4 * MIB
+    finally:
+        group.close()
+        Path(scratch).rmdir()
+
+
+def _held(group: cgroup.ControlGroup) -> int:
+    """Return the bytes of memory that a control group counts for processes and shared memory; 0 where there is none."""
+    folder = group.by_controller.get("memory")
+    rows = (folder / "memory.stat").read_text().splitlines() if folder else []
+    return sum(int(row.split()[1]) for row in rows if row.split()[0] in ("rss", "total_rss", "shmem", "total_shmem"))
+
+
+def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str]) -> None:
+    """Grade submissions, two at once."""
+
+    def one(request: Request) -> Result:
+        return grade_submission(
+            request.path,
+            assignment,
+            student=request.student,
+            seed=request.seed,
+            out=request.out,
+            scope=Scope(only=tuple(only)),
+        )
+
+    def each(requests: Sequence[Request], book: OnResult) -> None:
+        map_parallel(one, requests, jobs=2, on_done=book)
+
+    found = tuple(Entry(student, Path(path)) for student, path in entries)
+    grade_all(found, assignment, seed=DEFAULT_SEED, out=Path(place, "results"), jobs=2, grade_each=each)
+
+
+def _what_is_there() -> dict[str, list[str]]:
+    """Return what a grading could leave, as the witness sees it."""
+    queues = (line for kind in ("shm", "sem", "msg") for line in Path("/proc/sysvipc", kind).read_text().splitlines())
+    return {
+        "processes": [name(pid) for pid in measure(os.getpid()).pids],
+        "mounts": Path("/proc/self/mountinfo").read_text().splitlines(),
+        "files": [str(path) for path in Path(os.environ["TMPDIR"]).rglob("*")],
+        # LTTng, which ROS loads, makes its two for each user once.
+        "shared memory": [*(file for file in os.listdir("/dev/shm") if not file.startswith("lttng-ust-wait")), *queues],
+    }
+
+
+def _witness(job: dict[str, Any]) -> None:
+    """Grade in a child, bury whoever dies here, and write down what was there before and what is there after."""
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+    before = _what_is_there()
+    if (child := os.fork()) == 0:
+        try:
+            _grade(**job)
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+            os._exit(1)
+    buried = status = 0
+    while buried != child:
+        buried, status = os.wait()
+    deadline = time.monotonic() + 30
+    while (after := _what_is_there()) != before and time.monotonic() < deadline:
+        with suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        threading.Event().wait(0.05)
+    seen = {"status": os.waitstatus_to_exitcode(status), "before": before, "after": after}
+    Path(job["place"], "seen.json").write_text(json.dumps(seen))
+
+
+if __name__ == "__main__":
+    _witness(json.loads(sys.argv[1]))
