@@ -60,7 +60,7 @@ def _held(group: cgroup.ControlGroup) -> int:
     """Return the bytes of memory that a control group counts for processes and shared memory; 0 where there is none."""
     folder = group.by_controller.get("memory")
     rows = (folder / "memory.stat").read_text().splitlines() if folder else []
-    return sum(int(row.split()[1]) for row in rows if row.split()[0] in ("rss", "total_rss", "shmem", "total_shmem"))
+    return sum(int(row.split()[1]) for row in rows if row.split()[0] in ("total_rss", "total_shmem", "anon", "shmem"))
 
 
 def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str]) -> None:
