@@ -7,6 +7,7 @@ import random
 from std_msgs.msg import String
 
 from autograder.checks import expect, group, hint
+from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, LEAST_WARNINGS
 from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS, Robot
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
@@ -14,7 +15,6 @@ check = group("timing")
 SECONDS = 20.0
 RATE_SECONDS = 4.0  # in which one command more or less is 2.5 %
 WARNINGS = 1.1  # a second, a tenth more than once
-BLOCKED_SECONDS, SILENT_SECONDS = 6.0, 1.5  # in front of a wall, and how long it may then be without a warning
 
 
 @check(points=2, holds="cmd-vel", depends=("publishes_cmd_vel",))
@@ -50,11 +50,10 @@ def test_no_flood(robot: Robot) -> None:
 @hint("It warns again and again while it is blocked, not once for each obstacle.")
 def test_warns(fresh_robot: Robot) -> None:
     """It warns once a second while something is in the way, each time, and not while the way is clear."""
-    least = int(BLOCKED_SECONDS / SILENT_SECONDS)
     for time in ("", " a second time"):
         before = len(_logged(fresh_robot, "WARN"))
         fresh_robot.see(scan(Part(-10.0, 10.0, 0.5)), BLOCKED_SECONDS)
-        enough = _logs(fresh_robot, "WARN", more_than=before + least - 1)
+        enough = _logs(fresh_robot, "WARN", more_than=before + LEAST_WARNINGS - 1)
         warnings = len(_logged(fresh_robot, "WARN")) - before
         expect(enough, f"Blocked for {BLOCKED_SECONDS:.0f} s{time}, it logged {warnings} warnings, not one a second.")
         fresh_robot.see(scan(), SETTLED)

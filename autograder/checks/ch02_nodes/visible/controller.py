@@ -7,6 +7,7 @@ import signal
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
+from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, LEAST_WARNINGS
 from autograder.checks.ch02_nodes.support.ending import HINTS, expect_clean_end
 from autograder.checks.ch02_nodes.support.robot import (
     WRITTEN_SECONDS,
@@ -145,10 +146,11 @@ def test_warns(robot: Robot) -> None:
     """In front of a wall for 6 s it warns once a second."""
     robot.see(scan(fill=2.0))
     before = robot.output.count("[WARN]")
-    robot.see(scan(Part(-15.0, 15.0, 0.7)), 6.0)
-    robot.wait_for(lambda: robot.output.count("[WARN]") - before >= 4, WRITTEN_SECONDS)
+    robot.see(scan(Part(-15.0, 15.0, 0.7)), BLOCKED_SECONDS)
+    robot.wait_for(lambda: robot.output.count("[WARN]") - before >= LEAST_WARNINGS, WRITTEN_SECONDS)
     warnings = robot.output.count("[WARN]") - before
-    expect(4 <= warnings <= 8, f"In front of a wall for 6 s it warned {warnings} times.")
+    said = f"In front of a wall for {BLOCKED_SECONDS:.0f} s it warned {warnings} times."
+    expect(LEAST_WARNINGS <= warnings <= 2 * LEAST_WARNINGS, said)
 
 
 @check(points=1, holds="ends", depends=("topics",))
