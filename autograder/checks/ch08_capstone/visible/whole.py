@@ -116,6 +116,8 @@ def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     report = reports.result()[LINTERS]
     shown = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
     expect(report.passed, f"The linters object: {shown or report.output.strip()[-300:]}")
+    ran = {f"{test.partition('::')[0]}.py" for test in report.executed}
+    expect(ran >= set(LINTERS), f"{' and '.join(sorted({*LINTERS} - ran))}: each test in it was skipped.")
 
 
 def _absent(workspace: Workspace, files: tuple[str, ...]) -> list[str]:
