@@ -7,6 +7,7 @@ UTILS = "my_robot_package.utils.data_processing"
 ROBUST = "my_robot_package.nodes.robust_node"
 
 HISTORY = 10  # scans that mean_distance is taken over
+SILENT_SECONDS = 1.5  # the longest between two warnings of a processor that sees nothing
 PERIOD = 1.0  # s between two readings of RobustNode
 MAX_ERRORS = 10
 TOLERANCE = 1e-4  # m: a range is a 32-bit float
