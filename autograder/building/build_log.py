@@ -17,9 +17,10 @@ END, LINE = 50_000, 1_000  # characters
 _BEGIN = "Traceback (most recent call last):"
 _FRAME = re.compile(r'  File "(?P<file>[^"]+)", line \d+')
 _IN_SETUP = re.compile(r'  File "setup.py", line (?P<line>\d+)')
-# rosidl on a line of a .msg, .srv or .action file, in a message of CMake's; and the traceback that it then prints.
+# rosidl on a line of a .msg, .srv or .action file, in a message of CMake's that breaks lines between any two words;
+# and the traceback that it then prints.
 _DEFINITION = re.compile(
-    r"Error processing (?P<text>'.{1,200}') of '(?P<file>\S{1,200})':\n +'(?P<why>(?s:.{1,500}?))'\n *\n"
+    r"Error\s+processing\s+(?P<text>'(?s:.{1,200}?)')\s+of\s+'(?P<file>\S{1,200})':\s+'(?P<why>(?s:.{1,500}?))'\n *\n"
 )
 _CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # of setuptools: the frames called "<string>" below it are those of setup.py
@@ -46,7 +47,7 @@ def readable(log: str) -> str:
 def first_error(log: str) -> str:
     """Return the first error of a failed build in a line, with the student's file where the log names it; or ""."""
     if found := _DEFINITION.search(_bounded(log)):
-        return f"{found['file']}, {found['text']}: {' '.join(found['why'].split())}"
+        return f"{found['file']}, {' '.join(found['text'].split())}: {' '.join(found['why'].split())}"
     text = readable(log)
     errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]
     place = f"setup.py, line {found['line']}: " if (found := _IN_SETUP.search(text)) else ""

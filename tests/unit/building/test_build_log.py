@@ -91,6 +91,11 @@ Call Stack (most recent call first):
         ),
         (NODE, NODE.replace("/tmp/cell-1/", "").rstrip(), "ImportError: cannot import name 'version'"),
         (MESSAGE, SHORT, "pkg/Status, 'strin wrong': 'strin' is an invalid message name. It should have the pattern"),
+        (
+            "  Error processing 'float distance' of\n  'pkg/Drive_Goal': ''float' is an invalid message\n  name.'\n\n",
+            "  Error processing 'float distance' of\n  'pkg/Drive_Goal': ''float' is an invalid message\n  name.'",
+            "pkg/Drive_Goal, 'float distance': 'float' is an invalid message name.",
+        ),
         (COLCON, "Failed   <<< pkg [exited with code 1]", ""),
         (
             "--- stderr: pkg\n\n---\nerror: can't copy 'resource/pkg'",
