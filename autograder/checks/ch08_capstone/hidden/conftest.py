@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from autograder.checks.ch08_capstone.hidden.drives import Drives
-from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 from autograder.harness import Workspace
 
@@ -31,6 +31,14 @@ def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
     """Keeps the system of a machine whose clocks are slower than ROS time."""
     shared = SharedSystem(workspace, SLOW)
     yield shared
+    shared.close()
+
+
+@pytest.fixture
+def undriven(workspace: Workspace) -> Iterator[System]:
+    """The system without its controller."""
+    shared = SharedSystem(workspace, absent=(CONTROLLER,))
+    yield shared.get(PROCESSOR, MONITOR)
     shared.close()
 
 

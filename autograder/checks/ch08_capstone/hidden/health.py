@@ -33,14 +33,14 @@ STAMPED = 0.2  # s between a report's stamp and its arrival, generous for a mach
 
 @check(
     points=3,
-    holds=("monitor", "level", "silent", "health-header"),
+    holds=("monitor", "level", "silent", "silent-field", "health-header"),
     depends=("processor", "controller", "monitor"),
     doc=contract.NODES_DOC,
 )
 @hint("A topic that was never heard is silent, too, from the first report on: start with None for each.")
 @hint("What counts is when a message arrives, by self.get_clock().now(), not what its stamp says.")
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
-def test_health_levels(system: System) -> None:
+def test_health_levels(system: System, undriven: System) -> None:
     """Twice a second it reports: FAILED before anything was seen, OK when all is well, DEGRADED when blind."""
     first = system.first.reports
     _expect_reports(first[-1:], FAILED, DEAD, "Before the first scan")
@@ -59,6 +59,8 @@ def test_health_levels(system: System) -> None:
     _expect_reports(system.see(OPEN, 1.0).reports, OK, set(), "When it sees again", fraction=0.5)
     late = system.see(OPEN, 1.5, age=LATE).reports
     _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier,", fraction=0.5)
+    alone = undriven.see(OPEN, 1.5).reports
+    _expect_reports(alone, FAILED, {"cmd_vel"}, "With scans, and no controller that runs", fraction=0.5)
 
 
 @check(points=3, holds=("silent", "silent-field", "monitor", "health-header"), depends=("health_levels",))

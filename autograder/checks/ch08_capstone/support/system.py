@@ -43,6 +43,7 @@ class System:
         types: of the student's messages.
         needed: those without which it is of no use; the others may be missing, or fail.
         clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
+        absent: programs that are not started.
 
     Attributes:
         harness: where they run.
@@ -50,9 +51,14 @@ class System:
     """
 
     def __init__(
-        self, workspace: Workspace, types: Types, needed: Collection[str] = PROGRAMS, clock_rate: float = 1.0
+        self,
+        workspace: Workspace,
+        types: Types,
+        needed: Collection[str] = PROGRAMS,
+        clock_rate: float = 1.0,
+        absent: Collection[str] = (),
     ) -> None:
-        there = [name for name in PROGRAMS if name in needed or _is_installed(workspace, name)]
+        there = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
         self.harness = AutoHarness(
             workspace,
             programs=tuple(Program(PACKAGE, name) for name in there),
@@ -155,11 +161,11 @@ class SharedSystem:
 
     Args:
         workspace: where the programs are installed.
-        clock_rate: as of `System`.
+        clock_rate, absent: as of `System`.
     """
 
-    def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
-        self._workspace, self._clock_rate = workspace, clock_rate
+    def __init__(self, workspace: Workspace, clock_rate: float = 1.0, absent: Collection[str] = ()) -> None:
+        self._workspace, self._clock_rate, self._absent = workspace, clock_rate, absent
         self._needed: tuple[str, ...] = ()
         self._shared = Shared(self._make, lambda system: system.serves(self._needed))
 
@@ -175,7 +181,8 @@ class SharedSystem:
         self._shared.close()
 
     def _make(self) -> System:
-        return System(self._workspace, types(load_messages(self._workspace)), self._needed, self._clock_rate)
+        kinds = types(load_messages(self._workspace))
+        return System(self._workspace, kinds, self._needed, self._clock_rate, self._absent)
 
 
 def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
