@@ -41,7 +41,8 @@ WITHOUT_SPIN_TIME = ("topic pub", "service call", "action send_goal")
 WITHOUT_CHOICE = ("topic hz", "topic bw")  # of asking it or not
 BY_DAEMON = ("service type", "service find", "action list", "action info", "action type", "param")  # it knows already
 LISTING, NAMED = 5, 60
-ASKED = ("command", "stdin", "files", "until", "lines", "sorted")  # the fields of a record that say what to do
+# The fields of a record that say what to do, and what the real one may do instead.
+ASKED = ("command", "stdin", "files", "until", "lines", "sorted", "or")
 # What differs from run to run.
 CHANGING = (
     (re.compile(r"Traceback \(most recent call last\):\n(  .*\n)+(.*\n)"), r"\2"),
