@@ -33,7 +33,7 @@ def command_at(seconds):
     Return (linear, angular): what the robot does so many seconds after its start.
 
     SIDE_SECONDS straight on at SPEED, then TURN_SECONDS on the spot at TURN_RATE, and so on
-    for ever. linear is in m/s, angular in rad/s.
+    for ever. At exactly SIDE_SECONDS it turns already. linear is in m/s, angular in rad/s.
     """
     within = seconds % (SIDE_SECONDS + TURN_SECONDS)
     if within < SIDE_SECONDS:
