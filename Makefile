@@ -25,7 +25,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates verify real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates fuzz verify real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -110,6 +110,11 @@ cluster-certificates: cluster-certificates/cluster.pem ## the certificate and th
 cluster-certificates/cluster.pem:
 	umask 077 && mkdir -p $(@D) && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 400 \
 		-subj "/CN=autograder cluster" -keyout $(@D)/cluster.key -out $@
+
+FUZZ_SECONDS ?= 600
+fuzz:           ## made-up input for ten minutes each at what reads strangers' bytes (FUZZ_SECONDS=600)
+	@$(BOOTSTRAP) --dev
+	$(PYTEST) -m fuzz tests/unit --hypothesis-profile=fuzz --fuzz-seconds $(FUZZ_SECONDS) --timeout 0 $(PYTEST_ARGS)
 
 verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev

@@ -184,7 +184,7 @@ def from_json(data: Any, *, source: str = "result") -> Result:
     """Return the result that a JSON form describes; `source` is the name of its file, for the error.
 
     Raises:
-        UsageError: `data` does not match the schema. The message names `source` and the field.
+        UsageError: `data` does not match the schema, or has more points than there are. The message names `source`.
     """
     from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
 
@@ -196,6 +196,8 @@ def from_json(data: Any, *, source: str = "result") -> Result:
         result: Result = structure(Result, data)
     except ValueError as error:
         raise UsageError(f"{source}: not a grading result of this version: {error}") from None
+    if not result.score <= result.max_score < math.inf:
+        raise UsageError(f"{source}: not a grading result: {result.score:g} points of {result.max_score:g}")
     return result
 
 

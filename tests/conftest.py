@@ -6,6 +6,7 @@ import hashlib
 import itertools
 import os
 import re
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -25,12 +26,11 @@ from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.sandbox.launcher import heed_interrupts
 
-# The same examples in each run: a test that fails now and then would be no gate. Looking further is a matter of hand:
-# pytest --hypothesis-profile=default
+# The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
 # A busy machine is slow, and that is no failure.
-hypothesis.settings.register_profile(
-    "course", derandomize=True, deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
-)
+_PATIENT = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
+hypothesis.settings.register_profile("course", _PATIENT, derandomize=True)
+hypothesis.settings.register_profile("fuzz", _PATIENT, derandomize=False)
 hypothesis.settings.load_profile("course")
 
 # Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.
@@ -69,6 +69,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return next((place for place, start in enumerate(_FIRST) if item.nodeid.startswith(start)), len(_FIRST))
 
     items.sort(key=place)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--fuzz-seconds", type=float, default=0.0, help="how long each test marked `fuzz` goes on")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """Run a test marked `fuzz` again and again, each time with other examples, until its time is over."""
+    end = time.monotonic() + item.config.getoption("--fuzz-seconds")
+    yield
+    while item.get_closest_marker("fuzz") and time.monotonic() < end:
+        item.runtest()
 
 
 @pytest.fixture(autouse=True)

@@ -169,7 +169,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
         raise CheckFailed(f"{path.name} is still to be written: put your lines in place of the raise.")
     try:
         data = yaml.safe_load(text)
-    except (yaml.YAMLError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
         raise CheckFailed(f"{path.name} is no YAML: {shortened(str(error))}.") from None
     if not isinstance(data, dict):
         raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 
 import pytest
-from hypothesis import event, given, settings
+from hypothesis import event, given
 from hypothesis import strategies as st
 
 from autograder import intake
@@ -264,7 +264,7 @@ def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: 
         assert "two of its files or folders have the same path" in sentence
 
 
-@settings(deadline=None)
+@pytest.mark.fuzz
 @given(st.binary(max_size=400))
 def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, noise: bytes) -> None:
     path = tmp_path_factory.getbasetemp() / "noise.zip"
@@ -272,7 +272,7 @@ def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, noi
     assert _refused(path)[0] in (Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
 
 
-@settings(deadline=None)
+@pytest.mark.fuzz
 @given(st.lists(st.tuples(st.text("abws/rc.", min_size=1, max_size=12), st.binary(max_size=3)), max_size=6))
 def test_whatever_the_names_files_land_below_the_folder_or_nothing_is_opened(
     tmp_path_factory: pytest.TempPathFactory, files: list[tuple[str, bytes]]

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from autograder.interfaces import DefinitionError
 from autograder.interfaces.definitions import MAX_BYTES, MAX_FILES, packages_used, read, require_uses
@@ -85,3 +89,30 @@ def test_a_message_of_another_package_must_be_there() -> None:
         require_uses(definitions, lambda package, message: message is None)
     with pytest.raises(DefinitionError, match="no package std_msgs"):
         require_uses(definitions, lambda package, message: False)
+
+
+WORDS = [
+    "int32",
+    "string",
+    "string<=4",
+    "float64[<=3]",
+    "bool[2]",
+    "A",
+    "std_msgs/Header",
+    "a",
+    "b_c",
+    "X",
+    "=",
+    "=1",
+    '"t"',
+    "[1, 2]",
+]
+LINE = st.lists(st.sampled_from([*WORDS, "---", "#", "\\"]) | st.text(max_size=4), max_size=4).map(" ".join)
+
+
+@pytest.mark.fuzz
+@given(st.sampled_from(["msg/A.msg", "srv/A.srv", "action/A.action"]), st.lists(LINE, max_size=6).map("\n".join))
+def test_any_text_is_a_definition_or_refused(path: str, text: str) -> None:
+    with contextlib.suppress(DefinitionError):
+        (definition,) = read("my_msgs", {path: text})
+        assert read("my_msgs", {path: definition.text}) == (definition,)

@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autograder.lockstep import protocol
@@ -58,7 +58,7 @@ def test_anything_else_is_refused(line: bytes, reason: str) -> None:
         protocol.parse(line)
 
 
-@settings(deadline=None)
+@pytest.mark.fuzz
 @given(st.binary(max_size=200))
 def test_no_bytes_get_through_but_events(noise: bytes) -> None:
     with contextlib.suppress(ProtocolError):

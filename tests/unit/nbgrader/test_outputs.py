@@ -9,7 +9,7 @@ from typing import Any
 
 import nbformat
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.utils import determine_grade
@@ -40,8 +40,8 @@ OUTPUT = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.fuzz
 @pytest.mark.slow
-@settings(deadline=None)
 @given(st.lists(OUTPUT, max_size=4))
 def test_whatever_a_kernel_sent_becomes_valid_harmless_outputs(outputs: list[dict[str, Any]]) -> None:
     kept = sanitized_outputs(outputs)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from autograder.checks import CheckFailed
 from autograder.probes.parameters import (
@@ -80,6 +83,7 @@ def test_a_file_is_read_in_its_order(tmp_path: Path) -> None:
     ("text", "sentence"),
     [
         ("a: [", "fleet.yaml is no YAML: .*"),
+        ("a: 2026-13-01", "fleet.yaml is no YAML: month must be in 1..12"),
         ("", "fleet.yaml names no node"),
         ("- a", "fleet.yaml names no node"),
         ("/**:\nros__parameters:\na: 1\n", "nothing is below /\\*\\*: indent ros__parameters"),
@@ -107,3 +111,35 @@ def test_what_a_file_says_for_a_node_is_found_however_its_name_is_written(key: s
 def test_a_file_that_is_not_installed_is_named(tmp_path: Path) -> None:
     with pytest.raises(CheckFailed, match=r"config/fleet.yaml is not installed"):
         read_file(tmp_path / "config" / "fleet.yaml")
+
+
+SCALARS = [
+    "1",
+    "1.5",
+    "true",
+    "0x",
+    "0b_",
+    "1:60",
+    "2026-13-01",
+    "~",
+    "[",
+    "*a",
+    "&a",
+    "!!int x",
+    "!!binary =",
+    "<<: 1",
+    "? x",
+    "9" * 5000,
+]
+VALUE = st.sampled_from(SCALARS) | st.text(max_size=6)
+
+
+@pytest.mark.fuzz
+@given(st.lists(st.tuples(st.sampled_from(["/**:", "  ros__parameters:", "    a: ", "    - ", ""]), VALUE), max_size=6))
+def test_any_text_is_a_parameter_file_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, lines: list[tuple[str, str]]
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.yaml"
+    path.write_text("\n".join(f"{key}{value}" for key, value in lines), encoding="utf-8", errors="surrogatepass")
+    with contextlib.suppress(CheckFailed):
+        read_file(path)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import OK, Diagnosis, Kind
@@ -115,6 +119,7 @@ def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: Mak
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        ({"max_score": 1.0}, "r.json: not a grading result: 4 points of 1"),
         ({"score": "4"}, "r.json: not a grading result: score: '4' is not of type 'number'"),
         ({"schema": "other/1"}, "schema: 'autograder-result/1' was expected"),
         ({"checks": [{}]}, "checks.0: 'id' is a required property"),
@@ -173,3 +178,28 @@ def test_the_graders_faults_are_not_the_students() -> None:
 def test_a_healthy_submission_has_the_diagnosis_ok() -> None:
     assert OK.kind is Kind.OK
     assert OK.sentence
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=6,
+)
+
+
+@pytest.mark.fuzz
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.data())
+def test_a_result_with_anything_in_any_place_is_read_or_refused(make_result: MakeResult, data: st.DataObject) -> None:
+    """Replace one value, at any depth, of a right result by anything that JSON can hold."""
+    form = make_result().to_json()
+    place: Any = form
+    while True:
+        key = data.draw(st.sampled_from(sorted(place) if isinstance(place, dict) else range(len(place))))
+        if not (isinstance(place[key], (dict, list)) and place[key] and data.draw(st.booleans())):
+            break
+        place = place[key]
+    place[key] = data.draw(JSON)
+    with contextlib.suppress(UsageError):
+        read = from_json(form, source="result.json")
+        assert 0.0 <= read.score <= read.max_score

@@ -204,6 +204,7 @@ def outcome(path: Path) -> str:
 fuzz = settings(deadline=None, max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
+@pytest.mark.fuzz
 @fuzz
 @given(st.binary(max_size=300))
 def test_any_bytes_are_a_world_or_a_clear_error(tmp_path: Path, data: bytes) -> None:
@@ -211,6 +212,7 @@ def test_any_bytes_are_a_world_or_a_clear_error(tmp_path: Path, data: bytes) -> 
 
 
 @pytest.mark.slow
+@pytest.mark.fuzz
 @fuzz
 @given(st.integers(0, len(GOOD) - 1), st.integers(0, 20), st.text(max_size=6))
 def test_a_good_file_with_a_slip_is_a_world_or_a_clear_error(tmp_path: Path, at: int, cut: int, put: str) -> None:
@@ -232,6 +234,7 @@ sections = ["name", "units", "walls", "boxes", "polygons", "circles", "starts", 
 
 
 @pytest.mark.slow
+@pytest.mark.fuzz
 @fuzz
 @given(st.dictionaries(st.sampled_from(sections), values, min_size=1))
 def test_any_yaml_under_the_right_headings_is_a_world_or_a_clear_error(tmp_path: Path, data: dict[str, object]) -> None:
