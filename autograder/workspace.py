@@ -49,12 +49,12 @@ class Workspace:
         if path.is_file():
             return path
         there = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
-        found = f"it installs {', '.join(there)}" if there else "it installs no executable at all"
+        found = f"what it installs is {', '.join(there)}" if there else "it installs none at all"
         raise StudentError(
             Diagnosis(
                 Kind.MISSING_EXECUTABLE,
-                f"lib/{package}/{name} was not installed: {found}. Look at console_scripts in setup.py and at "
-                "install_scripts in setup.cfg.",
+                f"The package {package} installs no program {name}; {found}. Is the name misspelt? The names stand "
+                "in console_scripts in setup.py, and the programs' folder in setup.cfg.",
             )
         )
 

@@ -36,7 +36,7 @@ def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws")
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
-        seconds: after so long, Ctrl-C is pressed.
+        seconds: after so long, Ctrl-C is pressed, and a line says so.
         workspace: sourced first, once it has been built.
 
     Raises:
@@ -50,6 +50,9 @@ def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws")
         return
     with _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: False, seconds)
+        terminal.show()
+        if terminal.runs:
+            print(f"[Ctrl-C after {seconds:g} s]", flush=True)
         terminal.end()
 
 
@@ -80,8 +83,10 @@ def running(
         missing = [text for text in texts if text not in terminal.said()]
         if missing and terminal.runs:
             print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing))}]")
-        yield
-        terminal.end()
+        try:
+            yield
+        finally:
+            terminal.end()
 
 
 def _unwritten(command: str, workspace: Path) -> str:

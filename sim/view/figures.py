@@ -210,16 +210,24 @@ def _size(world: World) -> str:
 
 
 def _summary(recording: Recording, indices: list[int]) -> str:
-    points = recording.poses[:, indices[0], :2]
-    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
-    parts = [f"{recording.times[-1] - recording.times[0]:.1f} s", f"{length:.1f} m driven"]
-    if np.isfinite(recording.clearances[:, indices]).any():
-        parts.append(f"never nearer than {max(0.0, float(np.nanmin(recording.clearances[:, indices]))):.2f} m")
-    names = {recording.simulation.robots[index].name for index in indices}
-    hits = sum(event.kind == "collision" and event.robot in names for event in recording.events)
+    seconds = f"{recording.times[-1] - recording.times[0]:.1f} s"
+    if len(indices) == 1:
+        return " · ".join([seconds, *_drive(recording, indices[0])])
+    robots = recording.simulation.robots
+    return " · ".join([seconds, *(f"{robots[i].name} {', '.join(_drive(recording, i))}" for i in indices)])
+
+
+def _drive(recording: Recording, index: int) -> list[str]:
+    """Say of one robot how far it drove, and how near it came to anything."""
+    length = float(np.hypot(*np.diff(recording.poses[:, index, :2], axis=0).T).sum())
+    name, clearances = recording.simulation.robots[index].name, recording.clearances[:, index]
+    hits = sum(event.kind == "collision" and event.robot == name for event in recording.events)
+    parts = [f"{length:.1f} m driven"]
     if hits:
-        parts[-1] = f"{hits} collision{'s' if hits > 1 else ''}"
-    return " · ".join(parts)
+        parts.append(f"{hits} collision{'s' if hits > 1 else ''}")
+    elif np.isfinite(clearances).any():
+        parts.append(f"never nearer than {max(0.0, float(np.nanmin(clearances))):.2f} m")
+    return parts
 
 
 def _world_alt(world: World, state: State | None) -> str:
@@ -234,9 +242,10 @@ def _world_alt(world: World, state: State | None) -> str:
 
 
 def _track_alt(recording: Recording, indices: list[int], mark: float | None, note: str) -> str:
-    x, y, _ = recording.poses[-1, indices[0]].tolist()
-    text = f"Track of {recording.simulation.robots[indices[0]].name} through “{recording.simulation.world.name}”: "
-    text += f"{_summary(recording, indices)}; it ends at ({x:.2f} m, {y:.2f} m)"
+    names = [recording.simulation.robots[index].name for index in indices]
+    ends = [f"({x:.2f} m, {y:.2f} m)" for x, y, _ in recording.poses[-1, indices].tolist()]
+    text = f"Track of {' and '.join(names)} through “{recording.simulation.world.name}”: "
+    text += f"{_summary(recording, indices)}; {'it ends' if len(ends) == 1 else 'they end'} at {' and '.join(ends)}"
     if mark is not None:
         text += f". Marked: t = {mark:.1f} s" + (f", {note}" if note else "")
     return text + "."

@@ -29,11 +29,11 @@ def test_an_installed_executable_is_found(workspace: Workspace) -> None:
     assert workspace.executable("pkg", "node") == workspace.install / "pkg/lib/pkg/node"
 
 
-@pytest.mark.parametrize(("package", "found"), [("pkg", "it installs node"), ("msgs", "it installs no executable")])
+@pytest.mark.parametrize(("package", "found"), [("pkg", "what it installs is node"), ("msgs", "it installs none")])
 def test_a_missing_executable_is_told_with_what_is_installed_instead(
     workspace: Workspace, package: str, found: str
 ) -> None:
-    with pytest.raises(StudentError, match=f"lib/{package}/robot was not installed: {found}") as caught:
+    with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {found}") as caught:
         workspace.executable(package, "robot")
     assert caught.value.diagnosis.kind is Kind.MISSING_EXECUTABLE
     assert "console_scripts in setup.py" in caught.value.diagnosis.sentence

@@ -45,7 +45,7 @@ def test_a_command_that_goes_on_is_interrupted_when_the_time_is_up(
     ws: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shell("trap 'echo interrupted; exit 0' INT; echo up; while true; do sleep 0.1; done", seconds=1.0, workspace=ws)
-    assert capsys.readouterr().out == "up\ninterrupted\n"
+    assert capsys.readouterr().out == "up\n[Ctrl-C after 1 s]\ninterrupted\n"
 
 
 def test_a_built_workspace_is_sourced(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -122,5 +122,5 @@ def test_tests_stay(grown: Grown) -> None:
 @hint("The tests were right from the start, the linters' too: take them as they were given.")
 @hint("A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.")
 def test_given_tests(workspace: Workspace) -> None:
-    """The tests that were given with square_dance find a fault in it, the linters' tests, too."""
+    """The tests given with square_dance, the linters' too, notice a fault that is put into a copy of the package."""
     expect_given_tests(workspace, DANCE)

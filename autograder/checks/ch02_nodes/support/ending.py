@@ -39,7 +39,8 @@ def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str]
         harness.until(
             lambda: bool(harness.messages("/cmd_vel")) or harness.processes[0].cpu_seconds() > COMPUTING, START_SECONDS
         )
-        expect(bool(harness.messages("/cmd_vel")), "Started as ros2 run does, it published no command.")
+        spoke = bool(harness.messages("/cmd_vel"))
+        expect(spoke, "Started as ros2 run does, it published no command: without a scan, it has to publish zeros.")
         harness.run(QUIET)
         return harness.stop(number, STOP_SECONDS), harness.output
 

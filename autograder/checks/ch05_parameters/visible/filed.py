@@ -35,6 +35,7 @@ def test_file(workspace: Workspace) -> None:
     doc=contract.ARGUMENTS,
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
+@hint("A double has a point: 20.0, not 20.")
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_robots(workspace: Workspace) -> None:
     """The robots scout and porter get their own values, and for the rest what every robot has."""

@@ -64,8 +64,8 @@ def test_data_processor(workspace: Workspace) -> None:
 
 
 @check(points=1, holds="scan-filtered", group="processor", depends=("data_processor",), doc=contract.QOS)
-@hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
+@hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
     """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
     sent = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
@@ -83,12 +83,13 @@ def test_filters_scans(processor: Processor) -> None:
 @hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
 def test_sensor_profile(processor: Processor) -> None:
     """It takes scan and offers scan_filtered best effort, as a lidar does."""
-    ends = [
-        *processor.node.get_subscriptions_info_by_topic("/scan"),
-        *processor.node.get_publishers_info_by_topic("/scan_filtered"),
-    ]
-    reliable = [end.topic_type for end in ends if end.qos_profile.reliability == ReliabilityPolicy.RELIABLE]
-    expect(not reliable, "One of them is reliable.")
+    ends = {
+        "scan": processor.node.get_subscriptions_info_by_topic("/scan"),
+        "scan_filtered": processor.node.get_publishers_info_by_topic("/scan_filtered"),
+    }
+    for topic, found in ends.items():
+        reliable = any(end.qos_profile.reliability == ReliabilityPolicy.RELIABLE for end in found)
+        expect(not reliable, f"{topic} is reliable.")
 
 
 @check(points=1, holds=("mean-of-ten", "blind", "warns"), group="processor", depends=("filters_scans",))
@@ -109,6 +110,7 @@ def test_means(fresh_processor: Processor) -> None:
 
 @check(points=1, holds=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
 @hint(contract.RULE_STATUS, "One call of read_sensor(self.generator, self.failure_probability) a period.")
+@hint("read_sensor asks the generator that it is given: generator.random(). random.random() asks another one.")
 def test_counts_failures(workspace: Workspace) -> None:
     """robust_node says each second how its reading went, and counts failures in a row."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:

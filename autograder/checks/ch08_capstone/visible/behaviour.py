@@ -57,7 +57,8 @@ def test_sees(system: System) -> None:
     near = all(abs(one - other) <= TOLERANCE for one, other in zip(given, (1.0, 1.5, 2.0), strict=True))
     shown_as = ", ".join(f"{distance:.2f}" for distance in given)
     expect(
-        near and newest.valid, f"front, left, right were {shown_as}, valid {newest.valid}: 1.0, 1.5, 2.0, True it is."
+        near and newest.valid,
+        f"front, left, right were {shown_as}, valid {newest.valid}, not 1.00, 1.50, 2.00, valid True.",
     )
     blind = system.see(scan(Part(-35.0, 35.0, math.nan))).clearances
     expect(bool(blind) and not blind[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
@@ -73,7 +74,7 @@ def test_moves(system: System) -> None:
     wall = scan(Part(-10.0, 10.0, 0.4), Part(70.0, 110.0, 1.0), fill=3.0)
     expect_turning(system.see(wall).commands, "With a wall 0.4 m ahead and less room on the left", "right", 0.8)
     wall = scan(Part(-10.0, 10.0, 0.4), Part(-110.0, -70.0, 0.9), fill=3.0)
-    expect_turning(system.see(wall).commands, "With the same wall, and now less room on the right", "right", 0.8)
+    expect_turning(system.see(wall).commands, "In its turn to the right, and now with less room there", "right", 0.8)
     system.see(OPEN)
     expect_still(system.see(OPEN, age=0.9).commands, "With scans that come, and whose stamps are 0.9 s old")
     system.see(OPEN)

@@ -63,6 +63,8 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch(workspace: Workspace) -> None:
     """Step 4: navigation.launch.py starts the three nodes, use_sim_time reaches them, and Ctrl-C ends them."""
+    file = workspace.install / PACKAGE / "share" / PACKAGE / "launch" / LAUNCH_FILE
+    expect(file.is_file(), f"launch/{LAUNCH_FILE} is not installed: write it, and look at data_files in setup.py.")
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"use_sim_time": "true"}) as harness:
         launch_probe.expect_nodes(harness, [name_of(name) for name in PROGRAMS])
         for name in PROGRAMS:
@@ -84,7 +86,7 @@ def test_config_file(workspace: Workspace) -> None:
 
 
 @check(points=1, holds="sector-tests", group="step_6", depends=("package",), doc=contract.TESTING_DOC)
-@hint("Run pytest on test/test_sectors.py in a terminal, and read its last lines.")
+@hint("In a terminal, in the package's folder: python -m pytest -q test/test_sectors.py. Read its last lines.")
 @hint("Import nothing of the package but robot_navigation_tutorial.sectors.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""

@@ -58,7 +58,7 @@ def test_measures(start: Start) -> None:
 
 
 @check(points=1, holds=("smoother", "window"), group="nodes", depends=("builds",), doc=contract.NODES_DOC)
-@hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading.")
+@hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading that is finite.")
 def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
     with start(SMOOTHER) as harness:
@@ -76,14 +76,21 @@ def test_smooths(start: Start) -> None:
 
 
 @check(points=1, holds=("hysteresis", "unknown"), group="nodes", depends=("builds",), doc=contract.NODES_DOC)
-@hint("Remember the last decision in self.", "Between the two thresholds nothing changes.")
+@hint(
+    "Remember the last decision in self.",
+    "Between the two thresholds nothing changes.",
+    "nan is not known: the fan runs.",
+)
 def test_decides(start: Start) -> None:
     """Question 3: guard switches the fan on when it is hot or not known, off when it is cool, and passes both on."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
         told = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
     seen = [message.cooling for message in told]
-    expect(seen == [False, True, True, False, True], f"45, 65, 55, 45, nan °C: cooling was {seen}.")
+    expect(
+        seen == [False, True, True, False, True],
+        f"At 45, 65, 55, 45, nan °C, cooling was {seen}, not [False, True, True, False, True].",
+    )
     given = [(message.stamp.sec, round(message.celsius, 1)) for message in told[:3]]
     expect(given == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {given}.")
 
