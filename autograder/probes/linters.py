@@ -1,16 +1,18 @@
 """What the linters say of a student's package, asked by the grader itself.
 
 A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
-the student's, and no conftest.py is read.
+the student's, and no conftest.py is read. Then the student's own have to find what is untidy in a copy.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import replace
 
 from autograder.checks import CheckFailed
 from autograder.probes import test_runs
+from autograder.probes.laid_fault import UNTIDY, expect_failures
 from autograder.probes.test_reports import Source, TestRun
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.workspace import Workspace
@@ -22,11 +24,19 @@ _FINDINGS = {
 }
 
 
-def expect_tidy(workspace: Workspace, source: Source, fraction: float = 0.0) -> None:
-    """Fail the check if a linter finds what its own test has not reported; `fraction` of the points remains."""
+def expect_tidy(workspace: Workspace, source: Source, tests: Collection[str], fraction: float = 0.0) -> None:
+    """Fail the check if a linter finds what its own test has not reported, or if its test finds nothing anywhere.
+
+    Args:
+        workspace: the built workspace.
+        source: the package.
+        tests: its tests that run the linters, `module::name`.
+        fraction: what remains of the points where the package is untidy.
+    """
     for name, finding in objections(workspace, source).items():
         sentence = f"{name} passes, but its linter finds something in the package: {finding}"
         raise CheckFailed(sentence, fraction=fraction)
+    expect_failures(workspace, source, tests, {f"{source.package}/untidy.py": UNTIDY, "test/untidy.py": UNTIDY})
 
 
 def objections(workspace: Workspace, source: Source) -> dict[str, str]:

@@ -11,11 +11,13 @@ from autograder.harness import Workspace
 from autograder.probes.linters import expect_tidy, objections
 from autograder.probes.test_runs import take
 from autograder.ros import environment
+from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 
 pytestmark = pytest.mark.slow  # each run is a pytest of its own
 
 TIDY = '"""Halves."""\n\n\ndef half(x):\n    """Return a half of x."""\n    return x / 2\n'
 SILENT = "def test_flake8():\n    pass\n\n\ndef test_pep257():\n    pass\n"
+TESTS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
 EMPTIES = (
     '"""Lets no test run."""\n\n\ndef pytest_collection_modifyitems(items):\n    """Run none."""\n    items.clear()\n'
 )
@@ -53,8 +55,20 @@ def test_each_linter_names_the_first_that_it_finds_though_the_students_tests_and
     with pytest.raises(
         CheckFailed, match=r"test_flake8 passes, but its linter finds .*: half\.py:6:13: E225"
     ) as caught:
-        expect_tidy(workspace, take(workspace, "half"), fraction=0.5)
+        expect_tidy(workspace, take(workspace, "half"), TESTS, fraction=0.5)
     assert caught.value.fraction == 0.5
+
+
+def test_the_tests_of_ros2_pkg_create_find_what_is_laid_into_a_copy_and_tests_that_call_nothing_do_not(
+    workspace: Workspace,
+) -> None:
+    folder = workspace.root / "src/half/test"
+    (folder / "conftest.py").unlink()
+    (folder / "test_flake8.py").write_text(PYTHON_TESTS["test_flake8.py"])
+    (folder / "test_pep257.py").write_text(SILENT)
+    expect_tidy(workspace, take(workspace, "half"), TESTS[:1])
+    with pytest.raises(CheckFailed, match=r"half/untidy\.py and test/untidy\.py of a copy .*, and test_pep257 passed"):
+        expect_tidy(workspace, take(workspace, "half"), TESTS)
 
 
 def test_a_conftest_is_not_obeyed_but_judged_like_any_other_file(workspace: Workspace) -> None:

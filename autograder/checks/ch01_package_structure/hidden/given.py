@@ -11,11 +11,12 @@ from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.harness import Workspace
 from autograder.probes import test_runs
-from autograder.probes.test_reports import ClaimedOutcome, TestRun
-from autograder.probes.versions import Version
+from autograder.probes.laid_fault import UNTIDY, expect_failures
 
-# What flake8 objects to, and pep257: a name that nothing uses, and a docstring that is no sentence.
-UNTIDY = '"""no sentence"""\n\nimport os\n\n\n'
+HINTS = (
+    "The tests were right from the start, the linters' too: take them as they were given.",
+    "A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.",
+)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
 
 
@@ -60,13 +61,4 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     files = sorted({f"{test.partition('::')[0]}.py" for test in given.tests})
     absent = [name for name in files if name not in source.tests]
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
-    texts = {name: data.decode(errors="replace") for name, data in source.files.items()}
-    own = {name: text for name, text in texts.items() if not name.startswith("test/")}
-    faulty = Version({**own, given.module: UNTIDY + given.faulty}, {})
-    (report,) = test_runs.run(workspace, source, [TestRun(tuple(files), faulty)])
-    said = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
-    for test in given.tests:
-        verdicts = {verdict for name, verdict in said if name == test}
-        how = "was skipped" if ClaimedOutcome.SKIPPED in verdicts else "passed" if verdicts else "did not run"
-        saw = f"The checks put a fault into {given.module} of a copy of your package"
-        expect(verdicts == {ClaimedOutcome.FAILED}, f"{saw}, and {test.partition('::')[2]} {how}.")
+    expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})

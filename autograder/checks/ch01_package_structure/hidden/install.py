@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch01_package_structure.hidden.given import DANCE, expect_given_tests
+from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -119,8 +119,7 @@ def test_tests_stay(grown: Grown) -> None:
 
 
 @check(points=1, holds="given", depends=("builds",), doc=contract.COLCON)
-@hint("The tests were right from the start, the linters' too: take them as they were given.")
-@hint("A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.")
+@hint(*HINTS)
 def test_given_tests(workspace: Workspace) -> None:
     """The tests given with square_dance, the linters' too, notice a fault that is put into a copy of the package."""
     expect_given_tests(workspace, DANCE)

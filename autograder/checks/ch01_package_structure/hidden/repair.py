@@ -6,7 +6,7 @@ import random
 from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch01_package_structure.hidden.given import ALARM, expect_given_tests
+from autograder.checks.ch01_package_structure.hidden.given import ALARM, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
@@ -116,8 +116,7 @@ def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw
 
 
 @check(points=1, holds="alarm-given", depends=("alarm_builds",), doc=contract.COLCON)
-@hint("The tests were right from the start, the linters' too: take them as they were given.")
-@hint("A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.")
+@hint(*HINTS)
 def test_alarm_given_tests(workspace: Workspace) -> None:
     """The tests given with wall_alarm, the linters' too, notice a fault that is put into a copy of the package."""
     expect_given_tests(workspace, ALARM)

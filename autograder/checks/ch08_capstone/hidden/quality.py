@@ -48,7 +48,7 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
     for name in LINTERS:
         verdict = tested.claims.verdicts.get(name)
         expect(verdict is ClaimedOutcome.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")
-    linters.expect_tidy(workspace, take(workspace, PACKAGE))
+    linters.expect_tidy(workspace, take(workspace, PACKAGE), LINTERS)
 
 
 @check(

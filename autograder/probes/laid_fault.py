@@ -1,0 +1,36 @@
+"""Whether tests fail when a fault is laid into a copy of their package. One that calls or asserts nothing passes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from pathlib import Path
+
+from autograder.checks import expect
+from autograder.probes import test_runs
+from autograder.probes.test_reports import ClaimedOutcome, Source, TestRun
+from autograder.probes.versions import Version
+from autograder.workspace import Workspace
+
+# What flake8 objects to, and pep257: a name that nothing uses, and a docstring that is no sentence.
+UNTIDY = '"""no sentence"""\n\nimport os\n\n\n'
+
+
+def expect_failures(workspace: Workspace, source: Source, tests: Collection[str], faults: Mapping[str, str]) -> None:
+    """Fail the check unless each test fails on a faulty copy of its package.
+
+    Args:
+        workspace: the built workspace.
+        source: the package.
+        tests: the tests, `module::name` without parameters.
+        faults: the new text of each faulty file, by its path below the package's folder.
+    """
+    modules = {test.partition("::")[0] for test in tests}
+    files = sorted(name for name in source.tests if Path(name).suffix == ".py" and Path(name).stem in modules)
+    own = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
+    (report,) = test_runs.run(workspace, source, [TestRun(tuple(files), Version({**own, **faults}, {}))])
+    said = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
+    for test in tests:
+        verdicts = {verdict for name, verdict in said if name == test}
+        how = "was skipped" if ClaimedOutcome.SKIPPED in verdicts else "passed" if verdicts else "did not run"
+        saw = f"The checks put a fault into {' and '.join(faults)} of a copy of your package"
+        expect(verdicts == {ClaimedOutcome.FAILED}, f"{saw}, and {test.partition('::')[2]} {how}.")
