@@ -106,10 +106,12 @@ def test_newest():
 
 
 def test_turn():
-    """A turn goes through."""
+    """A turn goes through, in front of a wall and on a clear way."""
     with guarded(timeout=30.0) as harness:
-        answer = harness.answer(0.5, z=-1.25, y=0.25)
-        assert (answer.linear.y, answer.angular.z) == (0.25, -1.25)
+        for value in (0.4, 9.0):
+            harness.distance(value)
+            answer = harness.answer(0.5, z=-1.25, y=0.25)
+            assert (answer.linear.y, answer.angular.z) == (0.25, -1.25)
 
 
 def test_one_answer():
