@@ -8,6 +8,7 @@ import random
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
 from rclpy.action import get_action_names_and_types
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
@@ -100,6 +101,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
 @check(points=2, holds=("driven", "arrives", "drive-cmd-vel"), depends=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 @hint("driven is a distance, from the start to the newest position; it is not the sum of steps.")
+@hint("self.create_publisher(Twist, 'cmd_vel', 10)")
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = placed_driver.x, placed_driver.y
@@ -116,6 +118,10 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     placed_driver.run(0.5)
     later = placed_driver.messages(COMMANDS, since=ended)
     expect(not later, f"Within 0.5 s after the goal, {len(later)} more commands came on cmd_vel.", fraction=0.5)
+    for peer in placed_driver.node.get_publishers_info_by_topic(COMMANDS):
+        qos = peer.qos_profile
+        plain = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
+        expect(plain, "cmd_vel does not have the quality of service that a plain 10 stands for.", fraction=0.5)
 
 
 @check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)
@@ -131,7 +137,8 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     said = f"driven {wrong[0].driven:.2f} m and remaining {wrong[0].remaining:.2f} m" if wrong else ""
     expect(not wrong, f"With {distance:.2f} m to drive, a feedback said {said}.")
     driven = [one.driven for one in heard]
-    expect(driven == sorted(driven) and driven[-1] > driven[0], "driven did not grow on the way.")
+    grows = driven == sorted(driven) and driven[-1] > driven[0] >= 0.0
+    expect(grows, "driven did not grow on the way, from 0.")
     for what, told in (("feedback", goal.feedback), ("command", placed_driver.messages(COMMANDS, since=began))):
         seen = mean_period(told)
         paced = is_paced(seen, contract.PERIOD, placed_driver.time)

@@ -1,4 +1,4 @@
-"""Fixtures of the hidden checks: a status publisher that is started with parameters."""
+"""Fixtures of the hidden checks: nodes that are started in another way than most."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 from autograder.harness import Shared, Workspace
 
 TUNED_PERIOD = 0.25  # s
+FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
 
 
 @pytest.fixture(scope="session")
@@ -32,3 +34,18 @@ def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -
 def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
     """The status publisher with a name and a period that it is given."""
     return shared_tuned_reporter.get()
+
+
+@pytest.fixture
+def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
+    """A status publisher on a machine whose clocks are faster than ROS time."""
+    with Reporter(workspace, types, clock_rate=FAST) as reporter:
+        yield reporter
+
+
+@pytest.fixture
+def tardy_driver(workspace: Workspace, types: Types) -> Iterator[Driver]:
+    """A distance driver on a machine whose clocks are slower than ROS time; it has heard where it is."""
+    with Driver(workspace, types, clock_rate=SLOW) as driver:
+        driver.place(0.0, 0.0, 0.7)
+        yield driver

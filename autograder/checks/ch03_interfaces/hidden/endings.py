@@ -11,12 +11,15 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, straight
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import PATIENCE
-from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
-from autograder.time_record import LOCKSTEP
+from autograder.checks.ch03_interfaces.support.driver import COMMANDS, Driver, stopped
+from autograder.harness import Goal, Stamped
+from autograder.time_record import LOCKSTEP, REAL
 
 check = group("action", doc=contract.ACTION)
-LATE = 0.4  # s beyond the patience: two commands, and the harness's looks at the result
-REAL_LATE = 2.0  # s, where time is real and a machine may be busy
+LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond the patience: two commands, and the harness's looks at the result
+BLUR = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early; in lockstep, or too late
+PUSH_AFTER = 0.5  # s
+TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m, around a centimetre
 SLOW = 0.007  # m/s
 SOON_THERE, UNHURRIED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
@@ -70,26 +73,32 @@ def test_drive_one_at_a_time(placed_driver: Driver) -> None:
     placed_driver.finish(third, LONG, "With 0.10 m to drive")
 
 
-@check(points=2, holds=("stuck", "slow-goal"), depends=MOVES)
+@check(points=2, holds=("stuck", "stop-in-time", "slow-goal"), depends=MOVES)
 @hint("Remember how far the robot had come, and when; a centimetre more sets both anew.")
 @hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
 def test_drive_stuck(placed_driver: Driver) -> None:
     """A robot that gets no further for a second is stopped, and the goal ends ABORTED with a reason."""
-    placed_driver.stuck = True
-    began = placed_driver.seconds
-    goal = placed_driver.start(1.0, 0.4)
-    commands = placed_driver.finish(goal, 6.0, "With wheels that do not turn")
-    seconds = placed_driver.seconds - began
+    placed_driver.stuck, blur = True, BLUR[placed_driver.time]
+    goal, commands = _push(placed_driver, TOO_LITTLE)
     ended = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_ABORTED, f"With wheels that do not turn, the goal ended {ended}.")
-    late = LATE if placed_driver.time == LOCKSTEP else REAL_LATE
+    seconds = _driving(commands)
+    late = blur if placed_driver.time == LOCKSTEP else LATE[REAL]
     expect(
-        PATIENCE <= seconds <= PATIENCE + late,
-        f"The goal was given up after {seconds:.1f} s, instead of {PATIENCE:.0f} s.",
+        PATIENCE - contract.PERIOD - blur <= seconds <= PATIENCE + late,
+        f"With wheels that do not turn, it was told to drive for {seconds:.2f} s, instead of {PATIENCE:.0f} s.",
         fraction=0.5,
     )
-    expect(stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.5)
+    last = [stamped.message for stamped in commands]
+    expect(stopped(last), "After the goal had been given up, the last command was no stop.", fraction=0.5)
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.7)
+    _, commands = _push(placed_driver, ENOUGH)
+    seconds = _driving(commands)
+    expect(
+        seconds >= PUSH_AFTER + PATIENCE - contract.PERIOD - blur,
+        f"The robot got {ENOUGH:.4f} m further after {PUSH_AFTER} s, and was given up {seconds:.2f} s after the start.",
+        fraction=0.7,
+    )
     placed_driver.stuck = False
     goal = placed_driver.start(1.0, SLOW)
     placed_driver.finish(goal, 6.0, f"At {SLOW} m/s, which is slower than 0.01 m/s")
@@ -103,14 +112,34 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     expect(arrived, f"At {UNHURRIED} m/s, more than a centimetre in 1 s, the goal ended {ended}.", fraction=0.7)
 
 
-@check(points=2, holds="stuck", depends=("drive_stuck",))
+@check(points=2, holds=("stuck", "drive-time"), depends=("drive_stuck",))
 @hint("Without odometry the position stays as it was, and that is no progress, either.")
-def test_drive_blind(placed_driver: Driver) -> None:
-    """When the odometry falls silent on the way, the robot is stopped and the goal ends ABORTED."""
-    goal = placed_driver.start(4.5, 0.5)
-    placed_driver.roll(goal, 0.6)
-    placed_driver.deaf = True
-    commands = placed_driver.finish(goal, 6.0, "With odometry that fell silent")
+@hint("time.sleep() and time.monotonic() know nothing of ROS time; self.get_clock() does.")
+def test_drive_blind(tardy_driver: Driver) -> None:
+    """When the odometry falls silent on the way, the robot is stopped after 1 s of ROS time; the goal ends ABORTED."""
+    goal = tardy_driver.start(4.5, 0.5)
+    tardy_driver.roll(goal, 0.6)
+    tardy_driver.deaf, silent = True, tardy_driver.seconds
+    commands = tardy_driver.finish(goal, LONG, "With odometry that fell silent")
+    seconds = tardy_driver.seconds - silent
     ended = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_ABORTED, f"With odometry that fell silent, the goal ended {ended}.")
     expect(stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.5)
+    late = seconds > PATIENCE + LATE[tardy_driver.time]
+    expect(not late, f"The goal was given up {seconds:.1f} s of ROS time after the last odometry.", fraction=0.5)
+
+
+def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:
+    """Push a robot whose wheels do not turn once on its way; return the goal, which has ended, and its commands."""
+    began = driver.seconds
+    goal = driver.start(1.0, 0.4)
+    driver.roll(goal, PUSH_AFTER)
+    driver.push(distance)
+    driver.finish(goal, 6.0, "With wheels that do not turn")
+    return goal, driver.messages(COMMANDS, since=began)
+
+
+def _driving(commands: list[Stamped]) -> float:
+    """Return the seconds from the first command to drive to the last."""
+    came = [stamped.seconds for stamped in commands if stamped.message.linear.x != 0.0]
+    return came[-1] - came[0] if came else 0.0

@@ -78,6 +78,8 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
             situation = f"At {level} %, with {left} % left of a reserve of {reserve} %"
             says = "possible" if answer.possible else "not possible"
             expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
+        answer = reporter.ask([level * METRES_PER_PERCENT], 0)
+        expect(answer.possible, f"With a reserve of 0, a trip that takes all {level} % is said to be not possible.")
 
 
 @check(points=1, holds=("trip-far", "trip-reason"), depends=("trip_level",))

@@ -27,8 +27,9 @@ class Driver(AutoHarness):
         deaf: whether the odometry is silent.
     """
 
-    def __init__(self, workspace: Workspace, types: Types) -> None:
-        super().__init__(workspace, PACKAGE, DRIVER, offers={ODOMETRY: Odometry}, listens={COMMANDS: Twist})
+    def __init__(self, workspace: Workspace, types: Types, clock_rate: float = 1.0) -> None:
+        offers, listens = {ODOMETRY: Odometry}, {COMMANDS: Twist}
+        super().__init__(workspace, PACKAGE, DRIVER, offers=offers, listens=listens, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading = 0.0, 0.0, 0.0
         self.stuck = self.deaf = False

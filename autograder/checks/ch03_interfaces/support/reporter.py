@@ -26,9 +26,13 @@ ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, ge
 class Reporter(AutoHarness):
     """A harness in which sensors speak, the status is read, and trips are asked about."""
 
-    def __init__(self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
+    ) -> None:
         listens = {TOPIC: types.robot_status}
-        super().__init__(workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments)
+        super().__init__(
+            workspace, PACKAGE, STATUS, offers=OFFERS, listens=listens, arguments=arguments, clock_rate=clock_rate
+        )
         self.types = types
 
     def publish_battery(self, percentage: float, *, status: int = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING) -> None:

@@ -74,7 +74,7 @@ class Driver(Node):
         job.driven = math.hypot(self.position.x - job.start.x, self.position.y - job.start.y)
         job.idle += 1
         if job.driven >= job.best + 0.01:
-            job.best, job.idle = job.driven, 0
+            job.best, job.idle = job.driven, 1
         goal, command = job.handle.request, Twist()
         if job.driven >= goal.distance:
             job.end, job.reason = job.handle.succeed, ""
