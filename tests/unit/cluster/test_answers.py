@@ -94,6 +94,7 @@ def test_an_answer_is_stored_under_the_student_s_name(request_: Request, result:
 
 def hostile(result: Result) -> dict[str, tuple[object, str]]:
     first, *rest = result.checks
+    none = [replace(check, points=0.0) for check in rest]
     picture = {"turns.png": png()}
     large = io.BytesIO()
     Image.new("1", (6000, 6000)).save(large, "PNG")
@@ -114,7 +115,11 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
             answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),
             "does not hold the checks",
         ),
-        "too many points": (answer(replace(result, checks=(replace(first, points=99.0), *rest))), "more points"),
+        "too many points": (answer(replace(result, checks=(replace(first, points=99.0), *rest))), "points of 52"),
+        "too many points for a check": (
+            answer(replace(result, checks=(replace(first, points=first.max_points + 1), *none))),
+            "more points",
+        ),
         "a file that is no picture": (answer(result, **{"evil.sh": b"rm"}), "its result names"),
         "a picture outside": (answer(with_picture(result, "../x.png"), **{"../x.png": png()}), "of the name"),
         "a picture that is none": (
