@@ -30,11 +30,10 @@ from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
 from tests.e2e.cluster_arena import CLIENT, SCHEDULER, WORKERS, Arena, arena
+from tests.e2e.results import without_times
 
 ASSIGNMENT = "01_package_structure"
 DEADLINE = 1500.0  # s
-# Colcon's output, in a log or as a diagnosis's detail, holds times and the folder of the cell.
-TIMES = {"seconds", "started", "phases", "held_up", "log", "detail"}
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
 
@@ -66,12 +65,6 @@ def stored(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
             {file.name: file.read_bytes() for file in kept},
         )
     return found
-
-
-def without_times(data: Any) -> Any:
-    if isinstance(data, dict):
-        return {key: without_times(value) for key, value in data.items() if key not in TIMES}
-    return [without_times(item) for item in data] if isinstance(data, list) else data
 
 
 def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:

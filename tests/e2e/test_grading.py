@@ -8,7 +8,6 @@ import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import nbformat
 import pytest
@@ -24,6 +23,7 @@ from autograder.grading.batch import Entry, grade_all
 from autograder.proof.mutants import write_reference
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier, tiers
+from tests.e2e.results import without_times
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
@@ -64,15 +64,6 @@ def _grade(path: Path, out: Path) -> Result:
     return grade_submission(path, ASSIGNMENT, student="alice", seed=SEED, out=out)
 
 
-def _without_times(result: Result) -> dict[str, Any]:
-    data = result.to_json()
-    for timed in (data, data["build"], *data["checks"]):
-        timed.pop("seconds")
-    data.pop("started")
-    data.pop("phases")
-    return data
-
-
 @pytest.mark.parametrize("layout", ["zip", "notebook"])
 def test_the_reference_gets_everything_in_every_layout(together: dict[str, Result], layout: str) -> None:
     result = together[layout]
@@ -96,7 +87,7 @@ def test_one_at_a_time_gives_the_same_result_as_two_at_once(
     together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
     (alone,) = grade_all(layouts[:1], ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
-    assert json.dumps(_without_times(alone)) == json.dumps(_without_times(together["zip"]))
+    assert without_times(alone.to_json()) == without_times(together["zip"].to_json())
     tracks = [artifact.sha256 for artifact in alone.artifacts]
     assert tracks == [artifact.sha256 for artifact in together["notebook"].artifacts]
     assert len(set(tracks)) == 3

@@ -22,6 +22,7 @@ from autograder.proof.cases import cases
 from autograder.proof.claims import Attack, CaseKind
 from autograder.result import Result, from_json
 from autograder.sandbox import cgroup
+from tests.e2e.results import without_times
 from tests.e2e.witness import grade_seen
 
 Writers = list[tuple[str, Callable[[Path], None]]]
@@ -78,14 +79,10 @@ def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Re
     return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
 
 
-def without_times(folder: Path) -> dict[str, Any]:
+def untimed(folder: Path) -> dict[str, Any]:
     """Return the files of a result by name; of those that hold times, all but the times."""
     files: dict[str, Any] = {path.name: path.read_bytes() for path in folder.iterdir()}
-    files[RESULT] = result = json.loads(files[RESULT])
-    for timed in (result, result["build"], *result["checks"]):
-        del timed["seconds"]
-    for field in ("started", "phases", "held_up"):
-        del result[field]
+    files[RESULT] = without_times(json.loads(files[RESULT]))
     if NOTEBOOK in files:
         files[NOTEBOOK] = json.loads(files[NOTEBOOK])
         for cell in files[NOTEBOOK]["cells"]:
@@ -131,7 +128,7 @@ def test_attackers_change_nothing_of_the_others(
     results = graded(tmp_path / "with", mixed, only)
     require_held({student: results[student] for student, _ in bad}, only)
     for student, _ in good:
-        alone, beside = (without_times(tmp_path / place / "results" / student) for place in ("without", "with"))
+        alone, beside = (untimed(tmp_path / place / "results" / student) for place in ("without", "with"))
         assert beside == alone, student
 
 
