@@ -70,6 +70,7 @@ def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -
         (["00_welcome"], "00_welcome has no hidden checks; there are: 01_package_structure"),
         ([ASSIGNMENT], "exists already: name a file that does not exist yet"),
     ],
+    ids=["no checks", "exists already"],  # one that names a chapter would be made a home for on another worker
 )
 def test_a_wrong_call_is_told(home: Path, arguments: list[str], message: str) -> None:
     ran = subprocess.run(

@@ -78,6 +78,8 @@ def test_its_notebook_runs_as_its_author_and_as_a_student_have_it(course: Path) 
         ("chapter 11_mapping", "solutions/mapping exists already: take another name"),
         ("course mine", "mine exists already: take another name"),
     ],
+    # One that names a chapter would be made a course for on another worker.
+    ids=["no number", "a keyword", "the package exists", "the course exists"],
 )
 def test_a_name_that_cannot_be_taken_is_refused_and_nothing_is_written(course: Path, words: str, said: str) -> None:
     before = {*course.rglob("*")}
