@@ -44,7 +44,7 @@ def test_the_tool_writes_what_the_real_one_writes(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize(
-    "assignment", [pytest.param(one, marks=unless(one in now)) for now in [drawn(list(MADE), 3)] for one in MADE]
+    "assignment", [pytest.param(one, marks=unless(one in now)) for now in [drawn(list(MADE), 4)] for one in MADE]
 )
 def test_no_check_takes_a_point_for_what_the_tool_writes(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
     def write(folder: Path) -> None:
