@@ -62,6 +62,8 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     assert (real.time, real.time_note) == ("real", "robot_controller was met in real time: that was asked for.")
 
 
+@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_path: Path) -> None:
     write_reference((PACKAGE,), tmp_path)
     text = (tmp_path / NODE).read_text()
@@ -174,6 +176,7 @@ def met(scratch: Path, text: str) -> Any:
     [
         ("thread", "node was met in real time: it uses rclpy in threads of its own."),
         ("sleep", "node was met in real time: it sleeps in a loop instead of spinning."),
+        ("clock", "node was met in real time: it has a timer on a clock that is not the ROS clock."),
     ],
 )
 def test_a_program_that_cannot_be_stepped_is_found_and_met_in_real_time(reason: str, words: str) -> None:

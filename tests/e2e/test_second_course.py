@@ -52,6 +52,7 @@ def test_its_notebooks_keep_the_rules_and_its_tables_name_its_checks(course: Pat
     assert json.loads((course / "checks/ch02_beat/visible/judged_later.json").read_text()) == ["It counts its beats."]
 
 
+@pytest.mark.nightly
 def test_its_proof_holds(autograder: Run) -> None:
     done = autograder("verify", "--quick", "-j", "2", "--json", "proof.json")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -131,6 +131,7 @@ def passed(cell: NotebookNode) -> tuple[int, int]:
     return int(found[0]), int(found[1])
 
 
+@pytest.mark.nightly  # the tour has shown it in JupyterLab
 @pytest.mark.parametrize("chapter", each_chapter())
 def test_who_answers_everything_right_at_once_passes_every_check(chapter: Chapter, student: Student) -> None:
     right = answers(chapter)
