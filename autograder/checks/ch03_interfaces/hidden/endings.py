@@ -131,12 +131,12 @@ def test_drive_blind(tardy_driver: Driver) -> None:
 
 def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:
     """Push a robot whose wheels do not turn once on its way; return the goal, which has ended, and its commands."""
-    began = driver.seconds
+    before = len(driver.messages(COMMANDS))
     goal = driver.start(1.0, 0.4)
     driver.roll(goal, PUSH_AFTER)
     driver.push(distance)
     driver.finish(goal, 6.0, "With wheels that do not turn")
-    return goal, driver.messages(COMMANDS, since=began)
+    return goal, driver.messages(COMMANDS)[before:]
 
 
 def _driving(commands: list[Stamped]) -> float:
