@@ -1,14 +1,20 @@
-"""Runs `colcon test` on a student's package in the sandbox."""
+"""Runs `colcon test` on a student's package in the sandbox.
+
+colcon runs setup.py first, which could write what pytest writes. So each run has a name of its own, which pytest puts
+into its report, and a report with another name counts for nothing.
+"""
 
 from __future__ import annotations
 
 import re
+import secrets
 from dataclasses import replace
 from pathlib import Path
 
 from autograder.building.colcon import HOST, colcon_command
+from autograder.probes.files import read_plain
 from autograder.probes.installed import Installed
-from autograder.probes.test_reports import Claims, Report, read_claims
+from autograder.probes.test_reports import MAX_BYTES, Claims, Report, parse_claims
 from autograder.probes.test_runs import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
@@ -18,8 +24,8 @@ from autograder.workspace import Workspace
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 
 
-def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
-    """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure ARGUMENTS...` in a built workspace.
+def colcon_test(workspace: Workspace, package: str) -> Report:
+    """Run `colcon test --packages-select PACKAGE --return-code-on-test-failure` in a built workspace.
 
     Its build and test folders are written to.
 
@@ -27,8 +33,8 @@ def colcon_test(workspace: Workspace, package: str, *arguments: str) -> Report:
         What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
         be stopped, that of a second run, as in `test_runs.run`.
     """
-    first = _colcon_test(workspace, package, arguments)
-    return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package, arguments)
+    first, _ = _colcon_test(workspace, package)
+    return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package)[0]
 
 
 def runs_pytest(workspace: Workspace, installed: Installed) -> bool:
@@ -39,19 +45,14 @@ def runs_pytest(workspace: Workspace, installed: Installed) -> bool:
     The tests are collected and not run.
     """
     named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
-    if "pytest" in named:
-        return True
-    colcon_test(workspace, installed.package, "--pytest-args", "--collect-only")
-    return _report(workspace, installed.package).is_file()
+    return "pytest" in named or _colcon_test(workspace, installed.package, "--collect-only")[1]
 
 
-def _report(workspace: Workspace, package: str) -> Path:
-    """Return the path of the file that pytest writes if colcon runs it."""
-    return workspace.root / "build" / package / "pytest.xml"
-
-
-def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...]) -> Report:
-    choice = ("--packages-select", package, "--return-code-on-test-failure", *arguments)
+def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> tuple[Report, bool]:
+    """Return the report, and whether pytest has written one."""
+    run = secrets.token_hex(8)
+    choice = ["--packages-select", package, "--return-code-on-test-failure"]
+    choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
     plain = sandboxed(workspace, HOST, limits=BUILD)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
@@ -59,14 +60,13 @@ def _colcon_test(workspace: Workspace, package: str, arguments: tuple[str, ...])
     spec = replace(
         plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
     )
-    report = _report(workspace, package)
-    if _inside(report, workspace.root):
-        report.unlink(missing_ok=True)
     with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
-    claims = read_claims(report) if _inside(report, workspace.root) else None
-    return Report(ending, status, claims or Claims(), 0, output)
+    path = workspace.root / "build" / package / "pytest.xml"
+    written = (read_plain(path, MAX_BYTES) if _inside(path, workspace.root) else None) or b""
+    claims = parse_claims(written) if run.encode() in written else None
+    return Report(ending, status, claims or Claims(), 0, output), claims is not None
 
 
 def _inside(path: Path, root: Path) -> bool:

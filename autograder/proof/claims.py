@@ -6,14 +6,17 @@ empty string if there are none.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from pathlib import Path
 
+from autograder import layout
 from autograder.checks import Outcome, suites
 from autograder.diagnosis import Kind
 from autograder.proof.mutants import Mutant
+from autograder.proof.payloads import LOOT
 from autograder.result import Result
 
 
@@ -88,7 +91,8 @@ class Attack:
     """A malicious submission: the attacks that it combines, in words, and a function that writes it to a folder.
 
     `loses` holds the checks that it must lose, with or without the payload, and no others if it loses them `exactly`,
-    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none.
+    because the payload disturbs nothing. The result has one of the diagnoses, or any if there are none. What a student
+    reads first holds the text `says`, if every check was run.
     """
 
     id: str
@@ -97,6 +101,7 @@ class Attack:
     loses: frozenset[str]
     diagnosis: frozenset[Kind] = frozenset()
     exactly: bool = False
+    says: str = ""
 
     def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
         """Return what the attack gained or disturbed, and an empty string if nothing.
@@ -115,4 +120,42 @@ class Attack:
             wrong.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
             wrong.append(f"is diagnosed {result.diagnosis.kind.value}")
+        if not only and self.says not in (first := first_sentence(result)):
+            wrong.append(f"is told: {first}")
+        wrong += [f"shows {line}" for line in stolen(result)[:1]]
         return "; ".join(wrong)
+
+
+def first_sentence(result: Result) -> str:
+    """Return what a student reads first."""
+    if result.diagnosis.kind is not Kind.OK:
+        return result.diagnosis.sentence
+    return next((check.message for check in result.checks if check.outcome is Outcome.FAILED), "")
+
+
+def stolen(result: Result) -> list[str]:
+    """Return what a result shows of hidden checks, and of what a payload says that it has stolen."""
+    shown = "\n".join(_texts(result.to_json()))
+    return sorted(line for line in {LOOT, *hidden_lines(result.assignment)} if line in shown)
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Yield every text in JSON."""
+    if isinstance(value, str):
+        yield value
+    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _texts(part)
+
+
+@cache
+def hidden_lines(assignment: str) -> frozenset[str]:
+    """Return lines that stand in an assignment's hidden suite only: whoever prints one of them has read it."""
+    lines = {
+        line.strip()
+        for path in suites.hidden(assignment).files
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
+    }
+    public = [path for name in ("support", "visible") for path in layout.CHECKS.glob(f"ch*/{name}/*.py")]
+    known = "\n".join(path.read_text(encoding="utf-8") for path in (*public, *layout.SOLUTIONS.rglob("*.py")))
+    return frozenset(line for line in lines if line not in known)

@@ -1,11 +1,13 @@
 """No attack gains a point, sees a hidden check, or stops the grader.
 
-The checks that drive through a world take most of a grading. They are run for the attacks that must lose one of them,
-and for all attacks by `make verify`.
+Each attack is graded by the checks that it must lose; those on 02 by all checks but the drives through a world, which
+take most of a grading. Of the attacks on the other chapters, the commit draws one. The others run at night, and
+`make verify` grades all of them by all checks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import nbformat
@@ -13,31 +15,29 @@ import pytest
 
 from autograder import feedback, layout
 from autograder.checks import suites
-from autograder.checks.ch02_nodes.attack_payloads import CANARY
-from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks, attacks
+from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
 from autograder.grading import grade_submission
 from autograder.grading.job import Scope
 from autograder.grading.pipeline import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
-from autograder.proof.claims import Attack
+from autograder.proof.cases import attacks
+from autograder.proof.claims import Attack, hidden_lines
+from autograder.proof.payloads import CANARY, LOOT
 from autograder.result import Result
 from autograder.sandbox import cgroup
+from tests.drawn import commit, drawn, unless
 
-ATTACKS = attacks()
 DRIVES = frozenset({"room", "pillars", "corridor"})
 
 
-def _hidden_text() -> set[str]:
-    """Return lines that stand in the hidden suite only: whoever prints one of them has read it."""
-    lines = {
-        line.strip()
-        for path in suites.hidden(ASSIGNMENT).files
-        for line in path.read_text().splitlines()
-        if line.startswith(("def ", "    expect", "        expect")) and len(line.strip()) > 30
-    }
-    public = (path for name in ("support", "visible") for path in layout.CHECKS.glob(f"ch*/{name}/*.py"))
-    shown = "\n".join(path.read_text() for path in public)
-    return {line for line in lines if line not in shown}
+def _attacks() -> Iterator[object]:
+    """Yield each attack with its assignment."""
+    found = [(assignment, attack) for assignment in suites.graded() for attack in attacks(assignment)]
+    others = [attack.id for assignment, attack in found if assignment != ASSIGNMENT]
+    chosen = drawn(others, len(others), commit())
+    for assignment, attack in found:
+        marks = unless(assignment == ASSIGNMENT or attack.id in chosen)
+        yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}", marks=marks)
 
 
 def _everything_written(out: Path) -> str:
@@ -46,34 +46,34 @@ def _everything_written(out: Path) -> str:
     return "\n".join(texts)
 
 
-def _grade(attack: Attack, checks: frozenset[str], folder: Path) -> Result:
+def _grade(assignment: str, attack: Attack, checks: frozenset[str], folder: Path) -> Result:
     attack.write(folder / "work")
     submission = folder / "work" / "submission"
     path = submission if submission.is_dir() else folder / "work"
-    scope, out = Scope(only=suites.hidden(ASSIGNMENT).with_dependencies(*checks)), folder / "out"
-    return grade_submission(path, ASSIGNMENT, student="mallory", seed=2026, out=out, scope=scope)
+    scope, out = Scope(only=suites.hidden(assignment).with_dependencies(*checks)), folder / "out"
+    return grade_submission(path, assignment, student="mallory", seed=2026, out=out, scope=scope)
 
 
-@pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.id)
+@pytest.mark.parametrize(("assignment", "attack"), _attacks())
 def test_an_attack_gains_no_point_and_learns_nothing(
-    attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    assignment: str, attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if attack.id == "fork bomb" and "pids" not in cgroup.bounds():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
-    checks = all_checks() - (DRIVES - attack.loses)
-    result = _grade(attack, checks, tmp_path)
+    checks = all_checks() - (DRIVES - attack.loses) if assignment == ASSIGNMENT else attack.loses
+    result = _grade(assignment, attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 
     feedback.write(result, tmp_path / "out")
     written = _everything_written(tmp_path / "out")
-    assert "STOLEN /" not in written  # the notebook's own source says "STOLEN", and a comma
+    assert LOOT not in written  # the notebook's own source says "STOLEN", and a comma
     assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
-    assert not {line for line in _hidden_text() if line in written}
+    assert not {line for line in hidden_lines(assignment) if line in written}
 
     if (tmp_path / "out" / NOTEBOOK).is_file():
         notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)
-        source = nbformat.read(layout.source_notebook(ASSIGNMENT), as_version=4)
+        source = nbformat.read(layout.source_notebook(assignment), as_version=4)
         graded_cells = [cell for cell in notebook.cells if grade_id(cell)]
         wanted = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
         assert sorted(map(grade_id, graded_cells)) == sorted(wanted)
@@ -83,4 +83,5 @@ def test_an_attack_gains_no_point_and_learns_nothing(
 
 
 def test_there_is_hidden_text_to_look_for() -> None:
-    assert len(_hidden_text()) > 20
+    for assignment in suites.graded():
+        assert len(hidden_lines(assignment)) > 20, assignment

@@ -13,13 +13,12 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder.checks import Outcome, suites
+from autograder.checks import suites
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
-from autograder.diagnosis import Kind
 from autograder.grading.batch import Entry
 from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.proof.cases import cases
-from autograder.proof.claims import Attack, CaseKind
+from autograder.proof.claims import Attack, CaseKind, first_sentence
 from autograder.result import Result, from_json
 from autograder.sandbox import cgroup
 from tests.e2e.results import without_times
@@ -88,13 +87,6 @@ def untimed(folder: Path) -> dict[str, Any]:
         for cell in files[NOTEBOOK]["cells"]:
             cell["metadata"].pop("execution", None)
     return files
-
-
-def first_sentence(result: Result) -> str:
-    """Return what a student reads first."""
-    if result.diagnosis.kind is not Kind.OK:
-        return result.diagnosis.sentence
-    return next((check.message for check in result.checks if check.outcome is Outcome.FAILED), "")
 
 
 def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:

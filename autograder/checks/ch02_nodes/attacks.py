@@ -14,7 +14,6 @@ from nbformat.v4 import new_code_cell, new_notebook
 from autograder.checks import suites
 from autograder.checks.ch02_nodes.attack_payloads import (
     CALL_SPOOF,
-    FORGE_PASSES,
     FORGE_PROTOCOL,
     FORK_BOMB,
     INSTALL_OWN_RCLPY,
@@ -24,12 +23,11 @@ from autograder.checks.ch02_nodes.attack_payloads import (
     PLANTED_FILES,
     PUBLISH_NAN,
     SPOOF_ROS,
-    STEAL_SECRETS,
-    STOP_PARENT,
 )
 from autograder.diagnosis import Kind
 from autograder.proof.claims import Attack
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS, STOP_PARENT
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"

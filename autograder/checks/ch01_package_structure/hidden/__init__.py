@@ -3,3 +3,4 @@
 PACKAGES = ("square_dance", "wall_alarm")
 MODULES = ("manifests", "install", "run", "repair")
 BUILD_MAY_FAIL = True
+READS = ("solutions/square_dance", "solutions/wall_alarm")  # on which the given tests are run

@@ -1,4 +1,4 @@
-"""Whether the tests that came with a package are as they were: they fail when a module of the package is faulty.
+"""Whether the tests that came with a package are as they were: they pass on it, and fail when a module is faulty.
 
 A linter's test that `ros2 pkg create` wrote does so, too. Its test_copyright is skipped, so that one is not asked.
 """
@@ -7,11 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from autograder import layout
 from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.harness import Workspace
 from autograder.probes import test_runs
 from autograder.probes.laid_fault import UNTIDY, expect_failures
+from autograder.probes.test_reports import Source, TestRun
+from autograder.probes.versions import read
 
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",
@@ -56,9 +59,16 @@ ALARM = Given(
 
 
 def expect_given_tests(workspace: Workspace, given: Given) -> None:
-    """Fail the check unless each given test fails on a copy of the package with a faulty module."""
-    source = test_runs.take(workspace, given.package)
-    files = sorted({f"{test.partition('::')[0]}.py" for test in given.tests})
-    absent = [name for name in files if name not in source.tests]
+    """Fail the check unless each given test passes on a right package, and fails on one with a faulty module."""
+    taken = test_runs.take(workspace, given.package)
+    files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in given.tests}))
+    absent = [name for name in files if name not in taken.tests]
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
+    kept = {name: data for name, data in taken.files.items() if name.removeprefix("test/") in (name, *files)}
+    source = Source(given.package, kept)  # of test/ the given files alone
+    (report,) = test_runs.run(
+        workspace, source, [TestRun(files, read(layout.SOLUTIONS / given.package, {}), conftest=False)]
+    )
+    failed = " and ".join(test.partition("::")[2] for test in report.failed)
+    expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})

@@ -1,0 +1,61 @@
+"""Attacks on 01: set-up files that steal, forge what was built and tested, and tests that fail whatever they see."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS
+
+CHAPTER = Chapter("01_package_structure")
+SETUP, TESTS = "square_dance/setup.py", "square_dance/test"
+PLANTED = {
+    "square_dance/pytest.ini": "[pytest]\naddopts = --collect-only\n",
+    "../install/square_dance/share/square_dance/launch/square_dance.launch.py": "forged = True\n",
+    "../install/square_dance/lib/square_dance/dancer": "#!/bin/sh\necho forged\n",
+}
+FAIL_ALWAYS = """# Copyright 2026 The ROS 2 Python Course Authors
+def test_four_sides_and_four_turns_come_back_to_the_start():
+    assert False
+
+
+def test_it_drives_straight_first_and_then_turns_to_the_left():
+    assert False
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").loses, CHAPTER.mutant("launch_not_installed").loses
+    return (
+        Attack(
+            "package thief",
+            "setup.py steals; pytest.ini, and a forged install tree with the file that setup.py forgets",
+            CHAPTER.write("launch_not_installed", heads={SETUP: STEAL_SECRETS}, files=PLANTED),
+            unlaunched,
+            exactly=True,
+            says="share/square_dance/launch/square_dance.launch.py was not installed",
+        ),
+        Attack(
+            "report by set-up",
+            "setup.py names no pytest, and writes the report that pytest would",
+            CHAPTER.write("pytest_unnamed", heads={SETUP: FORGE_REPORT}),
+            unnamed,
+            exactly=True,
+            says="`colcon test` does not run pytest for this package",
+        ),
+        Attack(
+            "report in the way",
+            "setup.py puts a folder where colcon test writes its report",
+            CHAPTER.write("pytest_unnamed", heads={SETUP: BLOCK_REPORT}),
+            unnamed,
+            says="`colcon test` does not run pytest for this package",
+        ),
+        Attack(
+            "tests that always fail",
+            "the given tests fail on any version, so also on a faulty one",
+            CHAPTER.write(files={f"{TESTS}/test_steps.py": FAIL_ALWAYS}),
+            frozenset({"given_tests"}),
+            exactly=True,
+            says="on a right square_dance, and test_four_sides_and_four_turns_come_back_to_the_start",
+        ),
+    )
