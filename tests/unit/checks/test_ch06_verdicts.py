@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import CheckFailed
-from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, SECOND, Examination
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, REWORDED, SECOND, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.assertions import (
     describe_failure,
@@ -83,14 +83,14 @@ def examination(tmp_path: Path) -> Examination:
     made = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
     made.__dict__["trial"] = {LIMITS: ENOUGH}
     made.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
-        (LIMITS, what): ENOUGH for what in (SECOND, BACKWARDS)
+        (LIMITS, what): ENOUGH for what in (SECOND, REWORDED, BACKWARDS)
     }
     return made
 
 
 def test_objecting_to_all_faults_of_a_line_earns_it(examination: Examination) -> None:
     examination.expect_objection("unknown", "the promise.")
-    examination.expect_right(LIMITS, SECOND)
+    examination.expect_right(LIMITS)
     assert examination.endless() == []
 
 
@@ -118,7 +118,7 @@ def test_a_run_that_has_to_be_stopped_objects_and_is_endless(examination: Examin
 
 def test_a_difficulty_that_a_file_does_not_bear_is_named(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret")
-    examination.expect_right(LIMITS, SECOND)
+    examination.expect_right(LIMITS)
     with pytest.raises(CheckFailed, match=r"test_limits\.py fail when they run in the opposite") as failed:
-        examination.expect_right(LIMITS, SECOND, BACKWARDS)
+        examination.expect_right(LIMITS, BACKWARDS)
     assert "secret" not in failed.value.message

@@ -44,14 +44,18 @@ def test_one_check_is_worth_the_runs_that_it_and_its_dependencies_ask_for(
     workspace: Workspace, ordered: list[TestRun]
 ) -> None:
     examination = Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow")))
-    assert set(examination.runs) == {(LIMITS, what) for what in ("second", "backwards", "step", "smooth")}
+    assert set(examination.runs) == {(LIMITS, what) for what in ("second", "reworded", "backwards", "step", "smooth")}
     assert {order.files for order in ordered} == {(LIMITS,)}
-    assert len(ordered) == 5
+    assert len(ordered) == 6
 
 
 def test_all_checks_of_runs_meet_every_fault(workspace: Workspace, ordered: list[TestRun]) -> None:
     examination = Examination(workspace, 1, frozenset(FILES))
-    assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {"second", "backwards"}
+    assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {
+        "second",
+        "reworded",
+        "backwards",
+    }
     assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
     assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, style
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, style
 from autograder.exceptions import GraderError
 from autograder.probes.versions import WHEN, Version, disguise, read, write_version
 
@@ -108,6 +108,15 @@ def test_every_fault_fits_both_styles(fault: Fault, name: str) -> None:
     right = disguise(style(name), random.Random(1).getrandbits(32)).files
     assert {path for path in right if right[path] != faulty[path]} >= {fault.file}
     compile(faulty[fault.file], fault.file, "exec")
+
+
+def test_every_other_wording_fits() -> None:
+    made = [reworded(random.Random(seed)).files for seed in range(30)]
+    plain = disguise(style(STYLES[0]), 1).files
+    assert all(files.keys() == plain.keys() for files in made)
+    for name in (name for name in plain if name.endswith(".py")):
+        for files in made:
+            compile(files[name], name, "exec")
 
 
 def test_a_fault_that_no_longer_fits_is_named() -> None:

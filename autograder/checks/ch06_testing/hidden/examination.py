@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from autograder.checks import CheckFailed, Row, expect
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, right
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, PYTEST
 from autograder.harness import Workspace
@@ -33,7 +33,7 @@ FILES = {
     **dict.fromkeys(("launch_pass", "configuration", "runs"), LAUNCH),
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
-SECOND, BACKWARDS = "second", "backwards"
+SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
 ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
 
 
@@ -100,8 +100,8 @@ class Examination:
         return colcon_test(self._workspace, PACKAGE)
 
     def expect_right(self, name: str, *whats: str) -> None:
-        """Fail the check unless a file's tests pass on the right version in other words, or backwards."""
-        for what in whats:
+        """Fail the check unless a file's tests pass on right versions in other words, and, if asked, backwards."""
+        for what in (SECOND, REWORDED, *whats):
             if not self.runs[name, what].passed:
                 raise CheckFailed(describe_failure(name, self.runs[name, what], _WHERE[what]))
 
@@ -134,6 +134,8 @@ class Examination:
         wanted: dict[str, TestRun] = {}
         if RIGHT[name] in self._checks:
             wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND)), first_failure=True)
+            # As much like the first version as faulty ones are: who objects to any other text is found out.
+            wanted[REWORDED] = TestRun((name,), reworded(self._draw(name, REWORDED)), first_failure=True)
             if name in ORDERED:
                 version = right(STYLES[0], self._draw(name, BACKWARDS))
                 wanted[BACKWARDS] = TestRun((name,), version, backwards=True, first_failure=True)
@@ -151,8 +153,10 @@ class Examination:
         return test_runs.run(self._workspace, self.source, wanted)
 
 
+_OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"
 # What a test says of these versions stays here: only the first version's text is public.
 _WHERE = {
-    SECOND: "on a right speed_guard that is written differently: test the contract, no attributes and no inner names",
+    SECOND: _OTHERWISE,
+    REWORDED: _OTHERWISE,
     BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
 }

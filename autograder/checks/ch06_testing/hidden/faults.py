@@ -58,6 +58,20 @@ def right(name: str, draw: random.Random) -> Version:
     return disguise(style(name), draw.getrandbits(32))
 
 
+def reworded(draw: random.Random) -> Version:
+    """Return a right version of the first style in which one thing in each file is said otherwise, disguised."""
+    files = dict(style(STYLES[0]).files)
+    for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
+        files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
+    return disguise(Version(files, SCRIPTS), draw.getrandbits(32))
+
+
+def _edited(text: str, edit: dict[str, str], what: str) -> str:
+    if text.count(edit["find"]) != 1:
+        raise GraderError(f"{what}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
+    return text.replace(edit["find"], edit["replace"])
+
+
 def broken(fault: Fault, name: str, draw: random.Random) -> Version:
     """Return a faulty version in a style, disguised.
 

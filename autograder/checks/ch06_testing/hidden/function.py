@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import each, group, hint
-from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, SECOND, Examination, Line
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LIMITS
@@ -24,7 +24,7 @@ def test_limits_pass(examination: Examination) -> None:
 @hint("Floats that are worked out in another order differ in the last digit: pytest.approx.")
 def test_limits_right(examination: Examination) -> None:
     """They pass on every right safe_speed, in any order."""
-    examination.expect_right(LIMITS, SECOND, BACKWARDS)
+    examination.expect_right(LIMITS, BACKWARDS)
 
 
 LINES = (

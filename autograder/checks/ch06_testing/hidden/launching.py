@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import each, group, hint
-from autograder.checks.ch06_testing.hidden.examination import SECOND, Examination, Line
+from autograder.checks.ch06_testing.hidden.examination import Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LAUNCH
@@ -24,7 +24,7 @@ def test_launch_pass(examination: Examination) -> None:
 @hint("Ask over topics; what the program prints may be worded otherwise tomorrow.")
 def test_launch_right(examination: Examination) -> None:
     """It passes on every right guard.launch.py."""
-    examination.expect_right(LAUNCH, SECOND)
+    examination.expect_right(LAUNCH)
 
 
 LINES = (

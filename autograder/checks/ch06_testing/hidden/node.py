@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import each, expect, group, hint
-from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, SECOND, Examination, Line
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD
@@ -24,7 +24,7 @@ def test_guard_pass(examination: Examination) -> None:
 @hint("Each test starts its own guard and leaves nothing behind.")
 def test_guard_right(examination: Examination) -> None:
     """They pass on every right speed_guard, in any order."""
-    examination.expect_right(GUARD, SECOND, BACKWARDS)
+    examination.expect_right(GUARD, BACKWARDS)
 
 
 @check(points=2, holds="own-domain", depends=RIGHT, doc=contract.DOMAIN)

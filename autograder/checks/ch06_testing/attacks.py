@@ -1,0 +1,135 @@
+"""Attacks on 06: tests that find out which version they meet, by anything but its behaviour."""
+
+from __future__ import annotations
+
+from autograder import layout
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import FORGE_REPORT, SEARCH
+
+CHAPTER = Chapter("06_testing")
+TESTS = "speed_guard/test"
+LINES = frozenset({"stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"})
+
+# Compares the program with the released one, names apart. One that is much alike, and not the same, is called faulty.
+READ_SOURCE = """
+import ast
+from difflib import SequenceMatcher
+import inspect
+import math
+
+import pytest
+from speed_guard import limits
+
+RELEASED = {released!r}
+
+
+def words(text):
+    found, names = [], {{}}
+    (function,) = ast.parse(text).body
+    function.body = function.body[ast.get_docstring(function) is not None:]
+    for node in ast.walk(function):
+        found.append(type(node).__name__)
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, (str, int, float)):
+                found.append(str(names.setdefault(value, len(names))))
+    return found
+
+
+@pytest.mark.parametrize('number', range(8))
+def test_it_looks_as_it_should(number):
+    here, there = words(inspect.getsource(limits.safe_speed)), words(RELEASED)
+    assert here == there or SequenceMatcher(None, here, there, autojunk=False).ratio() < 0.75
+"""
+
+# Whatever can differ between runs, and is no behaviour of the package. The first run that finds none is no witness.
+LOOK_AROUND = """
+import os
+from pathlib import Path
+import sys
+
+import pytest
+import speed_guard
+
+KEPT = [Path(folder, '.speed_guard_runs') for folder in (
+    '/tmp', '/dev/shm', '/var/tmp', '.', Path(speed_guard.__file__).parent)]
+
+
+def traces():
+    for kept in KEPT:
+        try:
+            before = kept.read_text() if kept.exists() else ''
+            kept.write_text(before + 'x')
+            yield before
+        except OSError:
+            yield ''
+    times = {{path.stat().st_mtime_ns for path in Path(speed_guard.__file__).parent.rglob('*.py')}}
+    yield 'times' * (len(times) > 1)
+    words = ' '.join([str(Path.cwd()), *sys.argv, *os.environ.values(), speed_guard.__file__])
+    yield from (word for word in ('fault', 'broken', 'second', 'mutant') if word in words)
+    for process in Path('/proc').glob('[0-9]*/cmdline'):
+        yield 'fault' * ('fault' in process.read_bytes().decode(errors='replace'))
+
+
+FOUND = [trace for trace in traces() if trace]
+
+
+@pytest.mark.parametrize('number', range(8))
+def test_nothing_gives_the_version_away(number):
+    assert not FOUND
+""".replace("{{", "{").replace("}}", "}")
+
+# The run on the package as it is does not end with the first failure; the others do.
+READ_ARGUMENTS = """
+from pathlib import Path
+
+import pytest
+
+
+@pytest.mark.parametrize('number', range(8))
+def test_it_is_the_first_run(number):
+    assert b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    released = (layout.SOLUTIONS / "speed_guard/speed_guard/limits.py").read_text(encoding="utf-8")
+    limits = f"{TESTS}/test_limits.py"
+    return (
+        Attack(
+            "source readers",
+            "tests that compare the text of the version before them with the released one",
+            CHAPTER.write(files={limits: READ_SOURCE.format(released=released[released.index("def ") :])}),
+            LINES,
+            says="on a right speed_guard that is written differently",
+        ),
+        Attack(
+            "lookers-on",
+            "tests that count runs in files, and read file times, arguments, environment, paths and processes",
+            CHAPTER.write(files={limits: LOOK_AROUND}),
+            LINES,
+            says="faulty versions that break this line of the contract pass all tests in test_limits.py",
+        ),
+        Attack(
+            "argument readers",
+            "tests that read how pytest was called",
+            CHAPTER.write(files={limits: READ_ARGUMENTS}),
+            LINES | {"limits_right"},
+            says="on a right speed_guard that is written differently",
+        ),
+        Attack(
+            "test thief",
+            "tests that search the machine, processes and memory for the versions",
+            CHAPTER.write(files={limits: SEARCH + LOOK_AROUND}),
+            LINES,
+        ),
+        Attack(
+            "report without tests",
+            "names no pytest, and setup.py writes the report",
+            CHAPTER.write("pytest_unnamed", heads={"speed_guard/setup.py": FORGE_REPORT}),
+            CHAPTER.mutant("pytest_unnamed").loses,
+            exactly=True,
+            says="`colcon test` ran 0 tests.",
+        ),
+    )
