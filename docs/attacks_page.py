@@ -6,17 +6,18 @@ from typing import Any
 
 import yaml
 
-from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, attacks
+from autograder.checks import suites
 from autograder.course.markdown_table import table
 from autograder.layout import ROOT
+from autograder.proof.cases import attacks
 
 PAGE = ROOT / "docs" / "attacks.md"
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))
 
-HEAD = f"""# Attacks, and what holds them
+HEAD = """# Attacks, and what holds them
 
-What a malicious submission can try. The proof grades submissions that try it, as answers to {ASSIGNMENT}, and tests try
-it on a part alone. `python docs/attacks_page.py` writes this page from `docs/attacks.yaml`.
+What a malicious submission can try. The proof grades submissions that try it, and tests try it on a part alone.
+`python docs/attacks_page.py` writes this page from `docs/attacks.yaml`.
 """
 OPEN = """
 ## Not held
@@ -29,7 +30,9 @@ OPEN = """
 
 def current() -> str:
     """Return the page as it should be."""
-    described = {attack.id: attack.description for attack in attacks()}
+    described = [
+        (attack.id, assignment, attack.description) for assignment in suites.graded() for attack in attacks(assignment)
+    ]
     rows = [
         (str(number), row["attack"], "; ".join(row["submissions"]), _tests(row["tests"]))
         for number, row in enumerate(ROWS, 1)
@@ -39,7 +42,7 @@ def current() -> str:
             HEAD,
             *table(("#", "attack", "submissions of the proof", "tests"), rows),
             "## The submissions\n",
-            *table(("name", "what it tries"), list(described.items())),
+            *table(("name", "chapter", "what it tries"), described),
             OPEN.strip() + "\n",
         ]
     )

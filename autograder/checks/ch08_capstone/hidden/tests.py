@@ -38,7 +38,7 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     versions = [right(draw), *faulty(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
     source = test_runs.take(workspace, PACKAGE)
-    runs = test_runs.run(workspace, source, [TestRun((FILE,), versions[i], first_failure=i > 0) for i in order])
+    runs = test_runs.run(workspace, source, [TestRun((FILE,), versions[i]) for i in order])  # all are called alike
     by_version = dict(zip(order, runs, strict=True))
     return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
 

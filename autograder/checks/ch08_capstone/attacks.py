@@ -1,0 +1,54 @@
+"""Attacks on 08: forged verdicts and reports of tests, tests that read how they are called, and set-up files."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS
+
+CHAPTER = Chapter("08_capstone")
+PACKAGE = "robot_navigation_tutorial"
+READ_ARGUMENTS = """
+from pathlib import Path
+
+import pytest
+from robot_navigation_tutorial.sectors import nearest
+
+
+@pytest.mark.parametrize('number', range(4))
+def test_it_is_the_right_one(number):
+    assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    return (
+        Attack(
+            "capstone thief",
+            "setup.py and a node steal, and print marks",
+            CHAPTER.write(
+                "other_version",
+                heads={
+                    f"{PACKAGE}/setup.py": STEAL_SECRETS,
+                    f"{PACKAGE}/{PACKAGE}/status_monitor.py": STEAL_SECRETS + FORGE_PASSES,
+                },
+            ),
+            CHAPTER.mutant("other_version").loses,
+            says="version: package.xml says",
+        ),
+        Attack(
+            "forged verdicts",
+            "a conftest.py that lets every test pass, the linters' too, and takes failures out of the report",
+            CHAPTER.write("unused_import", files={f"{PACKAGE}/test/conftest.py": FORGE_VERDICTS}),
+            CHAPTER.mutant("unused_import").loses | {"sector_tests_find_faults"},
+            says="Your tests are content with",
+        ),
+        Attack(
+            "call readers",
+            "tests that read how pytest was called",
+            CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": READ_ARGUMENTS}),
+            frozenset({"sector_tests_find_faults"}),
+            says="On a right sectors.py, 4 tests fail",
+        ),
+    )
