@@ -18,7 +18,7 @@ from autograder.checks.ch07_best_practices.support.contract import (
     SILENT_SECONDS,
     TOLERANCE,
 )
-from autograder.checks.ch07_best_practices.support.robot import Processor, scan
+from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan
 from autograder.harness import Workspace
 from autograder.probes.namespaces import left_behind
 from autograder.probes.qos import not_plain
@@ -147,9 +147,9 @@ def test_any_lidar(processor: Processor) -> None:
 
 def _warnings(processor: Processor, scans: list[LaserScan]) -> int:
     """Return how often it warns when it is shown these scans."""
-    before = processor.output.count("[WARN]")
+    before = logged(processor.output, "WARN")
     processor.show(*scans)
-    return processor.output.count("[WARN]") - before
+    return logged(processor.output, "WARN") - before
 
 
 def _alike(got: float, wanted: float) -> bool:

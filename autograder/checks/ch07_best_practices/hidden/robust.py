@@ -18,7 +18,7 @@ from autograder.checks.ch07_best_practices.support.contract import (
     ROBUST,
     RULE_STATUS,
 )
-from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, expected
+from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, expected, logged
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
@@ -124,7 +124,7 @@ def test_errors_throttled(workspace: Workspace) -> None:
     """It logs failures as errors, at most one line in 5 s."""
     with Robust(workspace, failure_probability=1.0) as harness:
         harness.hear(30)
-        errors = harness.output.count("[ERROR]")
+        errors = logged(harness.output, "ERROR")
     expect(errors > 0, "Its sensor failed for 30 s, and it said nothing at level ERROR.")
     expect(errors > 1, "Its sensor failed for 30 s, and it logged only one error.", fraction=0.5)
     expect(errors <= 7, f"Its sensor failed for 30 s, and it logged {errors} errors.", fraction=0.5)
@@ -136,16 +136,16 @@ def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     """That it became unstable is logged as fatal, once in each row of failures."""
     with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
         harness.hear(3)
-        early = harness.output.count("[FATAL]")
+        early = logged(harness.output, "FATAL")
         harness.hear(10)
-        fatal = harness.output.count("[FATAL]")
+        fatal = logged(harness.output, "FATAL")
     expect(early == 0, "It logged as fatal what max_errors still allows.")
     expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
     seed = _shaky(draw)
     times = _rows(seed)
     with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
         harness.hear(READINGS)
-        fatal = harness.output.count("[FATAL]")
+        fatal = logged(harness.output, "FATAL")
     expect(fatal == times, f"It became unstable {times} times, and logged {fatal} fatal messages.", fraction=0.5)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator
 from itertools import islice
 
@@ -77,6 +78,11 @@ def _words(generator: random.Random, probability: float, max_errors: int) -> Ite
         errors = errors + 1 if generator.random() < probability else 0
         word = "unstable" if errors > max_errors else "failed"
         yield f"{word}: {errors} in a row" if errors else "ok"
+
+
+def logged(output: str, level: str) -> int:
+    """Return how many lines of a program's output were logged at a level: they name the time and the logger."""
+    return len(re.findall(rf"\[{level}\] \[\d+\.\d+\] \[[^\]]+\]: ", output))
 
 
 def scan(ranges: list[float], *, range_min: float = 0.12, range_max: float = 3.5) -> LaserScan:

@@ -8,7 +8,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from autograder.checks import check, expect, hint
 from autograder.checks.ch07_best_practices.support import contract
-from autograder.checks.ch07_best_practices.support.robot import WORDS, Processor, Robust, expected, scan
+from autograder.checks.ch07_best_practices.support.robot import WORDS, Processor, Robust, expected, logged, scan
 from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, made, make, same, value
 from autograder.probes.parameters import NodeParameters
@@ -103,7 +103,7 @@ def test_means(fresh_processor: Processor) -> None:
     expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
     _, means = fresh_processor.show(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
     expect(not means, f"Scans without a distance brought {len(means)} means.")
-    warnings = fresh_processor.output.count("[WARN]")
+    warnings = logged(fresh_processor.output, "WARN")
     said = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
     expect(int(BLIND_SECONDS / contract.SILENT_SECONDS) <= warnings <= BLIND_SECONDS + 2, said)
 
@@ -152,7 +152,7 @@ def test_dead_sensor(workspace: Workspace) -> None:
     """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
     with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
         said = harness.hear(12)
-        fatal, errors = harness.output.count("[FATAL]"), harness.output.count("[ERROR]")
+        fatal, errors = logged(harness.output, "FATAL"), logged(harness.output, "ERROR")
     wanted = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
     expect(said == wanted, f"It said {said}.")
     expect(fatal == 1, f"It logged {fatal} fatal messages instead of one.")

@@ -1,0 +1,54 @@
+"""Attacks on 07: answers and log lines that are forged."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import STEAL_SECRETS
+
+CHAPTER = Chapter("07_best_practices")
+HOME = "my_robot_package/my_robot_package"
+UTILS, NODE = f"{HOME}/utils/data_processing.py", f"{HOME}/nodes/sensor_processor.py"
+# Answers in the place of the program that calls the functions, wherever it is that.
+FORGE_ANSWERS = """
+import json as _json, os as _os, sys as _sys
+_order = _sys._getframe()
+while _order and "order" not in _order.f_locals:
+    _order = _order.f_back
+if _order:
+    _steps = _order.f_locals["order"]["steps"]
+    _outcomes = [{"value": [1.0], "arguments": each["args"], "printed": ""} for each in _steps]
+    for _descriptor in range(3, 64):
+        try:
+            _os.write(_descriptor, _json.dumps({"outcomes": _outcomes, "passed": True}).encode())
+        except OSError:
+            pass
+    _os._exit(0)
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    utils = frozenset({"mean", "no_mean", "any_sequence", "bounded_history"})
+    return (
+        Attack(
+            "forged answers",
+            "a module that answers in the place of the program that calls its functions",
+            CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
+            utils | CHAPTER.mutant("never_fatal").loses,
+        ),
+        Attack(
+            "printed warnings",
+            "a node that prints [WARN] and logs nothing",
+            CHAPTER.write(
+                "silent_when_blind",
+                swaps={NODE: ("            pass\n", "            print('[WARN]') if _warned(self) else None\n")},
+                heads={
+                    NODE: "_last = [0]\ndef _warned(node):\n"
+                    "    now = node.get_clock().now().nanoseconds\n"
+                    "    due = now - _last[0] >= 10**9\n    _last[0] = now if due else _last[0]\n    return due\n"
+                },
+            ),
+            CHAPTER.mutant("silent_when_blind").loses,
+        ),
+    )
