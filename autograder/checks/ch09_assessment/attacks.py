@@ -1,0 +1,34 @@
+"""Attacks on 09: sheets with every letter, and nodes that answer from the past."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS
+
+CHAPTER = Chapter("09_assessment")
+SHEET, GUARD = "assessment/answers.yaml", "motor_guard/motor_guard/guard.py"
+QUESTIONS = [f"q{number}" for number in range(1, 13)]
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    return (
+        Attack(
+            "every letter",
+            "a sheet that gives each letter for each question",
+            CHAPTER.write(files={SHEET: "".join(f"{name}: a, b, c, d\n" for name in QUESTIONS)}),
+            frozenset(QUESTIONS),
+            exactly=True,
+            says="The answer to q1 is 'a, b, c, d', instead of one letter",
+        ),
+        Attack(
+            "echo",
+            "a guard that publishes what it said before, whatever it hears; it steals, too",
+            CHAPTER.write(
+                heads={GUARD: STEAL_SECRETS + FORGE_PASSES},
+                swaps={GUARD: ("            self.cooling = True\n", "            self.cooling = False\n")},
+            ),
+            frozenset({"hysteresis", "thresholds", "unknown"}),
+        ),
+    )
