@@ -1,0 +1,33 @@
+"""Attacks on 04: launch files that steal, and that print what launch would print."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import FORGE_PASSES, SEARCH, STOP_PARENT
+
+CHAPTER = Chapter("04_launch")
+ROBOT, SAFE = (f"my_robot_bringup/launch/{name}.launch.py" for name in ("robot", "safe_start"))
+PRETEND = """
+print("[INFO] [self_test-1]: process started with pid [6]", flush=True)
+print("[INFO] [reporter-2]: process started with pid [7]", flush=True)
+print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    return (
+        Attack(
+            "launch thief",
+            "a launch file that steals, stops its parent, and prints marks",
+            CHAPTER.write("no_respawn", heads={ROBOT: SEARCH + STOP_PARENT + FORGE_PASSES}),
+            CHAPTER.mutant("no_respawn").loses,
+        ),
+        Attack(
+            "pretended order",
+            "a launch file that starts everything at once, and prints that the self-test has ended",
+            CHAPTER.write("driver_at_once", heads={SAFE: PRETEND}),
+            CHAPTER.mutant("driver_at_once").loses,
+        ),
+    )

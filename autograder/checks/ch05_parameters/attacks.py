@@ -1,0 +1,60 @@
+"""Attacks on 05: parameter files that are programs or bombs, and nodes that say of their parameters what is not so."""
+
+from __future__ import annotations
+
+from autograder.proof.attack_writer import Chapter
+from autograder.proof.claims import Attack
+from autograder.proof.payloads import STEAL_SECRETS
+
+CHAPTER = Chapter("05_parameters")
+PACKAGE = "my_robot_package"
+FILE, NODE = f"{PACKAGE}/config/fleet_params.yaml", f"{PACKAGE}/{PACKAGE}/nodes/configured_node.py"
+OF_FILE = frozenset({"file", "file_names", "any_robot", "scout", "porter", "stands_once"})
+OBJECT = "/**:\n  ros__parameters: !!python/object/apply:os.system ['kill -9 -1; touch /tmp/result.json']\n"
+BOMB = "a: &a {b: 1}\n" + "".join(
+    f"{name}: &{name} [{', '.join([f'*{before}'] * 9)}]\n" for before, name in zip("abcdefgh", "bcdefghi", strict=True)
+)
+# Says in descriptors that there are limits, and keeps to none.
+LIE = """        declare_configuration(self)
+        describe = self.describe_parameters
+        def lie(names):
+            found = describe(names)
+            for descriptor in found:
+                if descriptor.name == 'max_linear_velocity':
+                    from rcl_interfaces.msg import FloatingPointRange
+                    descriptor.floating_point_range = [FloatingPointRange(from_value=0.0, to_value=1.0)]
+            return found
+        self.describe_parameters = lie
+"""
+
+
+def attacks() -> tuple[Attack, ...]:
+    """Return the attacks."""
+    return (
+        Attack(
+            "parameter object",
+            "a parameter file with a tag that calls a program",
+            CHAPTER.write(files={FILE: OBJECT}),
+            OF_FILE,
+            exactly=True,
+            says="fleet_params.yaml is no YAML",
+        ),
+        Attack(
+            "parameter bomb",
+            "a parameter file whose anchors stand for a milliard of values",
+            CHAPTER.write(files={FILE: BOMB}),
+            OF_FILE,
+            exactly=True,
+            says="In fleet_params.yaml",
+        ),
+        Attack(
+            "lying node",
+            "a node that describes limits and keeps to none; it steals, too",
+            CHAPTER.write(
+                "no_range", heads={NODE: STEAL_SECRETS}, swaps={NODE: ("        declare_configuration(self)\n", LIE)}
+            ),
+            CHAPTER.mutant("no_range").loses,
+            exactly=True,
+            says="max_linear_velocity: it took",
+        ),
+    )
