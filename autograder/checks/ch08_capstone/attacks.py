@@ -49,6 +49,6 @@ def attacks() -> tuple[Attack, ...]:
             "tests that read how pytest was called",
             CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": READ_ARGUMENTS}),
             frozenset({"sector_tests_find_faults"}),
-            says="On a right sectors.py, 4 tests fail",
+            says="Your tests are content with",
         ),
     )
