@@ -22,6 +22,10 @@ _IN_SETUP = re.compile(r'  File "setup.py", line (?P<line>\d+)')
 _DEFINITION = re.compile(
     r"Error\s+processing\s+(?P<text>'(?s:.{1,200}?)')\s+of\s+'(?P<file>\S{1,200})':\s+'(?P<why>(?s:.{1,500}?))'\n *\n"
 )
+# rosidl on a field whose package CMakeLists.txt does not name.
+_DEPENDENCY = re.compile(
+    r"/rosidl_generator_type_description/__init__\.py\"(?s:.{1,2000}?)\nKeyError: '(?P<package>\w{1,100})'\n"
+)
 _CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # of setuptools: the frames called "<string>" below it are those of setup.py
 _EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.MULTILINE)
@@ -48,6 +52,8 @@ def first_error(log: str) -> str:
     """Return the first error of a failed build in a line, with the student's file where the log names it; or ""."""
     if found := _DEFINITION.search(_bounded(log)):
         return f"{found['file']}, {' '.join(found['text'].split())}: {' '.join(found['why'].split())}"
+    if found := _DEPENDENCY.search(_bounded(log)):
+        return f"CMakeLists.txt: rosidl_generate_interfaces does not name {found['package']} behind DEPENDENCIES"
     text = readable(log)
     errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]
     place = f"setup.py, line {found['line']}: " if (found := _IN_SETUP.search(text)) else ""

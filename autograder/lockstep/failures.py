@@ -55,6 +55,9 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
         sentence = f"A part of the exercise is still to be written{where}: put your code in place of the raise."
         return Diagnosis(Kind.UNFINISHED, sentence, trace)
     kind, what = _PHASES[crash.phase]
+    if crash.type == "TypeError" and "in send_response" in crash.traceback:  # rclpy says no more than TypeError
+        sentence = "A service's callback has not returned the response: it has to return it on every path."
+        return Diagnosis(kind, sentence, trace)
     reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
     return Diagnosis(
         kind,
@@ -77,6 +80,13 @@ def diagnose_ending(process: Process) -> Diagnosis:
             detail,
         )
     status = process.returncode
+    if "Assertion `Py" in process.output:
+        return Diagnosis(
+            Kind.ENDED_EARLY,
+            "Your program was aborted when it published a message, because a field holds a value of another type: "
+            "the line with Assertion says which type it should have been.",
+            detail,
+        )
     how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
     return Diagnosis(
         Kind.ENDED_EARLY,

@@ -72,10 +72,12 @@ def population(assignment: str) -> Population:
     """Return the mutants of a chapter, always the same for one reference."""
     found: dict[str, Slipped] = {}
     left_out = 0
-    for file, functions in written_by_students(assignment):
+    for file, functions, given in written_by_students(assignment):
         text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
         seen = {_meaning(file, text)}
         for function, (operator, spots) in slips(file, text, functions):
+            if given.issuperset(_lines(text.encode(), spots)):
+                continue
             meaning = _meaning(file, _replaced(text.encode(), spots).decode())
             if meaning in seen:
                 left_out += 1
@@ -87,21 +89,21 @@ def population(assignment: str) -> Population:
     return Population((*found.values(), *_pairs(list(found.values()))), left_out)
 
 
-def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None]]:
-    """Yield (path, functions) of each file that students write or mend; None stands for all of its functions."""
+def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
+    """Yield (path, functions, given lines) of each file that students write or mend; no functions means all of them."""
     packages = suites.hidden(assignment).sources
     chapter = Chapter(layout.chapter(assignment))
     for cell in chapter.read().cells:
         copied = origin(cell) if is_solution(cell) else None
         if copied is not None and copied.source.parts[0] in packages:
-            yield str(copied.source), frozenset(copied.hide) if copied.hide else None
+            yield str(copied.source), frozenset(copied.hide) if copied.hide else None, frozenset()
     given = chapter.folder / "ws" / "src"
     written = {copied.source.parts[0] for cell in chapter.read().cells if (copied := origin(cell))}
     for package in set(packages) - written:  # it is given with faults, and there to be mended
         for path in sorted((given / package).rglob("*")):
             right = layout.SOLUTIONS / path.relative_to(given)
             if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
-                yield str(path.relative_to(given)), None
+                yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
 
 
 def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Slip]]:
@@ -145,6 +147,13 @@ def _pairs(mutants: list[Slipped]) -> Iterator[Slipped]:
             spots[file] = tuple(both)
         else:
             yield Slipped(f"{one.id} + {other.id}", "pair", one.function, tuple(spots.items()))
+
+
+def _lines(data: bytes, spots: tuple[Spot, ...]) -> Iterator[bytes]:
+    """Yield the lines in which something is replaced."""
+    for start, end, _ in spots:
+        last = start + len(data[start:end].rstrip())
+        yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
 
 
 def _replaced(data: bytes, spots: tuple[Spot, ...]) -> bytes:

@@ -123,3 +123,13 @@ def test_of_a_long_log_both_ends_are_read(part: str) -> None:
     assert first_error(log) == "setup.py, line 8: SyntaxError: invalid syntax"
     assert readable(log).endswith("the end")
     assert len(readable(log)) <= 2 * END + 2
+
+
+def test_a_package_that_cmakelists_does_not_name_is_told_in_a_sentence() -> None:
+    folder = "/opt/ros/jazzy/lib/python3.12/site-packages/rosidl_generator_type_description"
+    log = (
+        "--- stderr: my_interfaces\nTraceback (most recent call last):\n"
+        f'  File "{folder}/__init__.py", line 160, in generate_type_hash\n    pkg_dir = include_map[pkg]\n'
+        "              ~~~~~~~~~~~^^^^^\nKeyError: 'std_msgs'\ngmake[2]: *** [build.make:79: A.json] Error 1\n---\n"
+    )
+    assert first_error(log) == "CMakeLists.txt: rosidl_generate_interfaces does not name std_msgs behind DEPENDENCIES"

@@ -53,6 +53,17 @@ def test_an_exception_without_a_message_is_named_by_its_type_alone() -> None:
     assert "running: AssertionError. The last" in diagnose_crash(Crash("spin", "AssertionError", "", "")).sentence
 
 
+def test_a_service_without_a_response_is_told_so() -> None:
+    trace = '  File "rclpy/service.py", line 83, in send_response\n    raise TypeError()\nTypeError\n'
+    sentence = diagnose_crash(Crash("spin", "TypeError", "", trace)).sentence
+    assert sentence.startswith("A service's callback has not returned the response")
+
+
+def test_a_field_of_another_type_is_told_so() -> None:
+    code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
+    assert "a field holds a value of another type" in diagnose_ending(_ended(code)).sentence
+
+
 def test_a_program_that_just_ends_is_told_to_spin() -> None:
     diagnosis = diagnose_ending(_ended("print('bye')"))
     assert diagnosis.kind is Kind.ENDED_EARLY

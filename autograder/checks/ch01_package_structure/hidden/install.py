@@ -10,6 +10,7 @@ from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, 
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
+    expect_develop,
     expect_executable,
     expect_manifest,
     expect_modules,
@@ -56,9 +57,10 @@ def test_marker(installed_dance: Installed) -> None:
 @check(points=1, holds="program", depends=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
-def test_executable(installed_dance: Installed) -> None:
-    """The program dancer lies where `ros2 run` looks for it."""
+def test_executable(workspace: Workspace, installed_dance: Installed) -> None:
+    """The program dancer lies where `ros2 run` looks for it, also with --symlink-install."""
     expect_executable(installed_dance, contract.DANCER)
+    expect_develop(source_of(workspace, contract.SQUARE_DANCE), contract.SQUARE_DANCE)
 
 
 @check(points=2, holds=("modules", "empty-files"), depends=("builds",), doc=contract.SUBPACKAGES)

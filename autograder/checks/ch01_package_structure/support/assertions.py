@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import configparser
+import contextlib
 import difflib
 from collections.abc import Collection, Mapping
+from email.utils import parseaddr
 from pathlib import Path
 
 from autograder.checks import CheckFailed, expect
@@ -111,15 +114,26 @@ def expect_shared(installed: Installed, source: Path, name: str) -> None:
     expect(file.is_file() and file.read_bytes() == data, f"The installed {name} is not the one in src.")
 
 
+def expect_develop(source: Path, package: str) -> None:
+    """Fail the check unless `colcon build --symlink-install` would put the programs into lib/PACKAGE, too."""
+    settings = configparser.ConfigParser(interpolation=None)
+    with contextlib.suppress(configparser.Error, OSError, UnicodeDecodeError):
+        settings.read(source / "setup.cfg", encoding="utf-8")
+    found = settings.get("develop", "script_dir", fallback=settings.get("develop", "script-dir", fallback=""))
+    told = f"With colcon build --symlink-install, programs would go to {found or 'bin'}: see [develop] in setup.cfg."
+    expect(found == f"$base/lib/{package}", told, fraction=0.5)
+
+
 def expect_same_facts(installed: Installed, found: Manifest) -> None:
     """Fail the check unless setup.py says the same of the package as package.xml does."""
     emails = [email for _, email in found.maintainers]
+    address = parseaddr(installed.metadata.get("Maintainer-email", ""))[1]
     pairs = (
         ("version", installed.metadata.get("Version", ""), [found.version]),
         ("licence", licence(installed), list(found.licences)),
-        ("maintainer's e-mail", installed.metadata.get("Maintainer-email", ""), emails),
+        ("maintainer's e-mail", address, emails),
     )
-    wrong = [(what, said, wanted) for what, said, wanted in pairs if not any(each in said for each in wanted if each)]
+    wrong = [(what, said, wanted) for what, said, wanted in pairs if not said or said not in wanted]
     told = "; ".join(
         f"the {what} is {said or 'missing'} in setup.py, {', '.join(wanted)} in package.xml"
         for what, said, wanted in wrong

@@ -79,7 +79,8 @@ def test_drive_distance(workspace: Workspace) -> None:
 
 @check(points=1, holds="interfaces-manifest", doc=contract.DEFINE)
 @hint("Read the first error above; `colcon build` in a terminal shows the same.")
-@hint("CMakeLists.txt names each file in rosidl_generate_interfaces; package.xml says ament_cmake in <export>.")
+@hint("rosidl_generate_interfaces in CMakeLists.txt names each file, and std_msgs behind DEPENDENCIES.")
+@hint("package.xml says ament_cmake in <export>.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both packages."""
     for diagnosis in builds.values():

@@ -139,7 +139,7 @@ def test_limits_line(reports: Reports) -> None:
 
 
 @check(points=1, holds="guard-pass", group="node", doc=contract.PYTEST)
-@hint(contract.SPIN, "Between two calls of spin_once, look at the condition and at time.monotonic().")
+@hint(contract.SPIN, "self.test_executor.spin_once(timeout_sec=0.05), as in spin. Then look at the clock.")
 def test_guard_pass(reports: Reports) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
     expect_passed(GUARD, reports.get((GUARD, RIGHT)))

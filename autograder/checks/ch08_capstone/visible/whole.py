@@ -27,6 +27,7 @@ from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
 from autograder.probes.test_reports import Report, TestRun
 from autograder.probes.versions import Version
+from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 MUTANT = ("a mutant",)
@@ -91,6 +92,8 @@ def test_config_file(workspace: Workspace) -> None:
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
+    text = (source_of(workspace, PACKAGE) / "test" / TESTS[0]).read_text(errors="replace")
+    expect(STILL_TO_BE_WRITTEN not in text, f"{TESTS[0]} is still to be written: put your tests in place of the raise.")
     report = reports.result()[TESTS]
     messages = report.claims.messages
     failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
