@@ -13,7 +13,8 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
-from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, Driver, stopped
+from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, stopped
+from autograder.checks.ch03_interfaces.support.hearing import expect_heard
 from autograder.probes.pace import is_paced, mean_period
 
 check = group("action")
@@ -98,7 +99,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
-@check(points=2, holds=("driven", "arrives", "drive-cmd-vel"), depends=("drive_succeeds",), doc=contract.ACTION)
+@check(points=2, holds=("driven", "arrives", "drive-cmd-vel", "odom"), depends=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 @hint("driven is a distance, from the start to the newest position; it is not the sum of steps.")
 @hint("self.create_publisher(Twist, 'cmd_vel', 10)")
@@ -122,6 +123,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         qos = peer.qos_profile
         plain = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
         expect(plain, "cmd_vel does not have the quality of service that a plain 10 stands for.", fraction=0.5)
+    expect_heard(placed_driver.node, ODOMETRY)
 
 
 @check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)

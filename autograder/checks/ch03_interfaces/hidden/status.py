@@ -11,7 +11,8 @@ from sensor_msgs.msg import BatteryState
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
-from autograder.checks.ch03_interfaces.support.reporter import TOPIC, Reporter, same
+from autograder.checks.ch03_interfaces.support.hearing import expect_heard
+from autograder.checks.ch03_interfaces.support.reporter import BATTERY, JOINTS, TOPIC, Reporter, same
 from autograder.probes.pace import is_paced, mean_period
 
 check = group("status")
@@ -119,6 +120,7 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(
             said == level, f"At percentage {(level + offset) / 100.0:.3f} battery_level is {said}, instead of {level}."
         )
+    expect_heard(reporter.node, BATTERY)
     for half in (0.125, 0.625):  # exactly halfway between two percents, also as a float32
         reporter.publish_battery(half)
         said, up = reporter.status().battery_level, math.ceil(half * 100.0)
@@ -161,6 +163,7 @@ def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
         said = list(reporter.status().joint_positions)
         right = len(said) == count and all(map(same, said, positions))
         expect(right, f"Of {count} positions, joint_positions holds {_some(said)} instead of {_some(positions)}.")
+    expect_heard(reporter.node, JOINTS)
 
 
 def _period(reporter: Reporter, seconds: float) -> float:
