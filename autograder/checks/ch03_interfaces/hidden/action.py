@@ -91,8 +91,8 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         goal = placed_driver.start(distance, speed)
         commands = placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
         driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
-        ended = NAMES.get(goal.status, goal.status)
-        expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"After {driven:.2f} of {distance:.2f} m it ended {ended}.")
+        ended = f"{NAMES.get(goal.status, goal.status)}.{placed_driver.why_aborted()}"
+        expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"After {driven:.2f} of {distance:.2f} m it ended {ended}")
         expect(stopped(commands), "After the goal had ended, the last command was no stop.")
         most = distance + 3 * contract.PERIOD * speed + SLACK
         expect(distance - SLACK <= driven <= most, f"With {distance:.2f} m to drive, the robot drove {driven:.2f} m.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 from geometry_msgs.msg import Twist
@@ -14,6 +15,8 @@ from autograder.checks.ch03_interfaces.support.types import Types
 from autograder.harness import AutoHarness, Goal, Workspace
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
+_RAISED = re.compile(r"Error raised in execute callback: (.{1,200})")  # of rclpy, in its log
+_NOT_ENDED = "Goal state not set"
 LOOK = 0.05  # s between two looks at the commands
 ANSWER_SECONDS = 10.0  # for a server to answer: no time at all in lockstep, generous where time is real
 
@@ -61,6 +64,13 @@ class Driver(AutoHarness):
         sent = self.send(distance, speed)
         expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
         return sent
+
+    def why_aborted(self) -> str:
+        """Return what rclpy has logged of an execute that did not end its goal, or ""."""
+        raised = _RAISED.findall(self.output)
+        if raised:
+            return f" execute raised an exception: {raised[-1]}."
+        return " execute returned without succeed(), canceled() or abort()." if _NOT_ENDED in self.output else ""
 
     def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
         """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.

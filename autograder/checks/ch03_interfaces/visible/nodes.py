@@ -103,7 +103,7 @@ def test_drive(driver: Driver) -> None:
     driver.place(*start, 2.2)
     goal = driver.start(0.35, 0.5)
     commands = driver.finish(goal, 10.0, "With 0.35 m to drive")
-    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, "The goal did not succeed.")
+    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"The goal did not succeed.{driver.why_aborted()}")
     driven = math.dist(start, (driver.x, driver.y))
     expect(0.33 <= driven <= 0.55, f"The robot drove {driven:.2f} m.")
     expect(bool(goal.feedback), "There was no feedback on the way.")
