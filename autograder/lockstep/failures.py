@@ -80,11 +80,11 @@ def diagnose_ending(process: Process) -> Diagnosis:
             detail,
         )
     status = process.returncode
-    if "Assertion `Py" in process.output:
+    if "Assertion `" in process.output:
         return Diagnosis(
             Kind.ENDED_EARLY,
-            "Your program was aborted when it published a message, because a field holds a value of another type: "
-            "the line with Assertion says which type it should have been.",
+            "Your program was aborted when it sent a message: a field, or the whole message, is of another type. "
+            "The line with Assertion says which type it should have been.",
             detail,
         )
     how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"

@@ -61,7 +61,7 @@ def test_a_service_without_a_response_is_told_so() -> None:
 
 def test_a_field_of_another_type_is_told_so() -> None:
     code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
-    assert "a field holds a value of another type" in diagnose_ending(_ended(code)).sentence
+    assert "a field, or the whole message, is of another type" in diagnose_ending(_ended(code)).sentence
 
 
 def test_a_program_that_just_ends_is_told_to_spin() -> None:

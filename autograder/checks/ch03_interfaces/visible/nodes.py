@@ -117,6 +117,7 @@ def test_drive(driver: Driver) -> None:
 
 @check(points=1, holds="cancels", group="action", depends=("drive",), doc=contract.ACTION)
 @hint("cancel_callback accepts, and execute looks at goal_handle.is_cancel_requested.")
+@hint("A goal that is rejected: self.busy.release() comes at the end of execute, in finally.")
 def test_cancel(driver: Driver) -> None:
     """A cancel stops the robot, and the goal ends CANCELED."""
     goal = driver.start(4.0, 0.3)
