@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.building.colcon import colcon_build, require_contained
+from autograder.building.colcon import StoppedBuildError, colcon_build, require_contained
 from autograder.building.interface_bundle import install_bundle, interface_bundle
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
@@ -77,14 +77,15 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     alone judges then whether a package is whole.
 
     Raises:
-        StudentError: one is missing or does not build, and may not; or the build left what must not be looked at.
+        StudentError: one is missing or does not build, and may not; a limit ended a build; or the build left what must
+            not be looked at.
     """
     source = workspace.root / "src"
     try:
         require_packages(source, packages, whole=not may_fail)
         return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
     except StudentError as error:
-        if not may_fail:
+        if not may_fail or isinstance(error, StoppedBuildError):
             raise StudentError(explain(error.diagnosis, source, *packages)) from None
     subprocess.run(["rm", "-rf", "--", workspace.root / "build", workspace.install], check=True)
     builds: list[Build] = []
@@ -94,6 +95,8 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
             require_packages(source, (name,), whole=False)
             builds.append(build(workspace, (name,)))
             diagnoses[name] = OK
+        except StoppedBuildError:
+            raise
         except StudentError as error:
             builds.append(Build(False, 0.0, log=error.diagnosis.detail))
             diagnoses[name] = explain(error.diagnosis, source, name)

@@ -22,6 +22,10 @@ HOST = Path(__file__).with_name("colcon_host.py")
 LOG_LINES = 40
 
 
+class StoppedBuildError(StudentError):
+    """A limit ended the build. Another try would take as long, and a grading has no time for that."""
+
+
 def colcon_command(workspace: Workspace, verb: str, *words: str) -> list[str]:
     """Return the command line of `colcon VERB WORDS...` in a sandbox, on the packages in `src`."""
     command = [sys.executable, str(HOST), "--log-base", str(workspace.scratch / "colcon-log"), verb]
@@ -36,7 +40,8 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
     The workspace alone is writable for the build. `choice` are colcon's own options for choosing packages.
 
     Raises:
-        StudentError: it did not build, or what it left is not contained; the detail holds the end of the output.
+        StudentError: it did not build, or what it left is not contained; the detail holds the end of the output. If
+            a limit ended the build, it is a StoppedBuildError.
     """
     plain = workspace.sandbox(BUILD)
     faster = cmake_overlay.write_overlay(workspace.ros.prefixes, workspace.scratch / "cmake-overlay")
@@ -54,9 +59,8 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
     if ending is not Ending.EXITED or status != 0:
         # Two gradings of one submission differ in the place of their workspace. Students know it as ws.
         output = output.replace(str(workspace.root), "ws").replace(str(workspace.scratch), "~")
-        raise StudentError(
-            Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(readable(output), LOG_LINES))
-        )
+        error = StudentError if ending is Ending.EXITED else StoppedBuildError
+        raise error(Diagnosis(Kind.BUILD_FAILED, _build_failure(output, ending), tail(readable(output), LOG_LINES)))
     require_contained(workspace.install)
 
 

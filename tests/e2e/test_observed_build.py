@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from autograder.building import colcon
 from autograder.building.build import build_workspace
 from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
 from autograder.ros import activate
+from autograder.sandbox.limits import BUILD
 from autograder.workspace import Workspace
 
 MANIFEST = """<package format="3">
@@ -73,6 +76,13 @@ def test_a_link_that_a_failed_build_left_ends_the_grading(workspace: Workspace) 
     (workspace.root / "src/bad/setup.py").write_text(f"{leaves}raise SystemExit('broken')\n")
     with pytest.raises(StudentError, match="leads out of the install space"):
         build_workspace(workspace, ("bad",), may_fail=True)
+
+
+def test_a_build_that_a_limit_ended_is_not_tried_again(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(colcon, "BUILD", replace(BUILD, wall_seconds=3.0))
+    (workspace.root / "src/bad/setup.py").write_text("import time\ntime.sleep(1000)\n")
+    with pytest.raises(StudentError, match=r"colcon build was stopped \(wall time\)"):
+        build_workspace(workspace, ("bad", "good"), may_fail=True)
 
 
 def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:
