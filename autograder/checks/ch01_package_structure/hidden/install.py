@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
@@ -14,15 +13,14 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_executable,
     expect_manifest,
     expect_modules,
-    expect_pytest,
-    expect_same_facts,
     expect_shared,
     source_of,
 )
 from autograder.checks.ch01_package_structure.support.growth import Grown
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
-from autograder.probes.installed import INDEX, Installed
+from autograder.probes.installed import Installed
+from autograder.probes.packaging import expect_installs_itself, expect_pytest, expect_same_facts
 
 check = group("install")
 
@@ -44,14 +42,7 @@ def test_marker(installed_dance: Installed) -> None:
         installed_dance.marker,
         "The ament index does not know square_dance: ros2 run would say that the package is not found.",
     )
-    marker, manifest = INDEX / contract.SQUARE_DANCE, Path("share", contract.SQUARE_DANCE, "package.xml")
-    missing = [str(path) for path in (marker, manifest) if str(path) not in installed_dance.recorded]
-    expect(
-        not missing,
-        f"setup.py does not install {' and '.join(missing)}. colcon still does it for you, and warns that it will not "
-        "for ever.",
-        fraction=0.5 * (2 - len(missing)),
-    )
+    expect_installs_itself(installed_dance)
 
 
 @check(points=1, holds="program", depends=("builds",), doc=contract.DEVELOP)

@@ -14,15 +14,14 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_executable,
     expect_manifest,
     expect_modules,
-    expect_pytest,
     expect_shared,
-    licence,
     source_of,
 )
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.installed import Installed
+from autograder.probes.packaging import expect_pytest, licence
 
 check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file

@@ -6,7 +6,6 @@ import configparser
 import contextlib
 import difflib
 from collections.abc import Collection, Mapping
-from email.utils import parseaddr
 from pathlib import Path
 
 from autograder.checks import CheckFailed, expect
@@ -16,7 +15,6 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.packages import find_packages
 from autograder.probes import imports, manifest
-from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
 
@@ -122,34 +120,3 @@ def expect_develop(source: Path, package: str) -> None:
     found = settings.get("develop", "script_dir", fallback=settings.get("develop", "script-dir", fallback=""))
     told = f"With colcon build --symlink-install, programs would go to {found or 'bin'}: see [develop] in setup.cfg."
     expect(found == f"$base/lib/{package}", told, fraction=0.5)
-
-
-def expect_same_facts(installed: Installed, found: Manifest) -> None:
-    """Fail the check unless setup.py says the same of the package as package.xml does."""
-    emails = [email for _, email in found.maintainers]
-    address = parseaddr(installed.metadata.get("Maintainer-email", ""))[1]
-    pairs = (
-        ("version", installed.metadata.get("Version", ""), [found.version]),
-        ("licence", licence(installed), list(found.licences)),
-        ("maintainer's e-mail", address, emails),
-    )
-    wrong = [(what, said, wanted) for what, said, wanted in pairs if not said or said not in wanted]
-    told = "; ".join(
-        f"the {what} is {said or 'missing'} in setup.py, {', '.join(wanted)} in package.xml"
-        for what, said, wanted in wrong
-    )
-    expect(not wrong, f"The two files differ: {told}.")
-
-
-def licence(installed: Installed) -> str:
-    """Return the licence that setup.py names."""
-    return installed.metadata.get("License-Expression", installed.metadata.get("License", ""))
-
-
-def expect_pytest(workspace: Workspace, installed: Installed) -> None:
-    """Fail the check unless setup.py names pytest in a way that colcon test sees."""
-    expect(
-        runs_pytest(workspace, installed),
-        "`colcon test` does not run pytest for this package, because setup.py does not name pytest for its tests: "
-        "extras_require={'test': ['pytest']} names it.",
-    )

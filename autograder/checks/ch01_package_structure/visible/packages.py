@@ -13,10 +13,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_licence,
     expect_manifest,
     expect_modules,
-    expect_pytest,
-    expect_same_facts,
     expect_shared,
-    licence,
     source_of,
 )
 from autograder.checks.ch01_package_structure.support.growth import grow
@@ -24,6 +21,7 @@ from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.installed import Installed
+from autograder.probes.packaging import expect_pytest, expect_same_facts, licence
 
 check = group("packages")
 

@@ -13,10 +13,10 @@ from autograder.harness import Workspace
 from autograder.packages import find_packages
 from autograder.probes import manifest
 from autograder.probes.installed import look
+from autograder.probes.packaging import wrong_for_interfaces
 
 check = group("package", doc=contract.DEFINE)
-GENERATORS, RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
-GROUP_OF_INTERFACES = "rosidl_interface_packages"
+USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}
 HINTS = (
     "Compare it with the package.xml of chapter_interfaces in this chapter.",
     "The generators build the package: buildtool_depend. Its users need the runtime: exec_depend.",
@@ -29,20 +29,7 @@ def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
     found = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
-    wrong = []
-    if found.build_type != "ament_cmake":
-        wrong.append(f"the build type is {found.build_type or 'not given'}, it should be ament_cmake")
-    for tool in ("ament_cmake", GENERATORS):
-        if tool not in found.needs("buildtool"):
-            as_other = f", but a build tool: the tag is <buildtool_depend>{tool}</buildtool_depend>"
-            wrong.append(f"{tool} is {f'there{as_other}' if tool in found.needs() else 'missing'}")
-    if RUNTIME not in found.needs("exec"):
-        wrong.append(f"there is no <exec_depend>{RUNTIME}</exec_depend>, which users of the interfaces need")
-    if GROUP_OF_INTERFACES not in found.groups:
-        wrong.append(f"there is no <member_of_group>{GROUP_OF_INTERFACES}</member_of_group>")
-    for package, user in (("std_msgs", "RobotStatus"), ("action_msgs", "DriveDistance")):
-        if package not in found.needs("build") & found.needs("exec"):
-            wrong.append(f"{package}, which {user} uses, is not declared by <depend>")
+    wrong = wrong_for_interfaces(found, USES)
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 

@@ -91,13 +91,14 @@ def test_average(start: Start, draw: Random) -> None:
 @check(points=2, holds="window", depends=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
-    """The parameter window says how many readings count; 0 and 101 are refused at the start."""
+    """The parameter window says how many readings count, from 1 to 100; 0 and 101 are refused at the start."""
     window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
     with start(SMOOTHER, window=window) as harness:
         _expect_averages([message.celsius for message in harness.send(readings)], readings, window)
-    for impossible in (0, 101):
-        refused = refuses(workspace, types, SMOOTHER, window=impossible)
-        expect(refused, f"smoother started with window {impossible}.", fraction=0.5)
+    for limit, right in ((0, False), (1, True), (100, True), (101, False)):
+        started = not refuses(workspace, types, SMOOTHER, window=limit)
+        said = f"smoother {'started' if started else 'did not start'} with window {limit}."
+        expect(started is right, said, fraction=0.5)
 
 
 @check(points=2, holds="not-finite", depends=("average",))

@@ -9,10 +9,16 @@ from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
 from autograder.checks.ch09_assessment.support.robot import expect_executables, require_built, source_of
-from autograder.diagnosis import Diagnosis
+from autograder.diagnosis import OK, Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
+from autograder.probes.packaging import (
+    expect_installs_itself,
+    expect_pytest,
+    expect_same_facts,
+    wrong_for_interfaces,
+)
 
 check = group("packages")
 
@@ -35,17 +41,18 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
 
 
-@check(points=1, holds=("packages", "stamp-package"), doc=contract.INTERFACES_DOC)
-@hint("Which tool installs what the generated code needs when it runs?", "Three tags, besides the generators'.")
-def test_interface_manifest(workspace: Workspace) -> None:
-    """package.xml of motor_guard_interfaces says that it holds messages, and what these need."""
+@check(points=1, holds=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
+@hint("Which tool installs what the generated code needs when it runs?")
+@hint("Two buildtool_depends, a depend, an exec_depend, a member_of_group, and the build type: 03_interfaces has them.")
+def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
+    """motor_guard_interfaces says that it holds messages, what these need and its licence; the ament index knows it."""
     found = manifest.read(source_of(workspace, INTERFACES))
-    group = "rosidl_interface_packages"
-    expect(group in found.groups, f"package.xml does not say <member_of_group>{group}.", fraction=0.5)
-    lacks = {"rosidl_default_runtime"} - found.needs("exec")
-    expect(not lacks, "package.xml has no exec_depend on rosidl_default_runtime.", fraction=0.5)
-    declared = "builtin_interfaces" in found.needs("build") & found.needs("exec")
-    expect(declared, "package.xml has no depend on builtin_interfaces, whose Time the messages hold.", fraction=0.5)
+    wrong = wrong_for_interfaces(found, {"builtin_interfaces": "Temperature"})
+    expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=0.5)
+    _expect_licence(found)
+    if builds[INTERFACES] is OK:
+        said = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
+        expect(look(workspace.install, INTERFACES).marker, said, fraction=0.5)
 
 
 @check(points=2, holds="packages", depends=("messages_are_generated",), doc=contract.PACKAGES_DOC)
@@ -58,11 +65,30 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
     expect_executables(found.executables, found.misplaced, PROGRAMS)
 
 
-@check(points=1, holds="dependencies", depends=("installs",), doc=contract.PACKAGES_DOC)
+@check(
+    points=1,
+    holds=("dependencies", "licence", "same-facts", "set-up", "test-depends"),
+    depends=("installs",),
+    doc=contract.PACKAGES_DOC,
+)
 @hint("rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.")
 @hint("depend for what the nodes import, exec_depend for what the launch file imports.")
+@hint("setup.py as ros2 pkg create wrote it has the marker, package.xml and pytest: fill in, and leave the rest.")
 def test_dependencies(workspace: Workspace) -> None:
-    """package.xml of motor_guard declares whatever its nodes and its launch file import."""
+    """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
     source = source_of(workspace, PACKAGE)
-    missing = imports.missing(source, manifest.read(source))["exec"]
+    found, installed = manifest.read(source), look(workspace.install, PACKAGE)
+    missing = imports.missing(source, found)["exec"]
     expect(not missing, f"{imports.say(missing)}: package.xml does not declare it.")
+    absent = [name for name in contract.FOR_TESTS if name not in found.needs("test")]
+    expect(not absent, f"package.xml has no test_depend on {', '.join(absent)}.", fraction=0.5)
+    _expect_licence(found)
+    expect_same_facts(installed, found, fraction=0.5)
+    expect_installs_itself(installed)
+    expect_pytest(workspace, installed, fraction=0.5)
+
+
+def _expect_licence(found: manifest.Manifest) -> None:
+    named = ", ".join(found.licences)
+    said = f"package.xml of {found.name} says the licence {named}: it should be {contract.LICENCE}."
+    expect(named == contract.LICENCE, said, fraction=0.5)
