@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
 from autograder.proof.payloads import STEAL_SECRETS
@@ -17,11 +19,12 @@ install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
+    steal = f"{STEAL_SECRETS}# {time.time_ns()}\n"  # messages that were built before are not built again
     return (
         Attack(
             "CMake thief",
             "CMakeLists.txt steals while it is read and while it installs",
-            CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": STEAL_SECRETS}),
+            CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": steal}),
             CHAPTER.mutant("default_qos").loses,
             exactly=True,
         ),
