@@ -68,8 +68,8 @@ def write(line: str, cell: str, original: Any) -> None:
     if on_disk is not None and on_disk != cell:
         if cell.count(STUB) > on_disk.count(STUB):
             _show(
-                f"{path} was kept as it is: it was written outside of this cell, and the cell still holds the "
-                "exercise's stub. To start again from the stub, delete the file and run the cell."
+                f"{path} was kept as it is: the file holds your text, and this cell the exercise's stub. "
+                "To start again from the stub, delete the file and run the cell."
             )
             return
         if record.get(name) != digest(on_disk):

@@ -20,7 +20,7 @@ TWIST = "https://docs.ros.org/en/jazzy/p/geometry_msgs/msg/Twist.html"
 REP_117 = "https://www.ros.org/reps/rep-0117.html"
 
 MUTATE = "Break that line yourself in a copy of the package, run your tests, and see whether one fails."
-ALL_PASS = "A test that fails on the package as it is asks for something that the contract does not say."
+ALL_PASS = "A test that fails asks for something that the contract does not say, or the package was changed by hand."
 SPIN = "Nothing arrives while nobody spins: until(...) has to call spin_once until the condition holds."
 SAME_DOMAIN = "The launched program and the test have to be in the same domain: SetEnvironmentVariable comes first."
 WAIT = (

@@ -139,6 +139,7 @@ def test_limits_line(reports: Reports) -> None:
 
 
 @check(points=1, holds="guard-pass", group="node", doc=contract.PYTEST)
+@hint("Run them: shell('cd ws/src/speed_guard && python -m pytest test/test_guard.py').", contract.ALL_PASS)
 @hint(contract.SPIN, "self.test_executor.spin_once(timeout_sec=0.05), as in spin. Then look at the clock.")
 def test_guard_pass(reports: Reports) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
