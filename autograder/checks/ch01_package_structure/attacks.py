@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from autograder.checks.ch01_package_structure.hidden.given import DANCE
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
 from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS
@@ -13,14 +14,9 @@ PLANTED = {
     "../install/square_dance/share/square_dance/launch/square_dance.launch.py": "forged = True\n",
     "../install/square_dance/lib/square_dance/dancer": "#!/bin/sh\necho forged\n",
 }
-FAIL_ALWAYS = """# Copyright 2026 The ROS 2 Python Course Authors
-def test_four_sides_and_four_turns_come_back_to_the_start():
-    assert False
-
-
-def test_it_drives_straight_first_and_then_turns_to_the_left():
-    assert False
-"""
+FAIL_ALWAYS = "# Copyright 2026 The ROS 2 Python Course Authors\n" + "\n\n".join(
+    f"def {test.partition('::')[2]}():\n    assert False\n" for test in DANCE.tests if test.startswith("test_steps::")
+)
 
 
 def attacks() -> tuple[Attack, ...]:
