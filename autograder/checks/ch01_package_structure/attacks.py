@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from autograder.checks.ch01_package_structure.hidden.given import DANCE
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
 from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS
@@ -15,7 +14,11 @@ PLANTED = {
     "../install/square_dance/lib/square_dance/dancer": "#!/bin/sh\necho forged\n",
 }
 FAIL_ALWAYS = "# Copyright 2026 The ROS 2 Python Course Authors\n" + "\n\n".join(
-    f"def {test.partition('::')[2]}():\n    assert False\n" for test in DANCE.tests if test.startswith("test_steps::")
+    f"def test_{name}():\n    assert False\n"
+    for name in (
+        "four_sides_and_four_turns_come_back_to_the_start",
+        "it_drives_straight_first_and_then_turns_to_the_left",
+    )
 )
 
 
