@@ -50,9 +50,10 @@ def readable(log: str) -> str:
 
 def first_error(log: str) -> str:
     """Return the first error of a failed build in a line, with the student's file where the log names it; or ""."""
-    if found := _DEFINITION.search(_bounded(log)):
+    bounded = _bounded(log)
+    if found := _DEFINITION.search(bounded):
         return f"{found['file']}, {' '.join(found['text'].split())}: {' '.join(found['why'].split())}"
-    if found := _DEPENDENCY.search(_bounded(log)):
+    if found := _DEPENDENCY.search(bounded):
         return f"CMakeLists.txt: rosidl_generate_interfaces does not name {found['package']} behind DEPENDENCIES"
     text = readable(log)
     errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]

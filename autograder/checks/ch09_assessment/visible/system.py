@@ -87,10 +87,8 @@ def test_decides(start: Start) -> None:
         harness.expect_in_graph()
         told = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
     seen = [message.cooling for message in told]
-    expect(
-        seen == [False, True, True, False, True],
-        f"At 45, 65, 55, 45, nan °C, cooling was {seen}, not [False, True, True, False, True].",
-    )
+    wanted = [False, True, True, False, True]
+    expect(seen == wanted, f"At 45, 65, 55, 45, nan °C, cooling was {seen}, not {wanted}.")
     given = [(message.stamp.sec, round(message.celsius, 1)) for message in told[:3]]
     expect(given == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {given}.")
 
