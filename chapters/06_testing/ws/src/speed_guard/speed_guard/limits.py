@@ -21,8 +21,9 @@ def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
     """
     Return the speed in m/s that is allowed where `wanted` m/s are asked for.
 
-    distance is how far away the nearest thing in front is, in m: inf when nothing is there,
-    None or nan when that is not known. The first line that fits decides:
+    wanted is a finite number. distance is how far away the nearest thing in front is, in m:
+    inf when nothing is there, None or nan when that is not known. The first line that fits
+    decides:
 
     not 0 <= stop_distance < slow_distance    ValueError
     wanted <= 0                               wanted: the way back is not guarded
