@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 
 from autograder.checks import expect, group, hint
@@ -17,6 +18,8 @@ check = group("safe_start")
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
 WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
+# How launch repeats the command of a process that has died.
+NAMED = re.compile(r"\[self_test-\d+\]: process has died .*__node:=(\w+)")
 
 
 @check(points=3, holds=("self-test", "safe-driver"), doc=contract.EVENTS)
@@ -60,8 +63,11 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
 @hint("The exit status of a process that a signal has killed is the signal's number, below 0.")
 @hint("Only 0 is success: event.returncode == 0.")
 def test_killed(launches: Launches) -> None:
-    """When a signal kills the self-test, the driver is never started and everything ends."""
-    _expect_refusal(launches.killed(), "When the self-test is killed,")
+    """When a signal kills the self-test, the driver is never started and everything ends; it has its own name."""
+    harness = launches.killed()
+    _expect_refusal(harness, "When the self-test is killed,")
+    named = NAMED.search(harness.output)
+    expect(named is None or named[1] == "self_test", f"The self-test is called {named and named[1]}, not self_test.")
 
 
 @check(points=1, holds="battery", depends=("order",))
