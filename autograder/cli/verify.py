@@ -71,7 +71,8 @@ def verify(
     mutant loses the checks that it names, and no other. No attack gains a point. Then come the mutants of every kind
     in everything that students write. Of those that somebody could tell from the reference, 97 in 100 lose a point, and
     every other one has a reason. One that has a reason is graded only if it is named. A run that was stopped goes on
-    with those that are left. mutants.md, in the folder for the results, has the table.
+    with what is left: a result counts as long as the checks, the grader, and the submission are the same. mutants.md,
+    in the folder for the results, has the table.
 
     The exit status is 0 when all of this holds, and 1 otherwise.
     """

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from autograder.grading.batch import Request
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
@@ -15,6 +16,7 @@ from autograder.proof.lanes import Lanes
 from autograder.result import Status
 
 SUBMISSION = "submission"
+PART = "part"  # the folder of a result for which not the whole suite was run
 
 
 def prove(
@@ -25,7 +27,8 @@ def prove(
     Args:
         proof: submissions of one or several assignments, from `cases`.
         seed: seed of every hidden input.
-        out: folder of the results; each submission's result goes to `out`/ASSIGNMENT/NAME.
+        out: folder of the results; each submission's result goes to `out`/ASSIGNMENT/NAME. A result that lies there
+            counts if the same submission, suite and seed made it, and the whole suite was run.
         lanes: workers that grade.
         on_claim: function that is called with each claim as soon as it is known, in any order.
 
@@ -35,12 +38,15 @@ def prove(
 
     def graded(case: Case) -> Claim:
         with tempfile.TemporaryDirectory(prefix="proof-") as name:
-            result = grade_submission(
-                _write(case, Path(name) / case.name),
+            path, place = _write(case, Path(name) / case.name), out / case.assignment / case.name
+            whole = not case.scope.only
+            request = Request(case.name, path, case.assignment, seed, lanes.tier, place, resume=whole)
+            result = request.stored() or grade_submission(
+                path,
                 case.assignment,
                 student=case.name,
                 seed=seed,
-                out=out / case.assignment / case.name,
+                out=place if whole else place / PART,
                 isolation=lanes.tier,
                 scope=case.scope,
                 run_job=lanes,

@@ -10,11 +10,16 @@ from typing import Any, cast
 
 import pytest
 
-from autograder.grading.job import Job
-from autograder.proof.cases import Case
+from autograder.checks import suites
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.grading.job import Job, Scope
+from autograder.grading.pipeline import refused
+from autograder.intake import read_submission
+from autograder.proof.cases import UNSEEN, Case
 from autograder.proof.claims import CaseKind, verify_full_marks
 from autograder.proof.lanes import Lanes
 from autograder.proof.prove import prove
+from autograder.result import write_json
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import CellReport
 from autograder.sandbox.process import Ending
@@ -43,6 +48,19 @@ class OneByOne(NoGrader):
 
     def __init__(self) -> None:
         self._together = threading.Barrier(1)
+
+
+class Recorder(OneByOne):
+    """One lane that records a result without points, and counts how often it is asked to."""
+
+    count, asked = 1, 0
+
+    def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
+        job, self.asked = job_in(Path()), self.asked + 1
+        suite, digest = suites.hidden(job.assignment), read_submission(job.path, job.assignment).sha256
+        result = refused(suite, job.student, job.seed, tier, Diagnosis(Kind.OK, "It was looked at."))
+        write_json(job.out / "result.json", replace(result, submission_sha256=digest).to_json())
+        return CellReport(Ending.EXITED, 0, "")
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
@@ -85,3 +103,21 @@ def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None
 
     with pytest.raises(FileNotFoundError, match="no such reference"):
         run([case(CHAPTERS[0], fails)], tmp_path)
+
+
+def test_a_result_counts_again_only_for_the_same_submission_and_the_whole_suite(tmp_path: Path) -> None:
+    lane = Recorder()
+
+    def asked(text: str, scope: Scope = UNSEEN, seed: int = 1) -> int:
+        def write(folder: Path) -> None:
+            (folder / "src").mkdir(parents=True)
+            (folder / "src" / "package.xml").write_text(text)
+
+        before = lane.asked
+        prove([replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, lanes=cast(Lanes, lane))
+        return lane.asked - before
+
+    part = replace(UNSEEN, only=("found",))
+    assert [asked("one"), asked("one")] == [1, 0]
+    assert [asked("one", seed=2), asked("two"), asked("two")] == [1, 1, 0]
+    assert [asked("two", part), asked("two", part), asked("two")] == [1, 1, 0]
