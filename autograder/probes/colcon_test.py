@@ -18,7 +18,7 @@ from autograder.probes.test_reports import MAX_BYTES, Claims, Report, parse_clai
 from autograder.probes.test_runs import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import BUILD
+from autograder.sandbox.limits import COLCON_TEST
 from autograder.workspace import Workspace
 
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
@@ -53,7 +53,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     run = secrets.token_hex(8)
     choice = ["--packages-select", package, "--return-code-on-test-failure"]
     choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
-    plain = sandboxed(workspace, HOST, limits=BUILD)
+    plain = sandboxed(workspace, HOST, limits=COLCON_TEST)
     environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
     del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
     mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)
@@ -61,7 +61,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
         plain, workdir=workspace.root, environment=environment, mounts=(*mounts, Mount(workspace.root, writable=True))
     )
     with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
-        process.wait(BUILD.wall_seconds + 10)
+        process.wait(COLCON_TEST.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
     path = workspace.root / "build" / package / "pytest.xml"
     written = (read_plain(path, MAX_BYTES) if _inside(path, workspace.root) else None) or b""

@@ -6,10 +6,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from pathlib import Path
 from typing import ClassVar
 
-from autograder.probes.files import read_plain
 from autograder.probes.versions import Version
 from autograder.sandbox import Ending
 
@@ -91,12 +89,6 @@ class Source:
     def tests(self) -> dict[str, bytes]:
         """The files below `test`, by their paths there."""
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
-
-
-def read_claims(path: Path) -> Claims | None:
-    """Read a report that untrusted code may have written; None when it is no plain, small JUnit file."""
-    data = read_plain(path, MAX_BYTES)
-    return None if data is None else parse_claims(data)
 
 
 def parse_claims(data: bytes) -> Claims | None:

@@ -33,6 +33,8 @@ class Limits:
 NODE = Limits(wall_seconds=600.0)
 # Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
+# `colcon test` with a student's tests. Tests that never end are run twice, and both have to fit into a cell.
+COLCON_TEST = replace(BUILD, wall_seconds=150.0)
 # The submitted notebook's kernel.
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
 # A `ros2` command, such as `ros2 launch` with all that it starts.

@@ -95,7 +95,7 @@ def plot(
     now = len(recording) - 1 if row is None else row
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
         ax = ax or new_axes(world, scheme)
-        prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices))
+        prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices, nearest=len(indices) == 1))
         _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
         for place in reversed(indices):
             _draw_one(ax, recording, place, colour, scheme, now, row is not None)
@@ -209,23 +209,24 @@ def _size(world: World) -> str:
     return f"{right - left:.1f} × {high - low:.1f} m"  # noqa: RUF001 (a true multiplication sign)
 
 
-def _summary(recording: Recording, indices: list[int]) -> str:
+def _summary(recording: Recording, indices: list[int], *, nearest: bool = True) -> str:
+    """Say of each robot what it did; of several, the heading of a picture has no room for what was nearest."""
     seconds = f"{recording.times[-1] - recording.times[0]:.1f} s"
     if len(indices) == 1:
-        return " · ".join([seconds, *_drive(recording, indices[0])])
+        return " · ".join([seconds, *_drive(recording, indices[0], nearest)])
     robots = recording.simulation.robots
-    return " · ".join([seconds, *(f"{robots[i].name} {', '.join(_drive(recording, i))}" for i in indices)])
+    return " · ".join([seconds, *(f"{robots[i].name} {', '.join(_drive(recording, i, nearest))}" for i in indices)])
 
 
-def _drive(recording: Recording, index: int) -> list[str]:
-    """Say of one robot how far it drove, and how near it came to anything."""
+def _drive(recording: Recording, index: int, nearest: bool) -> list[str]:
+    """Say of one robot how far it drove, what it hit and, if asked, how near it came to anything."""
     length = float(np.hypot(*np.diff(recording.poses[:, index, :2], axis=0).T).sum())
     name, clearances = recording.simulation.robots[index].name, recording.clearances[:, index]
     hits = sum(event.kind == "collision" and event.robot == name for event in recording.events)
     parts = [f"{length:.1f} m driven"]
     if hits:
         parts.append(f"{hits} collision{'s' if hits > 1 else ''}")
-    elif np.isfinite(clearances).any():
+    elif nearest and np.isfinite(clearances).any():
         parts.append(f"never nearer than {max(0.0, float(np.nanmin(clearances))):.2f} m")
     return parts
 

@@ -78,6 +78,14 @@ def test_a_track_says_how_long_it_is_and_what_happened(recording: Recording) -> 
     assert f"{collisions} collision" in picture.alt
 
 
+def test_the_heading_of_several_robots_has_no_room_for_what_was_nearest(recording: Recording) -> None:
+    several, one = plot(recording), plot(recording, robot="two")
+    nearest = "never nearer than"
+    assert nearest not in " ".join(texts(several.figure.axes[0]))
+    assert nearest in " ".join(texts(one.figure.axes[0]))
+    assert nearest in several.alt
+
+
 @pytest.mark.parametrize(("colour", "values"), [("time", "times"), ("clearance", "clearances")])
 def test_a_track_is_coloured_by_time_or_clearance(recording: Recording, colour: str, values: str) -> None:
     picture = plot(recording, robot="one", colour=colour)  # type: ignore[arg-type]
