@@ -34,6 +34,7 @@ _PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"]+)", line (?P<line>\d+)', re.
 _STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
 _ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
 _DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
+_NAMED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died .*__node:=(?P<node>\w+)")
 _RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
 
 
@@ -183,6 +184,11 @@ def started(output: str) -> list[str]:
 def ended(output: str) -> list[str]:
     """Return the programs that have ended by a launch's output, in order, without their numbers."""
     return [match["name"] for match in _ENDED.finditer(output)]
+
+
+def node_names(output: str, program: str) -> set[str]:
+    """Return the names that a launch gave to nodes of a program that has died, whose commands its output repeats."""
+    return {match["node"] for match in _NAMED.finditer(output) if match["name"] == program}
 
 
 def trouble(output: str) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
+TICK = 1.0 / _TICKS_A_SECOND  # s
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,18 @@ def cpu_seconds(pids: Iterable[int]) -> float:
     """Return the processor time that processes have used so far; those that vanish are left out."""
     ticks = 0
     for pid in pids:
-        try:
-            fields = _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
-        except OSError:
-            continue
-        ticks += int(fields[11]) + int(fields[12])  # utime and stime, proc_pid_stat(5)
+        with suppress(OSError):
+            fields = _stat(pid)
+            ticks += int(fields[11]) + int(fields[12])  # utime and stime
     return ticks / _TICKS_A_SECOND
+
+
+def start_seconds(pid: int) -> float | None:
+    """Return when a process was started, in seconds since the boot, rounded down to a `TICK`; None if it has ended."""
+    try:
+        return int(_stat(pid)[19]) / _TICKS_A_SECOND  # starttime
+    except OSError:
+        return None
 
 
 def waited_ns(pids: Iterable[int]) -> dict[int, int]:
@@ -92,6 +99,11 @@ def _started_by(pid: int, task: int | str) -> list[int]:
         return list(map(int, _read(f"/proc/{pid}/task/{task}/children").split()))
     except OSError:
         return []
+
+
+def _stat(pid: int) -> list[bytes]:
+    """Return the fields of a process behind its name, the third field of proc_pid_stat(5) first."""
+    return _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
 
 
 def _read(path: str) -> bytes:

@@ -105,6 +105,13 @@ def test_started_and_ended_programs_are_listed_in_order() -> None:
     assert launch_probe.ended(STARTED) == ["self_test", "driver"]
 
 
+def test_names_that_a_launch_gave_are_read_from_the_commands_of_the_dead() -> None:
+    died = "[ERROR] [{}-{}]: process has died [pid 7, exit code -9, cmd 'lib/{} --ros-args -r __node:={}']."
+    output = "\n".join((died.format("self_test", 1, "self_test", "check"), died.format("driver", 2, "driver", "wheel")))
+    assert launch_probe.node_names(output, "self_test") == {"check"}
+    assert launch_probe.node_names(STARTED, "self_test") == set()
+
+
 def test_trouble_names_who_died_and_of_what() -> None:
     assert launch_probe.trouble(STARTED) == (
         "driver died with exit code 1 (rclpy.exceptions.InvalidParameterTypeException: "

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import time
-from pathlib import Path
 
 from autograder.checks import expect
 from autograder.harness.launch import LaunchHarness
+from autograder.sandbox.procfs import TICK, start_seconds
 
 RESPAWN_SECONDS = 10.0  # real time, generous for a machine that is busy
 DELAY = 0.5  # s
-TICK = 1.0 / os.sysconf("SC_CLK_TCK")  # s, by which the kernel rounds the time of a start down
 LATE = 0.95  # s; a machine that is busy adds to the delay, but hardly so much each time
 TIMES = ("once", "twice", "three times")
 
@@ -35,7 +33,7 @@ def _respawn(harness: LaunchHarness, times: str) -> float:
     harness.kill("reporter")
 
     def back() -> bool:
-        started.extend(filter(None, map(_start, _reporters(harness) - before)))
+        started.extend(filter(None, map(start_seconds, _reporters(harness) - before)))
         return bool(started)
 
     expect(harness.wait_for(back, RESPAWN_SECONDS), f"The reporter was killed {times}, and stayed away.")
@@ -45,12 +43,3 @@ def _respawn(harness: LaunchHarness, times: str) -> float:
 
 def _reporters(harness: LaunchHarness) -> set[int]:
     return {program.pid for program in harness.programs() if program.name == "reporter"}
-
-
-def _start(pid: int) -> float | None:
-    """Return when a process was started, in seconds since the boot, see proc_pid_stat(5); None if it has ended."""
-    try:
-        fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
-    except OSError:
-        return None
-    return int(fields[19]) * TICK

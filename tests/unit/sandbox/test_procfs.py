@@ -1,0 +1,20 @@
+"""What /proc says of one process: when the kernel started it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+from autograder.sandbox.procfs import TICK, start_seconds
+
+
+def test_a_process_was_started_between_two_looks_at_the_clock() -> None:
+    before = time.clock_gettime(time.CLOCK_BOOTTIME)
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
+        after = time.clock_gettime(time.CLOCK_BOOTTIME)
+        started = start_seconds(child.pid)
+        child.communicate(b"\n")
+    assert started is not None
+    assert before - TICK <= started <= after
+    assert start_seconds(child.pid) is None
