@@ -60,8 +60,8 @@ class Launches:
         return self._harness(SAFE, arguments, {})
 
     def killed(self) -> LaunchHarness:
-        """Return safe_start.launch.py above a self-test that a signal kills."""
-        return self._harness(SAFE, {}, {}, self_test=KILLS_ITSELF)
+        """Return safe_start.launch.py above a self-test that a signal kills; its battery is given, and good enough."""
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, self_test=KILLS_ITSELF)
 
     def safe_arguments(self) -> dict[str, Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
