@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from action_msgs.msg import GoalStatus
@@ -20,7 +18,7 @@ from rclpy.action import (
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import add_values, filled, given_values
 from autograder.ros.ros2.parsing import Outcome, Verb
-from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session, signals_held_back
 
 _STATUS = {
     GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
@@ -132,7 +130,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         if not handle.accepted:
             print("Goal was rejected.")
             return None
-        with _held_back() as interrupts:
+        with signals_held_back() as interrupts:
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
             finishing = handle.get_result_async()
             session.wait_for(lambda: finishing.done() or bool(interrupts), math.inf)
@@ -145,19 +143,6 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         print(f"Goal finished with status: {_STATUS.get(answer.status, 'UNKNOWN')}")
         client.destroy()
     return None
-
-
-@contextmanager
-def _held_back() -> Iterator[list[int]]:
-    """Note SIGINT and SIGTERM in a list: raised in the middle of rclpy's own calls, they come out as other errors."""
-    noted: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, lambda number, _: noted.append(number)) for number in numbers}
-    try:
-        yield noted
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def _cancel(session: Session, handle: Any) -> None:

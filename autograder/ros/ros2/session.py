@@ -10,6 +10,7 @@ import argparse
 import math
 import os
 import re
+import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -66,7 +67,7 @@ class Session:
             left = deadline - time.monotonic()
             if left <= 0:
                 return False
-            self.executor.spin_once(timeout_sec=min(_STEP, left))
+            self._spin_once(min(_STEP, left))
         return True
 
     def settle(self, *, longest: float = math.inf) -> None:
@@ -77,7 +78,7 @@ class Session:
         while (now := time.monotonic()) - start < self._least(longest) or (
             now - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet)
         ):
-            self.executor.spin_once(timeout_sec=_STEP)
+            self._spin_once(_STEP)
             graph = self._graph()
             if graph != last:
                 last, changed = graph, time.monotonic()
@@ -89,6 +90,12 @@ class Session:
     def spin(self) -> None:
         """Spin until interrupted."""
         self.wait_for(lambda: False, math.inf)
+
+    def _spin_once(self, seconds: float) -> None:
+        with signals_held_back() as noted:
+            self.executor.spin_once(timeout_sec=seconds)
+        for number in noted[:1]:
+            signal.raise_signal(number)
 
     def _least(self, longest: float) -> float:
         if self.spin_time is not None:
@@ -102,6 +109,22 @@ class Session:
             sorted(node.get_node_names_and_namespaces()),
             sorted(node.get_topic_names_and_types(no_demangle=True)),
         )
+
+
+@contextmanager
+def signals_held_back() -> Iterator[list[int]]:
+    """Note SIGINT and SIGTERM in a list.
+
+    Raised in the middle of rclpy's own calls, they leave coroutines that nobody awaits, or come out as other errors.
+    """
+    noted: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, lambda number, _: noted.append(number)) for number in numbers}
+    try:
+        yield noted
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextmanager

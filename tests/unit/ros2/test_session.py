@@ -1,0 +1,40 @@
+"""Waiting for the graph ends between two turns of the executor, never in the middle of one."""
+
+from __future__ import annotations
+
+import signal
+from typing import Any, cast
+
+import pytest
+
+from autograder.ros.ros2.session import Session, signals_held_back
+
+
+class InterruptedExecutor:
+    """An executor in whose first turn Ctrl-C is pressed."""
+
+    def __init__(self) -> None:
+        self.turns = 0
+
+    def spin_once(self, timeout_sec: float) -> None:
+        """Take a turn, and count it at its end."""
+        if self.turns == 0:
+            signal.raise_signal(signal.SIGINT)
+        self.turns += 1
+
+
+def test_an_interrupted_turn_comes_to_its_end() -> None:
+    executor = InterruptedExecutor()
+    session = Session(cast("Any", None), cast("Any", executor), None)
+    with pytest.raises(KeyboardInterrupt):
+        session.spin()
+    assert executor.turns == 1
+
+
+def test_an_interrupt_reaches_whoever_holds_signals_back_outside() -> None:
+    executor = InterruptedExecutor()
+    session = Session(cast("Any", None), cast("Any", executor), None)
+    with signals_held_back() as noted:
+        assert session.wait_for(lambda: bool(noted), 5.0)
+    assert noted == [signal.SIGINT]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
