@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.building.colcon import HOST, colcon_command
+from autograder.checks import expect
 from autograder.probes.files import read_plain
 from autograder.probes.installed import Installed
 from autograder.probes.test_reports import MAX_BYTES, Claims, Report, parse_claims
@@ -35,6 +36,15 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
     """
     first, _ = _colcon_test(workspace, package)
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package)[0]
+
+
+def expect_ended(report: Report) -> None:
+    """Fail the check if `colcon test` had to be stopped: it then has no result file, whatever ran before."""
+    expect(
+        report.ending is not Ending.WALL_TIME,
+        f"`colcon test` did not end within {COLCON_TEST.wall_seconds:g} s and was stopped: look for a test that waits "
+        "without a deadline.",
+    )
 
 
 def runs_pytest(workspace: Workspace, installed: Installed) -> bool:

@@ -17,6 +17,7 @@ from autograder.checks.ch06_testing.support.assertions import (
 )
 from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
 from autograder.harness import Workspace
+from autograder.probes.colcon_test import expect_ended
 from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
@@ -69,6 +70,12 @@ def test_enough_tests_that_pass_are_fit() -> None:
 
 def test_what_a_test_says_of_a_version_that_is_not_public_is_kept() -> None:
     assert "secret" not in describe_failure(LIMITS, report(BAD, message="secret"), "here")
+
+
+def test_colcon_test_that_had_to_be_stopped_is_not_said_to_have_run_no_test() -> None:
+    with pytest.raises(CheckFailed, match=r"`colcon test` did not end within 150 s and was stopped"):
+        expect_ended(report(status=None, ending=Ending.WALL_TIME))
+    expect_ended(report(status=1))
 
 
 def test_a_sleep_is_named_by_file_and_line() -> None:

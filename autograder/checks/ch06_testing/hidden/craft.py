@@ -9,6 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import LEAST
 from autograder.harness import Workspace
 from autograder.probes import linters
+from autograder.probes.colcon_test import expect_ended
 from autograder.probes.test_reports import ClaimedOutcome
 
 check = group("craft")
@@ -40,6 +41,7 @@ def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
     report = examination.colcon
     verdicts = report.claims.verdicts
+    expect_ended(report)
     expect(bool(verdicts), "`colcon test` ran 0 tests.")
     files = {name.partition("::")[0] + ".py" for name in verdicts}
     missing = [name for name in LEAST if name not in files]

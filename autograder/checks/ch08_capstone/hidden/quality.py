@@ -9,7 +9,7 @@ from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
-from autograder.probes.colcon_test import colcon_test
+from autograder.probes.colcon_test import colcon_test, expect_ended
 from autograder.probes.test_reports import ClaimedOutcome, Report
 from autograder.probes.test_runs import take
 
@@ -29,6 +29,7 @@ def tested(workspace: Workspace) -> Report:
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: Report) -> None:
     """Colcon test finds the package's tests: the student's own, the integration test and both linters."""
+    expect_ended(tested)
     ran = tested.executed
     expect(bool(ran), "colcon test ran no test at all.")
     modules = sorted({test.partition("::")[0] for test in ran})
