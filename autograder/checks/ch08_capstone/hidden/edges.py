@@ -8,7 +8,7 @@ from typing import Any
 from sensor_msgs.msg import LaserScan
 
 from autograder.checks import expect
-from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN, Part, scan
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR, TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
 
@@ -16,6 +16,7 @@ SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
 NEAR = PARAMETERS[CONTROLLER]["safety_distance"].default
 HALF_MARGIN = 0.05  # m, half of the margin with which a turn ends
+NOT_YET_CLEAR = 0.09  # m beyond the safety distance, a little less than that margin
 # Safety distances: as a reading exact in a message's float32; exact with the margin of 0.1 m added.
 EXACT_LIMIT, LIMIT_BELOW_EXACT, EXACT_CLEAR = 0.625, 1.15, 1.25
 EXACT_HALVES = (0.1875, 0.3125, 0.5, 0.625)  # rad, exact in float32
@@ -26,8 +27,8 @@ def expect_exact_limits(system: System) -> None:
     """Fail the check unless a turn begins and ends where the contract says, to the last digit."""
     limit = f"With a safety distance of {NEAR:.2f} m"
     _turn(system, NEAR - HALF_MARGIN)
-    said = system.see(_ahead(NEAR + HALF_MARGIN)).commands
-    expect_turning(said, f"{limit}, in a turn, with {NEAR + HALF_MARGIN:.2f} m ahead", "left", TURN, fraction=0.75)
+    said = system.see(_ahead(NEAR + NOT_YET_CLEAR)).commands
+    expect_turning(said, f"{limit}, in a turn, with {NEAR + NOT_YET_CLEAR:.2f} m ahead", "left", TURN, fraction=0.75)
     said = system.see(_ahead(NEAR + 3 * HALF_MARGIN)).commands
     expect_driving(said, f"{limit}, after a turn, with {NEAR + 3 * HALF_MARGIN:.2f} m ahead", SPEED, fraction=0.75)
     with system.changed(CONTROLLER, "safety_distance", EXACT_LIMIT):
@@ -55,6 +56,16 @@ def said_of_edge(system: System) -> list[str]:
                 tried.append(abs(newest_clearance(system, shown).front - 1.0) <= TOLERANCE)
     at = f"With something 1.00 m away exactly half_angle ({EXACT_HALVES[-1]:g} rad) from the middle"
     return [] if any(tried) or not tried else [f"{at}, front was 3.00: at most half_angle belongs to the sector."]
+
+
+def said_of_limits(system: System) -> list[str]:
+    """Say which readings of exactly range_min or range_max do not count, if any."""
+    found = []
+    for name, limit in (("range_min", RANGE_MIN), ("range_max", RANGE_MAX)):
+        front = newest_clearance(system, scan(Part(-5.0, 5.0, limit), fill=math.inf)).front
+        if abs(front - limit) > TOLERANCE:
+            found.append(f"With readings of exactly {name}, {limit:g} m, ahead, front was {front:.2f}: they count.")
+    return found
 
 
 def newest_clearance(system: System, shown: LaserScan) -> Any:

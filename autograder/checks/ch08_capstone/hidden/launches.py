@@ -67,6 +67,8 @@ def test_launch_arguments(workspace: Workspace) -> None:
     there = ", ".join(arguments)
     expect("params_file" in arguments, f"The launch file declares no argument params_file; it declares: {there}.")
     found = arguments["params_file"]
+    if found.default is None:
+        _expect_starts_without(workspace, "params_file")
     # A default that is put together when the launch runs is not shown as a text.
     default = CONFIG if found.default is None else found.default
     is_installed = default.endswith(CONFIG) and (found.default is None or default.startswith("/"))
@@ -76,6 +78,16 @@ def test_launch_arguments(workspace: Workspace) -> None:
         fraction=0.5,
     )
     expect(bool(found.description), "The argument params_file has no description.", fraction=0.5)
+
+
+def _expect_starts_without(workspace: Workspace, name: str) -> None:
+    with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {}) as harness:
+        harness.wait_for(
+            lambda: bool(launch_probe.started(harness.output)) or harness.status is not None, launch_probe.START_SECONDS
+        )
+        why = launch_probe.trouble(harness.output)
+        begun = bool(launch_probe.started(harness.output))
+    expect(begun, f"Without {name}:=..., the launch starts nothing: the argument has no default. {why}", fraction=0.5)
 
 
 @check(points=2, holds="launches", depends=STARTS)

@@ -10,7 +10,13 @@ from std_srvs.srv import SetBool
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, Part, scan
-from autograder.checks.ch08_capstone.hidden.edges import OPEN, expect_exact_limits, newest_clearance, said_of_edge
+from autograder.checks.ch08_capstone.hidden.edges import (
+    OPEN,
+    expect_exact_limits,
+    newest_clearance,
+    said_of_edge,
+    said_of_limits,
+)
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
 from autograder.checks.ch08_capstone.hidden.standstill import beside, expect_turn_kept
 from autograder.checks.ch08_capstone.support import contract
@@ -166,9 +172,9 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         front = newest_clearance(seeing, scan(Part(first, first + 1.0, 1.0))).front
         if abs(front - wanted) > TOLERANCE:
             wrong.append(f"With something 1.00 m away at {first:.0f}° to {first + 1.0:.0f}°, front was {front:.2f}.")
-    wrong += said_of_edge(seeing)
+    wrong += said_of_edge(seeing) + said_of_limits(seeing)
     if wrong:
-        total = len(cases) + len(blind) + len(edges) + 1
+        total = len(cases) + len(blind) + len(edges) + 3
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 

@@ -8,10 +8,11 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
-from autograder.diagnosis import Diagnosis
+from autograder.diagnosis import OK, Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
+from autograder.probes.packaging import expect_installs_itself
 
 check = group("step_1", doc=contract.PACKAGES_DOC)
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
@@ -91,12 +92,14 @@ def test_shares(workspace: Workspace) -> None:
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
-@check(points=1, holds="agree", depends=("manifests", "build"))
+@check(points=1, holds=("agree", "installs", "interfaces-cmake"), depends=("manifests", "build"))
 @hint("Copy the four from one file to the other, to the letter.")
-def test_agreement(workspace: Workspace) -> None:
-    """package.xml and setup.py agree on version, licence and maintainer."""
+@hint("data_files as ros2 pkg create writes it installs the marker and package.xml; ament_package() does it in CMake.")
+def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
+    """package.xml and setup.py agree on version, licence and maintainer; ROS finds both packages by their markers."""
     declared = manifest.read(source_of(workspace, PACKAGE))
-    said = look(workspace.install, PACKAGE).metadata
+    installed = look(workspace.install, PACKAGE)
+    said = installed.metadata
     maintainer, address = declared.maintainers[0]
     for header, wanted in (
         ("Version", declared.version),
@@ -106,3 +109,7 @@ def test_agreement(workspace: Workspace) -> None:
     ):
         given = said.get(header, "nothing")
         expect(given == wanted, f"{header.lower()}: package.xml says {wanted!r}, setup.py says {given!r}.")
+    expect_installs_itself(installed)
+    if builds[INTERFACES] is OK:
+        unknown = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
+        expect(look(workspace.install, INTERFACES).marker, unknown, fraction=0.5)
