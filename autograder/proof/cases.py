@@ -16,6 +16,8 @@ from autograder.course.sync import Chapter
 from autograder.grading.job import Scope
 from autograder.proof.claims import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.proof.population import written_by_students
+from autograder.proof.rewritings import styles
 from autograder.result import Result
 
 Verifier = Callable[[Result], str]
@@ -40,7 +42,8 @@ class Case:
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """Return an assignment's proof: all of it, or the part for each change.
 
-    The quick part has one mutant a check, graded by the checks that it stands for, and no attacks.
+    The quick part has one mutant a check, graded by the checks that it stands for. It has no attacks, and no answers
+    that programs have written anew.
     """
     sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     found = [
@@ -53,6 +56,7 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     else:
         found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
         found += [_attack(assignment, attack) for attack in attacks(assignment)]
+        found += written_anew(assignment)
     return tuple(found)
 
 
@@ -93,6 +97,23 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
             shutil.copytree(variant, target / "src", dirs_exist_ok=True)
 
         yield Case(assignment, CaseKind.VARIANT, variant.name, write, verify_full_marks)
+
+
+def written_anew(assignment: str) -> list[Case]:
+    """Return the right answers that programs have made from the reference, one in each style."""
+    sources = suites.hidden(assignment).sources
+
+    def write(target: Path, restyled: Callable[[str], str]) -> None:
+        write_reference(sources, target)
+        for file, *_ in written_by_students(assignment):
+            path = target / "src" / file
+            if path.suffix == ".py":
+                path.write_text(restyled(path.read_text(encoding="utf-8")), encoding="utf-8")
+
+    return [
+        Case(assignment, CaseKind.VARIANT, style, partial(write, restyled=restyled), verify_full_marks)
+        for style, restyled in styles().items()
+    ]
 
 
 def _attack(assignment: str, attack: Attack) -> Case:

@@ -8,7 +8,7 @@ need the positions of `ast` in any case.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 SYMBOLS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
@@ -47,6 +47,13 @@ class Source:
         """Return the text of a node."""
         start, end = self.span(node)
         return self.data[start:end].decode()
+
+
+def replaced(data: bytes, spots: Iterable[Spot]) -> bytes:
+    """Return a text in which some parts, which do not overlap, are replaced."""
+    for start, end, new in sorted(spots, reverse=True):
+        data = data[:start] + new.encode() + data[end:]
+    return data
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course.cells import is_solution, origin
 from autograder.course.sync import Chapter
-from autograder.proof.operators import Slip, Source, Spot, classic, left_out, places
+from autograder.proof.operators import Slip, Source, Spot, classic, left_out, places, replaced
 from autograder.proof.slips import is_queue_length, robotic, wall_time, wide
 from autograder.proof.text_operators import text_slips
 
@@ -44,7 +44,7 @@ class Slipped:
 
     def texts(self) -> dict[str, str]:
         """Return the new text of each changed file."""
-        return {file: _replaced((layout.SOLUTIONS / file).read_bytes(), spots).decode() for file, spots in self.spots}
+        return {file: replaced((layout.SOLUTIONS / file).read_bytes(), spots).decode() for file, spots in self.spots}
 
     def diff(self) -> str:
         """Return the lines that differ, with the line's number, as a person reads them."""
@@ -78,7 +78,7 @@ def population(assignment: str) -> Population:
         for function, (operator, spots) in slips(file, text, functions):
             if given.issuperset(_lines(text.encode(), spots)):
                 continue
-            meaning = _meaning(file, _replaced(text.encode(), spots).decode())
+            meaning = _meaning(file, replaced(text.encode(), spots).decode())
             if meaning in seen:
                 left_out += 1
                 continue
@@ -154,12 +154,6 @@ def _lines(data: bytes, spots: tuple[Spot, ...]) -> Iterator[bytes]:
     for start, end, _ in spots:
         last = start + len(data[start:end].rstrip())
         yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
-
-
-def _replaced(data: bytes, spots: tuple[Spot, ...]) -> bytes:
-    for start, end, new in sorted(spots, reverse=True):
-        data = data[:start] + new.encode() + data[end:]
-    return data
 
 
 def _meaning(file: str, text: str) -> object:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
-from autograder.proof.cases import Case, cases
+from autograder.proof.cases import Case, cases, written_anew
 from autograder.proof.claims import CaseKind
 from autograder.proof.lanes import Lanes
 from autograder.proof.population import population
@@ -26,7 +26,7 @@ from tests.drawn import commit, drawn, unless
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
     for name in suites.graded()
-    for case in cases(name, quick=True)
+    for case in (*cases(name, quick=True), *written_anew(name))
 }
 # Chapters of which the whole population was graded, and every survivor has a reason.
 SURVEYED = [name for name in suites.graded() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
