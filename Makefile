@@ -25,7 +25,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-r
 LINTERS := lint-types lint-standins lint-style lint-imports
 SIDE_BY_SIDE = $(MAKE) --no-print-directory -j $(words $(LINTERS)) --output-sync
 
-.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates fuzz verify real-launch sourced-layout public-packages tutorials lock clean
+.PHONY: help setup demo test check nightly lint $(LINTERS) fast-engine lab tour classes docs bench cluster cluster-certificates fuzz verify capstones real-launch sourced-layout public-packages tutorials lock clean
 
 help:           ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -119,6 +119,11 @@ fuzz:           ## made-up input for ten minutes each at what reads strangers' b
 verify:         ## prove the grader: reference, release and mutants (WORKERS=4 VERIFY_ARGS=--quick)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/autograder verify -j $(WORKERS) $(VERIFY_ARGS)
+
+TIMES ?= 1000
+capstones:      ## grade the reference capstone again and again, half of them under load (TIMES=1000)
+	@$(BOOTSTRAP) --dev
+	@$(BIN)/python -m tests.benchmarks.repeat_capstone -n $(TIMES)
 
 real-launch:    ## install the real launch, launch_ros and ros2cli from GitHub (ROS2_LAUNCH_SOURCE=... for a clone)
 	@$(BOOTSTRAP) --dev

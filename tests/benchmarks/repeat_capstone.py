@@ -1,87 +1,124 @@
 """The reference of the capstone graded again and again: all points each time, and the same traces to the last bit?
 
-    python -m tests.benchmarks.repeat_capstone -n 200
+    make capstones TIMES=1000
 
-The first half is graded by as many at once as the machine has cores; the second half under load: three for each. A
-trace is the fingerprint of a run in a hidden world: what the robot sensed, was told and did, at every instant. Exit
-status: 0 when all gradings agree.
+One half is graded by as many at once as the machine has cores; the other half under load: three for each core. A trace
+is the fingerprint of a run in a hidden world: what the robot sensed, was told and did, at every instant.
+
+Each grading is a line of a file. A run that was stopped goes on with what is left, as long as checks and grader are the
+same. Exit status: 0 when all gradings agree.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from autograder.checks import suites
 from autograder.grading import grade_submission
+from autograder.layout import ROOT
 from autograder.proof.mutants import write_reference
 from autograder.result import Outcome
 
 ASSIGNMENT = "08_capstone"
 SEED = 2026
 CROWD = 3
+REPORT = ROOT / ".build" / "capstones.jsonl"
 
 
 @dataclass(frozen=True)
 class Grading:
     """One grading: its percentage, what was lost, each hidden run's fingerprint, how long it took, among how many."""
 
+    version: str  # of checks and grader
+    number: int
+    at_once: int
     percent: float
     lost: tuple[str, ...]
     traces: dict[str, str]
     seconds: float
-    at_once: int
 
 
-def grade(folder: Path, at_once: int, number: int) -> Grading:
+def stored(report: Path, version: str) -> dict[int, Grading]:
+    """Return the gradings that a report holds of one version, by their numbers. A line that was cut off is none."""
+    found = {}
+    for line in report.read_text().splitlines() if report.is_file() else ():
+        try:
+            grading = Grading(**{**(data := json.loads(line)), "lost": tuple(data["lost"])})
+        except (ValueError, TypeError, KeyError):
+            continue
+        if grading.version == version:
+            found[grading.number] = grading
+    return found
+
+
+def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
     """Grade the reference in `folder`."""
     began = time.monotonic()
     out = folder / str(number)
     result = grade_submission(folder / "reference", ASSIGNMENT, student="reference", seed=SEED, out=out)
     traces = {artifact.name: artifact.sha256[:16] for artifact in result.artifacts}
     lost = tuple(f"{check.id}: {check.message}" for check in result.checks if check.outcome is not Outcome.PASSED)
-    return Grading(100.0 * result.score / result.max_score, lost, traces, time.monotonic() - began, at_once)
+    percent, seconds = 100.0 * result.score / result.max_score, time.monotonic() - began
+    return Grading(version, number, at_once, percent, lost, traces, round(seconds, 2))
 
 
-def gradings(folder: Path, times: int) -> Iterator[Grading]:
-    """Yield the gradings as they come: the first half on a machine that has room for them, the others under load."""
+def gradings(folder: Path, version: str, times: int, known: dict[int, Grading]) -> Iterator[Grading]:
+    """Yield what is left to grade: the first half on a machine that has room for them, the others under load."""
     cores = os.cpu_count() or 1
     half = range(1, times // 2 + 1)
     for numbers, at_once in ((half, cores), (range(half.stop, times + 1), CROWD * cores)):
         with ThreadPoolExecutor(at_once) as pool:
-            pending = [pool.submit(grade, folder, at_once, number) for number in numbers]
-            for done in as_completed(pending):
-                yield done.result()
+            pending = [
+                pool.submit(grade, folder, version, at_once, number) for number in numbers if number not in known
+            ]
+            try:
+                for done in as_completed(pending):
+                    yield done.result()
+            finally:
+                pool.shutdown(cancel_futures=True)
 
 
 def main() -> int:
     """Grade it as often as the command line says; say what differs."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.repeat_capstone", description="See above.")
     parser.add_argument("-n", type=int, default=10, metavar="N", help="how often (default: 10)")
-    times = parser.parse_args().n
-    first: dict[str, str] = {}
-    alike = 0
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_reference(suites.hidden(ASSIGNMENT).packages, folder / "reference")
-        for number, grading in enumerate(gradings(folder, times), 1):
-            first = first or grading.traces
-            different = sorted({file for file, _ in grading.traces.items() ^ first.items()})
-            alike += grading.percent == 100.0 and bool(grading.traces) and not different
-            said = f"differs in {', '.join(different)}" if different else "the same traces"
+    parser.add_argument("--report", type=Path, default=REPORT, help=f"default: {REPORT.relative_to(ROOT)}")
+    args = parser.parse_args()
+    if args.n < 1:
+        parser.error("-n has to be 1 or more")
+    version = suites.hidden(ASSIGNMENT).version
+    known = {number: grading for number, grading in stored(args.report, version).items() if number <= args.n}
+    print(f"checks and grader {version}: {len(known)} of {args.n} are graded", flush=True)
+    args.report.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as name, args.report.open("a") as report:
+        write_reference(suites.hidden(ASSIGNMENT).packages, Path(name) / "reference")
+        for grading in gradings(Path(name), version, args.n, dict(known)):
+            report.write(json.dumps(asdict(grading)) + "\n")
+            report.flush()
+            known[grading.number] = grading
             took = f"{grading.at_once} at once: {grading.seconds:5.1f} s"
-            print(
-                f"{number:4} of {times}, {took}, {grading.percent:g} %, {said}", *grading.lost, sep="\n  ", flush=True
-            )
-    print(f"{alike} of {times} with all points and the same traces: {first}")
-    return 0 if alike == times else 1
+            print(f"{len(known):4} of {args.n}, {took}, {grading.percent:g} %", *grading.lost, sep="\n  ", flush=True)
+    return summarise(list(known.values()))
+
+
+def summarise(found: list[Grading]) -> int:
+    """Say how many gradings agree, and what is different about each other one. Return the exit status."""
+    first = found[0].traces
+    bad = [grading for grading in found if grading.percent != 100.0 or not grading.traces or grading.traces != first]
+    for grading in bad:
+        different = ", ".join(sorted({name for name, _ in grading.traces.items() ^ first.items()}))
+        print(f"number {grading.number}: {grading.percent:g} %, other traces: {different or 'none'}")
+    print(f"{len(found) - len(bad)} of {len(found)} with all points and the same traces: {first}")
+    return 1 if bad else 0
 
 
 if __name__ == "__main__":

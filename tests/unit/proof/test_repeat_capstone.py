@@ -1,0 +1,37 @@
+"""The report of repeated gradings: a run goes on where another was stopped, and a difference is found."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import pytest
+
+from tests.benchmarks.repeat_capstone import Grading, stored, summarise
+
+ONE = Grading("v1", 1, 2, 100.0, (), {"corner.json": "0123"}, 7.5)
+
+
+def test_the_gradings_of_one_version_are_kept_and_a_torn_line_is_not(tmp_path: Path) -> None:
+    report = tmp_path / "capstones.jsonl"
+    assert stored(report, "v1") == {}
+    other = replace(ONE, version="v2", number=2)
+    report.write_text("".join(json.dumps(asdict(each)) + "\n" for each in (ONE, other)) + '{"version": "v1", "num')
+    assert {number: asdict(each) for number, each in stored(report, "v1").items()} == {
+        1: {**asdict(ONE), "lost": ()},
+    }
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (ONE, ""),
+        (replace(ONE, number=2, percent=99.0), "number 2: 99 %, other traces: none\n"),
+        (replace(ONE, number=2, traces={"corner.json": "ffff"}), "number 2: 100 %, other traces: corner.json\n"),
+        (replace(ONE, number=2, traces={}), "number 2: 100 %, other traces: corner.json\n"),
+    ],
+)
+def test_a_grading_that_differs_is_named(other: Grading, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert summarise([ONE, other]) == bool(said)
+    assert capsys.readouterr().out == f"{said}{2 - bool(said)} of 2 with all points and the same traces: {ONE.traces}\n"
