@@ -64,9 +64,8 @@ class NavigationController(Node):
     def enable_callback(self, request, response):
         """Let the robot move (data: true) or hold it still (false) until the next request."""
         self.enabled = request.data
+        self.get_logger().info('Driving' if self.enabled else 'Held still')
         response.success = True
-        response.message = 'enabled' if self.enabled else 'disabled'
-        self.get_logger().info(f'Driving is {response.message}')
         return response
 
     def control(self):

@@ -1,14 +1,19 @@
-"""A clean end: Ctrl-C and a launch system's SIGTERM."""
+"""A clean end: Ctrl-C, a launch system's SIGTERM, and an error of the program's own."""
 
 from __future__ import annotations
 
 import signal
+import sys
 
-from autograder.checks import group, hint
-from autograder.checks.ch02_nodes.support.ending import HINTS, expect_clean_end
+from autograder.checks import expect, group, hint
+from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
+from autograder.checks.ch02_nodes.support.ending import HINTS, START_SECONDS, expect_clean_end
 from autograder.harness import Workspace
+from autograder.lockstep.failures import tail
+from autograder.sandbox.launcher import launch
 
 check = group("lifecycle")
+LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more
 
 
 @check(points=2, holds="ends", depends=("publishes_cmd_vel",))
@@ -23,3 +28,19 @@ def test_sigint(workspace: Workspace) -> None:
 def test_sigterm(workspace: Workspace) -> None:
     """It ends with exit status 0, without a traceback, when a launch system stops it (SIGTERM)."""
     expect_clean_end(workspace, signal.SIGTERM)
+
+
+@check(points=1, holds="fails", depends=("publishes_cmd_vel",))
+@hint("In `except RuntimeError`, a bare `raise` hands the error on; only where rclpy.ok() is false, a signal was its cause.")
+@hint("`finally` runs also where the node was never made: node = None before `try` says so.")
+def test_fails(workspace: Workspace) -> None:
+    """Where its node cannot be made, it ends with that error and another exit status than 0."""
+    path = workspace.executable(PACKAGE, EXECUTABLE)
+    command = [sys.executable, str(path), "--ros-args", "-r", f"__node:={LONG_NAME}"]
+    with launch(command, workspace.sandbox()) as process:
+        process.wait(START_SECONDS)
+        status, output = process.returncode, process.output
+    case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
+    expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
+    expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
+    expect("another exception" not in output, f"{case} its clean-up failed, too: {tail(output, 1)}", fraction=0.5)
