@@ -31,7 +31,7 @@ def test_sigterm(workspace: Workspace) -> None:
 
 
 @check(points=1, holds="fails", depends=("publishes_cmd_vel",))
-@hint("In `except RuntimeError`, a bare `raise` hands the error on; only where rclpy.ok() is false, a signal was its cause.")
+@hint("In `except RuntimeError`, a bare `raise` hands the error on. Where rclpy.ok() is false, a signal was its cause.")
 @hint("`finally` runs also where the node was never made: node = None before `try` says so.")
 def test_fails(workspace: Workspace) -> None:
     """Where its node cannot be made, it ends with that error and another exit status than 0."""
