@@ -115,7 +115,10 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
             answer(replace(result, checks=(replace(first, max_points=99.0), *rest))),
             "does not hold the checks",
         ),
-        "too many points": (answer(replace(result, checks=(replace(first, points=99.0), *rest))), f"points of {result.max_score:g}"),
+        "too many points": (
+            answer(replace(result, checks=(replace(first, points=99.0), *rest))),
+            f"points of {result.max_score:g}",
+        ),
         "too many points for a check": (
             answer(replace(result, checks=(replace(first, points=first.max_points + 1), *none))),
             "more points",
