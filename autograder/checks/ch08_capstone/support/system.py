@@ -13,7 +13,7 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch02_nodes.support.robot import describe_command
-from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PARAMETERS, PROGRAMS, TOLERANCE, name_of
+from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
 from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
 from autograder.harness.drive import SCAN_SECONDS
@@ -117,12 +117,13 @@ class System:
     def changed(self, program: str, name: str, value: float) -> Iterator[bool]:
         """Change a parameter for a while; yield whether the program takes the value."""
         asked = self.parameters(program)
+        before = asked.values(name)
         accepted = name in asked.names() and asked.change({name: value}).accepted
         try:
             yield accepted
         finally:
             if accepted:
-                asked.change({name: PARAMETERS[program][name].default})
+                asked.change(before)  # what it was, as another check asks whether it is the contract's default
 
     def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Received:
         """Show a scan ten times a second; return what is said once there was time to react.
