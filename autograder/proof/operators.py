@@ -40,8 +40,12 @@ class Source:
     def span(self, first: ast.AST, last: ast.AST | None = None) -> tuple[int, int]:
         """Return the offsets of a node, or of the first to the last of several."""
         last = last or first
-        end = self._starts[getattr(last, "end_lineno") - 1] + getattr(last, "end_col_offset")  # noqa: B009
-        return self._starts[getattr(first, "lineno") - 1] + getattr(first, "col_offset"), end  # noqa: B009
+        end = self.offset(getattr(last, "end_lineno"), getattr(last, "end_col_offset"))  # noqa: B009
+        return self.offset(getattr(first, "lineno"), getattr(first, "col_offset")), end  # noqa: B009
+
+    def offset(self, line: int, column: int) -> int:
+        """Return the offset of a position in bytes of UTF-8, with lines from 1 and columns from 0."""
+        return self._starts[line - 1] + column
 
     def text(self, node: ast.AST) -> str:
         """Return the text of a node."""

@@ -184,16 +184,13 @@ def _with_decorators(source: Source, function: Function) -> tuple[int, int]:
 
 def _end_of_header(source: Source, function: Function) -> int:
     """Return the offset of the colon before a function's body."""
-    start, end = source.span(function)
-    lines = io.BytesIO(source.data[start:end]).readline
-    depth, offsets = 0, [0]
-    for line in source.data[start:end].splitlines(keepends=True):
-        offsets.append(offsets[-1] + len(line))
-    for token in tokenize.tokenize(lines):
-        depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(token.string, 0)
-        if token.string == ":" and depth == 0:
-            break
-    return start + offsets[token.start[0] - 1] + token.start[1]
+    depth = 0
+    for token in tokenize.tokenize(io.BytesIO(source.data).readline):
+        if token.start >= (function.lineno, function.col_offset):
+            depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(token.string, 0)
+            if token.string == ":" and depth == 0:
+                break
+    return source.offset(*token.start)
 
 
 REWRITINGS = (
