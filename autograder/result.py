@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from pathlib import Path
+from threading import Lock
 from types import UnionType
 from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
 
@@ -164,6 +165,9 @@ def _enum_value(value: object) -> object:
     raise TypeError(f"{type(value).__name__} has no JSON form")
 
 
+_first_use = Lock()  # two threads that import jsonschema at once fail: its modules import each other
+
+
 @cache
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of the JSON form."""
@@ -186,9 +190,11 @@ def from_json(data: Any, *, source: str = "result") -> Result:
     Raises:
         UsageError: `data` does not match the schema, or has more points than there are. The message names `source`.
     """
-    from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
+    with _first_use:
+        from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
 
-    error = best_match(_validator().iter_errors(data))
+        validator = _validator()
+    error = best_match(validator.iter_errors(data))
     if error is not None:
         field = ".".join(str(part) for part in error.absolute_path) or "the top level"
         raise UsageError(f"{source}: not a grading result: {field}: {error.message}")

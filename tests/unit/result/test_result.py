@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -203,3 +205,33 @@ def test_a_result_with_anything_in_any_place_is_read_or_refused(make_result: Mak
     with contextlib.suppress(UsageError):
         read = from_json(form, source="result.json")
         assert 0.0 <= read.score <= read.max_score
+
+
+STAGGERED = """
+import threading, time
+from autograder.exceptions import UsageError
+from autograder.result import from_json
+
+failures = []
+
+def read(delay):
+    time.sleep(delay)
+    try:
+        from_json({})
+    except UsageError:
+        pass
+    except ImportError as error:
+        failures.append(error)
+
+threads = [threading.Thread(target=read, args=(number / 20,)) for number in range(8)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(failures)
+"""
+
+
+def test_several_threads_may_read_their_first_result_at_the_same_time() -> None:
+    read = subprocess.run([sys.executable, "-c", STAGGERED], capture_output=True, text=True, check=True)
+    assert read.stdout == "[]\n"

@@ -47,9 +47,11 @@ def test_starts(running_dancer: RunningDancer) -> None:
 
 @check(points=1, holds="given", depends=("starts",), doc=contract.CREATE)
 @hint(*HINTS)
-def test_dances(running_dancer: RunningDancer) -> None:
+def test_dances(workspace: Workspace, running_dancer: RunningDancer) -> None:
     """It drives along a side of the square, and then turns to the left."""
     robots.expect_dance(running_dancer.harness, running_dancer.side)
+    with robots.dancer(workspace) as harness:
+        robots.expect_dance(harness, contract.SIDE)
 
 
 @check(points=1, holds="given", depends=("starts", "config"), doc=contract.DEVELOP)
@@ -58,6 +60,8 @@ def test_configured(workspace: Workspace, installed_dance: Installed) -> None:
     """With the installed configuration it dances a square of the size that is written there."""
     path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
     side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")
+    given = contract.CONFIGURED_SIDE
+    expect(side == given, f"The configuration was given with a side of {given:g} m. Yours says {side:g} m.")
     with robots.dancer(workspace, "--params-file", str(path)) as harness:
         robots.expect_dance(harness, side)
 

@@ -8,6 +8,7 @@ SQUARE_DANCE = "square_dance"
 DANCER = "dancer"
 DANCE_LAUNCH = "launch/square_dance.launch.py"
 DANCE_CONFIG = "config/square_dance.yaml"
+SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m, the default of the node and what the configuration says
 SPEED = 0.25  # m/s
 TURN = math.pi / 8  # rad/s
 

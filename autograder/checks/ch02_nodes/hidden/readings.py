@@ -75,3 +75,6 @@ def test_blind(robot: Robot) -> None:
     expect_stop(robot.see(scan(Part(-35.0, 35.0, math.nan))), "With nan from every beam in front")
     beyond = scan(Part(-35.0, 35.0, RANGE_MAX + 1.0))
     expect_stop(robot.see(beyond), "With nothing but readings above range_max in front")
+    none = scan()
+    none.ranges = []
+    expect_stop(robot.see(none), "With a scan that has no readings at all")

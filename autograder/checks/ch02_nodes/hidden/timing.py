@@ -15,6 +15,7 @@ check = group("timing")
 SECONDS = 20.0
 RATE_SECONDS = 4.0  # in which one command more or less is 2.5 %
 WARNINGS = 1.1  # a second, a tenth more than once
+GLIMPSE, GLIMPSES = 0.2, 15  # s for which something is in the way, and then is not; how often
 
 
 @check(points=2, holds="cmd-vel", depends=("publishes_cmd_vel",))
@@ -36,13 +37,23 @@ def test_ten_hertz(robot: Robot) -> None:
 @hint("A warning at every scan is 10 lines a second, and nobody reads them.")
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
-    """It logs at most about one line a second while it is blocked."""
+    """It logs at most about one line a second while it is blocked, or blocked again and again."""
+    blocked = scan(Part(-10.0, 10.0, 0.5))
     before, warned = len(robot.output.splitlines()), len(_logged(robot, "WARN"))
-    robot.see(scan(Part(-10.0, 10.0, 0.5)), SECONDS)
+    robot.see(blocked, SECONDS)
     lines = len(robot.output.splitlines()) - before
     expect(lines <= 2 * SECONDS, f"Blocked for {SECONDS:.0f} s, it logged {lines} lines.")
     warnings = len(_logged(robot, "WARN")) - warned
     expect(warnings <= WARNINGS * SECONDS + 1, f"Blocked for {SECONDS:.0f} s, it logged {warnings} warnings.")
+    began, warned = robot.seconds, len(_logged(robot, "WARN"))
+    for _ in range(GLIMPSES):
+        robot.see(blocked, GLIMPSE)
+        robot.see(scan(), GLIMPSE)
+    seconds, warnings = robot.seconds - began, len(_logged(robot, "WARN")) - warned
+    expect(
+        warnings <= WARNINGS * seconds + 1,
+        f"Something came into the way {GLIMPSES} times in {seconds:.0f} s, and it logged {warnings} warnings.",
+    )
 
 
 @check(points=1, holds="warns", depends=("turns_when_blocked",))

@@ -86,10 +86,13 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
-    reporter.set_battery(draw.randrange(10, 40))
+    level = draw.randrange(10, 40)
+    reporter.set_battery(level)
     for reserve in (5, 0, -200):
         answer = reporter.ask([draw.uniform(300.0, 900.0), 50.0], reserve)
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
+    answer = reporter.ask([level * METRES_PER_PERCENT, draw.uniform(1.0, 4.0)], 0)
+    _expect(answer, 0, "After a trip that takes less than one percent more than there is, with a reserve of 0 %")
 
 
 @check(points=2, holds=("trip-unknown", "trip-reason"), depends=ANSWERS)

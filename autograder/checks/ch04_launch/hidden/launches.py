@@ -17,7 +17,8 @@ from autograder.probes.launch_probe import Argument, shown_arguments, with_files
 CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
-KILLS_ITSELF = "#!/bin/sh\nkill -KILL $$\n"
+# Self-tests that end otherwise than with the exit status 0 or 1.
+UNUSUAL = {"killed": "#!/bin/sh\nkill -KILL $$\n", "with exit status 3": "#!/bin/sh\nexit 3\n"}
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
@@ -59,9 +60,9 @@ class Launches:
         """Return safe_start.launch.py as it runs with these arguments."""
         return self._harness(SAFE, arguments, {})
 
-    def killed(self) -> LaunchHarness:
-        """Return safe_start.launch.py above a self-test that a signal kills; its battery is given, and good enough."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, self_test=KILLS_ITSELF)
+    def unusual(self, ending: str) -> LaunchHarness:
+        """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, self_test=ending)
 
     def safe_arguments(self) -> dict[str, Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
@@ -93,12 +94,12 @@ class Launches:
         return self._harnesses[key]
 
     def _copy(self, file: str, robot: str | None, self_test: str | None = None) -> Workspace:
-        name = robot or ("killed" if self_test else file.partition(".")[0])
+        name = robot or (self_test or file).partition(".")[0].replace(" ", "_")
         if name not in self._copies:
             files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
                 files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)
-            programs = {"self_test": self_test} if self_test else {}
+            programs = {"self_test": UNUSUAL[self_test]} if self_test else {}
             self._copies[name] = with_files(self._workspace, name, PACKAGE, files, programs)
         return self._copies[name]

@@ -6,7 +6,7 @@ import signal
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.launches import Launches
+from autograder.checks.ch04_launch.hidden.launches import UNUSUAL, Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
@@ -60,11 +60,12 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
 @hint("The exit status of a process that a signal has killed is the signal's number, below 0.")
 @hint("Only 0 is success: event.returncode == 0.")
 def test_killed(launches: Launches) -> None:
-    """When a signal kills the self-test, the driver is never started and everything ends; it has its own name."""
-    harness = launches.killed()
-    _expect_refusal(harness, "When the self-test is killed,")
-    others = launch_probe.node_names(harness.output, "self_test") - {"self_test"}
-    expect(not others, f"The self-test is called {', '.join(others)}, not self_test.")
+    """When the self-test is killed, or ends with exit status 3, all ends without the driver; it has its own name."""
+    for ending in UNUSUAL:
+        harness = launches.unusual(ending)
+        _expect_refusal(harness, f"When the self-test ends {ending},")
+        others = launch_probe.node_names(harness.output, "self_test") - {"self_test"}
+        expect(not others, f"The self-test is called {', '.join(others)}, not self_test.")
 
 
 @check(points=1, holds="battery", depends=("order",))

@@ -7,6 +7,7 @@ import random
 from typing import Any
 
 from rclpy.qos import DurabilityPolicy
+from std_msgs.msg import String
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import (
@@ -23,6 +24,7 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, made, make
+from autograder.probes.late_joiner import kept_messages
 from autograder.probes.namespaces import left_behind
 from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence
 
@@ -50,9 +52,12 @@ def test_once_a_second(workspace: Workspace) -> None:
 def test_late_joiners(workspace: Workspace) -> None:
     """A node that joins late can have the last status immediately, in any namespace: it is offered transient local."""
     with Robust(workspace) as harness:
+        harness.hear(3)
         offered = harness.node.get_publishers_info_by_topic(WORDS)
+        kept = kept_messages(harness.node, WORDS, String)
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
+    expect(kept == 1, f"A display that joins late got {kept} messages, not the last one alone.", fraction=0.5)
     left = left_behind(workspace, PACKAGE, "robust_node", ("status",))
     expect(not left, left, fraction=0.5)
 

@@ -56,6 +56,8 @@ def test_health_levels(system: System, undriven: System) -> None:
     _expect_stamped(system, reports[-1])
     blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0).reports
     _expect_reports(blind, DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
+    dead = system.wait(SAID_WITHIN).reports[-1:]
+    _expect_reports(dead, FAILED, DEAD, f"{SAID_WITHIN:.0f} s after the last scan, a blind one,", fraction=0.5)
     _expect_reports(system.see(OPEN, 1.0).reports, OK, set(), "When it sees again", fraction=0.5)
     late = system.see(OPEN, 1.5, age=LATE).reports
     _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier,", fraction=0.5)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from random import Random
 
 from autograder.checks import CheckFailed, expect, group, hint
@@ -21,7 +20,6 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
 from autograder.probes.namespaces import left_behind
-from autograder.probes.parameters import NodeParameters
 
 check = group("nodes")
 BUILT = ("installs",)
@@ -45,7 +43,7 @@ def test_readings(start: Start) -> None:
         harness.expect_readings(30)
 
 
-@check(points=2, holds=("period", "mean-swing"), depends=("readings",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("period", "mean-swing", "at-start"), depends=("readings",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
     """Thermometer measures by its parameters period, mean and swing."""
@@ -53,6 +51,11 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
     mean, swing = round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
     with start(THERMOMETER, period=period, mean=mean, swing=swing) as harness:
         harness.expect_readings(12, period, mean, swing)
+        harness.try_to_set(period=2 * period, mean=mean + 10.0, swing=swing + 5.0)
+        try:
+            harness.expect_readings(12, period, mean, swing)
+        except CheckFailed as failed:
+            raise CheckFailed(f"With other parameters set after the start: {failed.message}", fraction=0.5) from failed
 
 
 @check(points=1, holds="reading", depends=("readings",), doc=contract.NODES_DOC)
@@ -88,13 +91,18 @@ def test_average(start: Start, draw: Random) -> None:
     expect(right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
 
 
-@check(points=2, holds="window", depends=("average",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("window", "at-start"), depends=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """The parameter window says how many readings count, from 1 to 100; 0 and 101 are refused at the start."""
     window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
     with start(SMOOTHER, window=window) as harness:
-        _expect_averages([message.celsius for message in harness.send(readings)], readings, window)
+        told = harness.send(readings)
+        _expect_averages([message.celsius for message in told], readings, window)
+        harness.try_to_set(window=1)
+        told += harness.send(readings)
+        after = "After another window was set: "
+        _expect_averages([message.celsius for message in told], readings * 2, window, after, fraction=0.5)
     for limit, right in ((0, False), (1, True), (100, True), (101, False)):
         started = not refuses(workspace, types, SMOOTHER, window=limit)
         said = f"smoother {'started' if started else 'did not start'} with window {limit}."
@@ -141,11 +149,10 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
     with start(GUARD, hot=hot, cool=cool) as harness:
         temperatures = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
         _expect_decisions(harness, temperatures, f"With hot {hot} and cool {cool}: ", hot=hot, cool=cool)
-        with suppress(CheckFailed):  # it may refuse, or have no services of parameters
-            NodeParameters(harness, f"/{GUARD}").change({"hot": hot + 5.0, "cool": cool - 5.0})
+        harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
         where = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
         _expect_decisions(harness, [hot + 1.0, cool - 1.0], where, hot=hot, cool=cool, fraction=0.5)
-    for impossible in (hot, hot + 5.0):
+    for impossible in (hot, hot + 5.0, math.nan):
         refused = refuses(workspace, types, GUARD, hot=hot, cool=impossible)
         expect(refused, f"guard started with hot {hot} and cool {impossible}.", fraction=0.5)
 
@@ -192,13 +199,17 @@ def test_relative(workspace: Workspace) -> None:
     expect(not left, " ".join(left))
 
 
-def _expect_averages(seen: list[float], readings: list[float], window: int) -> None:
-    expect(len(seen) == len(readings), f"{len(readings)} readings became {len(seen)} averages.")
+def _expect_averages(
+    seen: list[float], readings: list[float], window: int, where: str = "", *, fraction: float = 0.0
+) -> None:
+    count = f"{where}{len(readings)} readings became {len(seen)} averages."
+    expect(len(seen) == len(readings), count, fraction=fraction)
     wanted = averages(readings, window)
     wrong = next((n for n in range(len(readings)) if not near(seen[n], wanted[n])), 0)
     newest = ", ".join(map(str, readings[: wrong + 1][-window:]))
     right = near(seen[wrong], wanted[wrong])
-    expect(right, f"With the window {window}, the average of {newest} °C was {seen[wrong]:.2f} °C.")
+    said = f"With the window {window}, the average of {newest} °C was {seen[wrong]:.2f} °C."
+    expect(right, f"{where}{said}", fraction=fraction)
 
 
 def _expect_decisions(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
+from autograder.probes.parameters import NodeParameters, Value
 from autograder.time_record import LOCKSTEP
 from autograder.unwritten import explain
 
@@ -59,7 +62,7 @@ class NodeHarness(AutoHarness):
     ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
         offers, listens = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
-        words = [part for key, value in parameters.items() for part in ("-p", f"{key}:={value}")]
+        words = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_in_yaml(value)}")]
         arguments = ("--ros-args", *words) if words else ()
         super().__init__(
             workspace, PACKAGE, name, offers=offers, listens=listens, arguments=arguments, clock_rate=clock_rate
@@ -102,6 +105,11 @@ class NodeHarness(AutoHarness):
         fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
         return next(fits, 0)
 
+    def try_to_set(self, **parameters: Value) -> None:
+        """Ask the node to change parameters. It may refuse, or have no services of parameters."""
+        with suppress(CheckFailed):
+            NodeParameters(self, f"/{self._name}").change(parameters)
+
     def expect_in_graph(self) -> None:
         """Fail the check unless the node has its name and its topics, with their types; name what it has instead."""
         nodes = self.nodes()
@@ -114,6 +122,10 @@ class NodeHarness(AutoHarness):
 
 
 Start = Callable[..., NodeHarness]  # takes a node's name and its parameters
+
+
+def _in_yaml(value: float) -> str:
+    return ".nan" if math.isnan(value) else str(value)
 
 
 def near(one: float, other: float) -> bool:
