@@ -114,6 +114,16 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
+    x, y = placed_driver.x, placed_driver.y
+    goal = placed_driver.start(1.0, 0.5)
+    placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
+    placed_driver.push(4 * PUSHED)
+    placed_driver.finish(goal, LONG, f"With 1 m to drive, and pushed on by {4 * PUSHED:g} m")
+    driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
+    said = (
+        f"With 1 m to drive, and pushed beyond it, the result says {goal.result.driven:.2f} m; it was {driven:.2f} m."
+    )
+    expect(abs(goal.result.driven - driven) <= 0.1, said, fraction=0.5)
     expect(goal.result.reason == "", f"All went well, and yet the reason is {goal.result.reason!r}.", fraction=0.5)
     ended = placed_driver.seconds
     placed_driver.run(0.5)

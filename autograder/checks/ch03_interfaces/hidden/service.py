@@ -12,7 +12,7 @@ from autograder.checks.ch03_interfaces.support.contract import METRES_PER_PERCEN
 from autograder.checks.ch03_interfaces.support.reporter import SERVICE, Reporter
 
 check = group("service", doc=contract.SERVICE)
-WORD = 3  # characters: less gives no reason
+WORD, LONGEST = 3, 80  # characters: less gives no reason, more does not fit
 ANSWERS = ("trip_answers",)
 SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
@@ -113,6 +113,10 @@ def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
     reporter.set_battery(50)
     good, bad = reporter.ask([5.0]), reporter.ask([500.0])
+    for last in (-100.125, 100.125):  # a reason that lists all legs is longer than 80 characters
+        answer = reporter.ask([100.125] * 7 + [last])
+        fits = WORD <= len(answer.reason.strip()) and len(answer.reason) <= LONGEST
+        expect(fits, f"With eight legs, the reason has {len(answer.reason)} characters: 80 at most.", fraction=0.5)
     expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
     expect(len(bad.reason.strip()) >= WORD, f"The trip is not possible, and the reason is {bad.reason!r}.")
 

@@ -44,6 +44,7 @@ def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     """The reporter starts immediately, while the self-test still runs."""
     harness = launches.safe(battery=inputs.enough)
     expect(REPORTER in harness.nodes(), "The reporter does not run.")
+    launch_probe.expect_parameters(harness, REPORTER, contract.NO_FILE)
     before = harness.output.partition("process has finished cleanly")[0]
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 

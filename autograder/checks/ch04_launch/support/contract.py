@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from autograder.probes.parameters import Value
+
 PACKAGE = "my_robot_bringup"
 ROBOT = "robot.launch.py"
 FLEET = "two_robots.launch.py"
@@ -10,6 +12,7 @@ SAFE = "safe_start.launch.py"
 DRIVER, REPORTER = "/driver", "/reporter"
 SHARED = "/fleet/status"
 ROBOT_NAME, SPEED = "robot1", 0.2  # the defaults of robot.launch.py
+NO_FILE: dict[str, Value] = {"robot_name": "nobody", "report_period": 1.0}  # the defaults of the reporter itself
 FIRST, SECOND = "robot1", "robot2"  # those of two_robots.launch.py
 
 LAUNCH = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"

@@ -207,6 +207,8 @@ def _share(wrong: int) -> float:
 def _is_description(text: str, unit: str) -> bool:
     """Say whether a description has words, and among them the unit as one writes or speaks it."""
     words = {word.strip(".,;:()[]") for word in text.lower().replace("/", " ").replace("%", " percent ").split()}
+    if unit == "m" and words & SPELT["s"]:
+        return False  # that is a speed
     return bool(words) and all(words & SPELT[part] for part in unit.split("/") if part)
 
 

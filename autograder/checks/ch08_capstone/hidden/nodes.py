@@ -260,6 +260,8 @@ def test_enable(driving: System, shared_system: SharedSystem) -> None:
 
 def _hold_and_release(system: System) -> None:
     system.see(OPEN)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
+    expect(answer.success, "Asked to drive while it drove, it answered success = false.", fraction=0.5)
     answer = system.call(SetBool, "/enable", SetBool.Request(data=False))
     expect(answer.success, "Asked to hold still, it answered success = false.")
     held = system.see(OPEN, 1.7).commands

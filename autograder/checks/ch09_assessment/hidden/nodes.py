@@ -26,6 +26,7 @@ BUILT = ("installs",)
 BETWEEN = (COOL + 1.0, HOT - 1.0)
 FRESH = 0.1  # s that a reading may take to come
 FLOAT32 = 1e-6  # the precision of a number in a message
+QUEUE = 10
 SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a node that must not look at them
 
 
@@ -89,6 +90,10 @@ def test_average(start: Start, draw: Random) -> None:
     stamps = [(message.stamp.sec, message.stamp.nanosec) for message in told]
     right = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
     expect(right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
+    with start(SMOOTHER) as harness:
+        told = harness.send_at_once([readings[0]] * QUEUE)
+    said = f"Of {QUEUE} readings that came at once, {len(told)} got an average: a queue of {QUEUE} holds them all."
+    expect(len(told) == QUEUE, said, fraction=0.75)
 
 
 @check(points=2, holds=("window", "at-start"), depends=("average",), doc=contract.PARAMETERS_DOC)

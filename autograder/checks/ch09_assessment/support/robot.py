@@ -85,6 +85,15 @@ class NodeHarness(AutoHarness):
         self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))
         return [stamped.message for stamped in self.heard(began)]
 
+    def send_at_once(self, temperatures: list[float]) -> list[Any]:
+        """Send temperatures without any time between them; return what came."""
+        began = self.seconds
+        for celsius in temperatures:
+            self.publish(self._in, self._types.temperature(celsius=celsius))
+        self.run(STEP)
+        self.wait_for_late(lambda: len(self.heard(began)) >= len(temperatures))
+        return [stamped.message for stamped in self.heard(began)]
+
     def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
         """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
         began, seconds = self.seconds, (count + 0.5) * period
