@@ -19,7 +19,7 @@ RIGHT = -math.pi / 2
 
 
 def nearest(scan, middle, half_angle):
-    seen = []
+    best = math.nan
     for index, reading in enumerate(scan.ranges):
         angle = scan.angle_min + index * scan.angle_increment
         away = angle - middle
@@ -29,8 +29,9 @@ def nearest(scan, middle, half_angle):
             continue
         if math.isfinite(reading) and not scan.range_min <= reading <= scan.range_max:
             continue
-        seen.append(reading)
-    return min(seen) if seen else math.nan
+        if math.isnan(best) or reading < best:
+            best = reading
+    return best
 """
 
 
@@ -43,16 +44,11 @@ class Fault:
     replace: str
 
 
-FAULTS = (  # those that the notebook names, a nan in two ways
+FAULTS = (  # those that the notebook names
     Fault(
         "a nan that hides what comes after it",
         "        if math.isnan(reading):\n            continue\n",
         "        if math.isnan(reading):\n            break\n",
-    ),
-    Fault(
-        "a nan that hides what comes after it if it is the first",  # as it is with min()
-        "        if math.isnan(reading):\n            continue\n",
-        "",
     ),
     Fault(
         "a phantom below range_min that counts as a distance",

@@ -57,7 +57,7 @@ def main():
     publisher = node.create_publisher(
         RobotStatus,
         "robot_status",
-        QoSProfile(depth=5, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
+        QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
     )
     node.create_service(CheckTrip, "check_trip", partial(answer, heard))
     node.create_timer(period, partial(report, node, heard, name, publisher))

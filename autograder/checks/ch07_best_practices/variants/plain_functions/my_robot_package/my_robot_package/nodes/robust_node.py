@@ -62,7 +62,7 @@ class RobustNode(Node):
             String,
             "status",
             QoSProfile(
-                depth=5,
+                depth=1,
                 reliability=QoSReliabilityPolicy.RELIABLE,
                 durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
             ),
