@@ -25,7 +25,7 @@ def main(args=None):
     node = Node("guard")
     hot = node.declare_parameter("hot", 60.0).value
     cool = node.declare_parameter("cool", 50.0).value
-    if cool >= hot:
+    if not cool < hot:
         node.get_logger().fatal("cool must be less than hot")
         sys.exit(2)
     state = resting

@@ -16,7 +16,7 @@ class Fan:
 
     def __post_init__(self):
         """Refuse thresholds that would let it flutter."""
-        if self.hot <= self.cool:
+        if not self.cool < self.hot:
             raise ValueError(f'hot {self.hot} is not above cool {self.cool}')
 
     def at(self, celsius: float) -> 'Fan':
