@@ -18,7 +18,7 @@ class Guard(Node):
         super().__init__('guard')
         self.declare_parameters('', [('hot', 60.0), ('cool', 50.0)])
         self.hot, self.cool = (self.get_parameter(name).value for name in ('hot', 'cool'))
-        if self.cool >= self.hot:
+        if not self.cool < self.hot:
             raise RuntimeError('the guard cannot work with a cool that is not below hot')
         self.averages = queue.SimpleQueue()
         self.out = self.create_publisher(Decision, 'decision', 10)

@@ -53,7 +53,7 @@ class RobustNode(Node):
         self.generator = generator
         if generator is None:
             self.generator = random.Random(self.settings.seed) if self.settings.seed else random.SystemRandom()
-        qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.words = self.create_publisher(String, "status", qos)
         self.create_timer(1.0, self.later, callback_group=ReentrantCallbackGroup())
 
