@@ -1,0 +1,37 @@
+"""What a publisher keeps for subscriptions that join late, over DDS."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+from autograder.probes.late_joiner import kept_messages
+from autograder.ros.domains import Domain
+
+
+@pytest.fixture
+def board() -> Iterator[Node]:
+    """A node in a domain of its own."""
+    with Domain() as domain:
+        context = Context()
+        rclpy.init(args=[], context=context, domain_id=domain.number)
+        node = Node("board", context=context)
+        yield node
+        node.destroy_node()
+        context.try_shutdown()
+
+
+@pytest.mark.parametrize("depth", [1, 3])
+def test_it_counts_the_messages_that_are_kept(board: Node, depth: int) -> None:
+    publisher = board.create_publisher(
+        String, "/status", QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    )
+    for number in range(5):
+        publisher.publish(String(data=str(number)))
+    assert kept_messages(board, "/status", String) == depth
