@@ -20,6 +20,8 @@ REST_SECONDS = 0.3  # of real time in which the others follow: they are sent tog
 def kept_messages(present: Node, topic: str, kind: type) -> int:
     """Return how many messages a transient local subscription gets that joins now, `DEPTH` at most.
 
+    The publisher must not publish meanwhile: in lockstep it does not.
+
     Args:
         present: a node in the domain of the publisher. The one that joins has a context of its own.
         topic: the fully qualified name of the topic.
