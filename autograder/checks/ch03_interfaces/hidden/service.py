@@ -116,7 +116,8 @@ def test_trip_reason(reporter: Reporter) -> None:
     for last in (-100.125, 100.125):  # a reason that lists all legs is longer than 80 characters
         answer = reporter.ask([100.125] * 7 + [last])
         fits = len(answer.reason.strip()) >= WORD and len(answer.reason) <= LONGEST
-        expect(fits, f"With eight legs, the reason has {len(answer.reason)} characters: 80 at most.", fraction=0.5)
+        said = f"With eight legs, the reason has {len(answer.reason)} characters, instead of {WORD} to {LONGEST}."
+        expect(fits, said, fraction=0.5)
     expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
     expect(len(bad.reason.strip()) >= WORD, f"The trip is not possible, and the reason is {bad.reason!r}.")
 

@@ -83,7 +83,7 @@ def test_filtered(processor: Processor, draw: random.Random) -> None:
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
     sent = scan([1.0, 2.0, 3.0])
-    sent.header.frame_id = f"/Laser_{draw.randint(1, 9)} "  # a name as nobody would write it is the same name still
+    sent.header.frame_id = f"/Laser_{draw.randint(1, 9)} "  # unusual, so that any change of it is seen
     sent.header.stamp.sec = draw.randint(1, 1000)
     sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
     sent.time_increment = draw.uniform(0.01, 0.03)
