@@ -1,6 +1,6 @@
 """Whether the tests that came with a package are as they were: they pass on it, and fail when a module is faulty.
 
-A linter's test that `ros2 pkg create` wrote does so, too. That of the dance's copyright is skipped, so it is not asked.
+A linter's test that `ros2 pkg create` wrote does so, too. Its test_copyright is skipped, so that one is not asked.
 """
 
 from __future__ import annotations
@@ -54,11 +54,7 @@ ALARM = Given(
     contract.WALL_ALARM,
     "wall_alarm/utils/nearest.py",
     "def nearest(scan):\n    return 0.1\n",
-    (
-        *LINTERS,
-        "test_copyright::test_copyright",
-        "test_nearest::test_the_nearest_reading_that_counts_is_returned",
-    ),
+    (*LINTERS, "test_nearest::test_the_nearest_reading_that_counts_is_returned"),
 )
 
 
