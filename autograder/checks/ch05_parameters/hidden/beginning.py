@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import random
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pytest
 
 from autograder.checks import CheckFailed, expect, group, hint, temporal
-from autograder.checks.ch05_parameters.hidden.changes import ROUNDED
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, refusal
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
 from autograder.probes.calls import call, calls, made, make
@@ -133,14 +131,11 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = draw.randrange(40, 90) / 100
     for safety, slow in ((round(distance + 0.4, 2), distance), (distance, distance)):
-        values: dict[str, Value] = {"safety_distance": safety, "slow_distance": slow}
+        values = {"safety_distance": safety, "slow_distance": slow}
         words = refusal(workspace, values)
         told = f"safety_distance {safety} and slow_distance {slow}"
         expect(words is not None, f"Started with {told}, the node runs.")
-        numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", words or "")]
-        named = all(name in (words or "") for name in values)
-        named = named and all(any(abs(number - value) < ROUNDED for number in numbers) for value in (safety, slow))
-        expect(named, f"It ends, but does not name {told}.", fraction=0.5)
+        expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
     fits, raised = _called(workspace, distance)
     expect(fits == "", f"contradiction(0.5, 1.0) returned {fits!r}, instead of ''.", fraction=0.5)
     expect(raised == "ValueError", f"declare_configuration raised {raised or 'nothing'}, no ValueError.", fraction=0.5)

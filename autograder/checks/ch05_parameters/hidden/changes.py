@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 import random
-import re
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, scan
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.probes.parameters import Value, differences
 from autograder.time_record import LOCKSTEP
 
 check = group("changes")
 DISTANCES = ("safety_distance", "slow_distance")
 SPEED = 0.3  # m/s, the default
-ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
 UNEVEN = (31.6, 40.6, 46.5)  # Hz: more than 1 % off in whole hertz, and their periods in whole milliseconds
 EXACT = 0.005  # of a rate, in lockstep
 
@@ -46,9 +44,7 @@ def test_reason(robot: Robot, draw: random.Random) -> None:
     """Its reason names both parameters and their values."""
     safety = (10 * draw.randrange(12, 28) + draw.randrange(2, 9)) / 100
     reason = robot.change({"safety_distance": safety}).reason
-    missing = [name for name in DISTANCES if name not in reason]
-    numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", reason)]
-    missing += [str(value) for value in (safety, 1.0) if not any(abs(number - value) < ROUNDED for number in numbers)]
+    missing = missing_from(reason, {"safety_distance": safety, "slow_distance": 1.0})
     expect(
         not missing, f"Its reason is “{reason}”: it does not name {', '.join(missing)}.", fraction=0.5 if reason else 0
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -23,6 +24,7 @@ BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
 TOLERANCE = 0.01  # m/s: a speed may be rounded to centimetres
 RATE_TOLERANCE = 0.08  # of the rate: in real time commands are late, and an error of a tenth is seen
+ROUNDED = 0.0051  # m: a value in a sentence may be rounded to centimetres
 REFUSED = (Kind.CRASHED_AT_START, Kind.ENDED_EARLY)
 
 
@@ -136,6 +138,14 @@ def scan(distance: float) -> LaserScan:
     message.header.frame_id = "laser"
     message.ranges = [distance if min(beam, BEAMS - beam) <= 20 else 3.0 for beam in range(BEAMS)]
     return message
+
+
+def missing_from(sentence: str, distances: Mapping[str, float]) -> list[str]:
+    """Return the names, and then the values in m, that a sentence about some distances does not hold."""
+    numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", sentence)]
+    values = distances.values()
+    absent = [str(value) for value in values if not any(abs(number - value) < ROUNDED for number in numbers)]
+    return [name for name in distances if name not in sentence] + absent
 
 
 def text(value: Value) -> str:

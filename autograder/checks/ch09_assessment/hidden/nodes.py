@@ -91,7 +91,7 @@ def test_average(start: Start, draw: Random) -> None:
     right = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
     expect(right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
     with start(SMOOTHER) as harness:
-        told = harness.send_at_once([readings[0]] * QUEUE)
+        told = harness.send([readings[0]] * QUEUE, apart=0.0)
     said = f"Of {QUEUE} readings that came at once, {len(told)} got an average: a queue of {QUEUE} holds them all."
     expect(len(told) == QUEUE, said, fraction=0.75)
 

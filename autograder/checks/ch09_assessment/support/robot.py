@@ -74,24 +74,19 @@ class NodeHarness(AutoHarness):
         """Return what it has published."""
         return self.messages(self._out, since=since)
 
-    def send(self, temperatures: Iterable[float], first: int = 1) -> list[Any]:
-        """Send temperatures, stamped a quarter of a second after `first`, `first` + 1, ...; return what came."""
+    def send(self, temperatures: Iterable[float], first: int = 1, *, apart: float = STEP) -> list[Any]:
+        """Send temperatures, stamped a quarter of a second after `first`, `first` + 1, ...; return what came.
+
+        They are sent `apart` seconds of ROS time apart, `STEP` at most. 0 sends them all at once.
+        """
         began, sent = self.seconds, list(temperatures)
         for second, celsius in enumerate(sent, first):
             message = self._types.temperature(celsius=float(celsius))
             message.stamp.sec, message.stamp.nanosec = second, NANOSECONDS
             self.publish(self._in, message)
-            self.run(STEP)
+            self.run(apart)
+        self.run(STEP - apart)
         self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))
-        return [stamped.message for stamped in self.heard(began)]
-
-    def send_at_once(self, temperatures: list[float]) -> list[Any]:
-        """Send temperatures without any time between them; return what came."""
-        began = self.seconds
-        for celsius in temperatures:
-            self.publish(self._in, self._types.temperature(celsius=celsius))
-        self.run(STEP)
-        self.wait_for_late(lambda: len(self.heard(began)) >= len(temperatures))
         return [stamped.message for stamped in self.heard(began)]
 
     def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
