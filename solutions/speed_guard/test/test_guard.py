@@ -29,8 +29,10 @@ def guard(robot):
     """Return a function that starts a guard with parameters, for the robot to meet."""
     def start(**parameters):
         overrides = [Parameter(name, value=value) for name, value in parameters.items()]
-        robot.add(SpeedGuard(context=robot.context, parameter_overrides=overrides))
+        node = SpeedGuard(context=robot.context, parameter_overrides=overrides)
+        robot.add(node)
         robot.meet()
+        return node
     return start
 
 
@@ -82,12 +84,26 @@ def test_its_distances_are_parameters(robot, guard):
         assert robot.ask(0.8).linear.x == pytest.approx(speed)
 
 
+def test_its_parameters_have_defaults(robot, guard):
+    """Without parameters, they are those of the contract: 0.5 m, 1.5 m and 0.5 s."""
+    node = guard()
+    names = 'stop_distance', 'slow_distance', 'timeout'
+    assert [node.get_parameter(name).value for name in names] == [0.5, 1.5, 0.5]
+
+
 def test_an_old_distance_is_not_known(robot, guard):
     """A distance that came more than timeout seconds ago is not known."""
     guard(timeout=HASTY)
     robot.see(4.0)
     robot.spin(2 * HASTY)
     assert robot.ask(0.8).linear.x == 0.0
+
+
+def test_commands_do_not_keep_a_distance_young(robot, guard):
+    """While commands come, a distance gets old all the same."""
+    guard(timeout=1.0)
+    robot.see(4.0)
+    robot.until(lambda: robot.ask(0.8).linear.x == 0.0, seconds=3.0)
 
 
 def test_the_motors_stop_once_when_the_planner_falls_silent(robot, guard):

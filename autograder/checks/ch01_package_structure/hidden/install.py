@@ -99,16 +99,19 @@ def test_grows(grown: Grown) -> None:
     """A new subpackage, launch file and configuration are installed without a change of setup.py."""
     installed = grown.installed
     left = [name for name in (grown.launch, grown.config) if installed.read(name) is None]
-    left += [] if grown.module in installed.modules else [grown.module]
-    expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 3)
+    left += [name for name in grown.modules if name not in installed.modules]
+    expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 4)
 
 
-@check(points=1, holds="tests-stay", depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=1, holds=("tests-stay", "modules"), depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 def test_tests_stay(grown: Grown) -> None:
-    """Its tests are not installed as a module called test, also with an __init__.py beside them."""
-    strays = sorted(name for name in grown.installed.modules if name.split(".")[0] == "test")
+    """Nothing is installed beside its module: no module called test, also with an __init__.py beside the tests."""
+    modules = grown.installed.modules
+    strays = sorted(name for name in modules if name.split(".")[0] == "test")
     expect(not strays, f"{', '.join(strays[:2])} was installed: it would hide Python's own module test.")
+    strays = sorted(name for name in modules if name.split(".")[0] != contract.SQUARE_DANCE)
+    expect(not strays, f"{', '.join(strays[:2])} was installed, a module beside {contract.SQUARE_DANCE}.", fraction=0.5)
 
 
 @check(points=1, holds="given", depends=("builds",), doc=contract.COLCON)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from autograder.building.build import build
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.checks.ch01_package_structure.support.assertions import source_of
 from autograder.harness import Workspace
-from autograder.probes.installed import Installed, look
+from autograder.probes.growth import install_with
+from autograder.probes.installed import Installed
 
 
 @dataclass(frozen=True)
@@ -20,13 +18,13 @@ class Grown:
         installed: what colcon installed of it.
         launch: the new launch file.
         config: the new configuration.
-        module: the new module, in a subpackage of its own.
+        modules: the new modules, each in a subpackage of its own, one of them deeper than the other.
     """
 
     installed: Installed
     launch: str
     config: str
-    module: str
+    modules: tuple[str, ...]
 
 
 def grow(workspace: Workspace, word: str) -> Grown:
@@ -40,24 +38,12 @@ def grow(workspace: Workspace, word: str) -> Grown:
         StudentError: the copy does not build.
     """
     name = contract.SQUARE_DANCE
-    copy = replace(workspace, root=workspace.root.parent / "grown")
-    folder = copy.root / "src" / name
-    shutil.copytree(source_of(workspace, name), folder)
-    grown = Grown(
-        look(copy.install, name),
-        launch=f"launch/{word}.launch.py",
-        config=f"config/{word}.yaml",
-        module=f"{name}.{word}.steps",
+    launch, config, test = f"launch/{word}.launch.py", f"config/{word}.yaml", f"test/test_{word}.py"
+    folders = f"{name}/{word}", f"{name}/utils/{word}"
+    code = [f"{folder}/{file}.py" for folder in folders for file in ("__init__", "steps")]
+    return Grown(
+        install_with(workspace, name, (launch, config, test, "test/__init__.py", *code)),
+        launch,
+        config,
+        tuple(f"{folder.replace('/', '.')}.steps" for folder in folders),
     )
-    for file in (
-        grown.launch,
-        grown.config,
-        f"{name}/{word}/__init__.py",
-        f"{name}/{word}/steps.py",
-        "test/__init__.py",
-        f"test/test_{word}.py",
-    ):
-        (folder / file).parent.mkdir(parents=True, exist_ok=True)
-        (folder / file).write_text("")
-    build(copy, (name,))
-    return replace(grown, installed=look(copy.install, name))

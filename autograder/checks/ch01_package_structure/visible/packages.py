@@ -95,7 +95,7 @@ def test_grows(workspace: Workspace) -> None:
     """Somebody adds a launch file, a configuration and the subpackage minuet to square_dance: they are installed."""
     grown = grow(workspace, "minuet")
     left = [name for name in (grown.launch, grown.config) if grown.installed.read(name) is None]
-    left += [] if grown.module in grown.installed.modules else [grown.module]
+    left += [name for name in grown.modules if name not in grown.installed.modules]
     expect(not left, f"The new {', '.join(left)} stayed behind.")
 
 

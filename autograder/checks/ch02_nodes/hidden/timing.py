@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 from std_msgs.msg import String
@@ -56,14 +57,14 @@ def test_no_flood(robot: Robot) -> None:
     )
 
 
-@check(points=1, holds="warns", depends=("turns_when_blocked",))
+@check(points=1, holds="warns", depends=("turns_when_blocked", "minus_inf"))
 @hint("A warning has its own level: self.get_logger().warning(...), in the branch that turns.")
 @hint("It warns again and again while it is blocked, not once for each obstacle.")
 def test_warns(fresh_robot: Robot) -> None:
     """It warns once a second while something is in the way, each time, and not while the way is clear."""
-    for time in ("", " a second time"):
+    for reading, time in ((0.5, ""), (0.5, " a second time"), (-math.inf, ", by what is too near to be measured")):
         before = len(_logged(fresh_robot, "WARN"))
-        fresh_robot.see(scan(Part(-10.0, 10.0, 0.5)), BLOCKED_SECONDS)
+        fresh_robot.see(scan(Part(-10.0, 10.0, reading)), BLOCKED_SECONDS)
         enough = _logs(fresh_robot, "WARN", more_than=before + LEAST_WARNINGS - 1)
         warnings = len(_logged(fresh_robot, "WARN")) - before
         expect(enough, f"Blocked for {BLOCKED_SECONDS:.0f} s{time}, it logged {warnings} warnings, not one a second.")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import signal
+import time
 
 from geometry_msgs.msg import Twist
 
@@ -15,6 +17,7 @@ START_SECONDS = 30.0  # of real time
 COMPUTING = 10.0  # s of processor time; a node that is to publish needs one of them
 QUIET = 0.05  # s after a command: half a period later, a node at 10 Hz waits for work, as it does most of the time
 TRIALS = 3
+LOGGED = re.compile(r"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[.*", re.MULTILINE)  # a line of its log, with its time
 STOP_SECONDS = 15.0  # of real time; a node that ends cleanly needs 0.2
 HINTS = (
     "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",
@@ -25,15 +28,21 @@ HINTS = (
 def expect_clean_end(workspace: Workspace, number: signal.Signals) -> None:
     """Fail the check unless the node, sent this signal while it spins, ends with exit status 0."""
     for _ in range(TRIALS):
-        status, output = _end(workspace, number)
+        status, output, late = _end(workspace, number)
         if not _interrupted_rclpy(status, output):
             break
     expect(status is not None, f"{STOP_SECONDS:.0f} s after {number.name} it was still running, and had to be killed.")
     expect(status == 0, f"After {number.name} it ended with exit status {status}: {tail(output, 1)}")
+    said = f"After {number.name}, when its context was gone, it still logged: {''.join(late[:1])}"
+    expect(not late, said, fraction=0.5)
 
 
-def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str]:
-    """Start the program, send it a signal while it spins; return its exit status, None if it stays, and its output."""
+def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str, list[str]]:
+    """Start the program, and send it a signal while it spins.
+
+    Returns:
+        Its exit status, None if it stays; its output; the lines that it logged after the signal.
+    """
     with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, listens={"/cmd_vel": Twist}) as harness:
         # A node may be seen while its __init__ still runs; a command shows that it spins.
         harness.until(
@@ -42,7 +51,10 @@ def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str]
         spoke = bool(harness.messages("/cmd_vel"))
         expect(spoke, "Started as ros2 run does, it published no command: without a scan, it has to publish zeros.")
         harness.run(QUIET)
-        return harness.stop(number, STOP_SECONDS), harness.output
+        signalled = time.time()
+        status = harness.stop(number, STOP_SECONDS)
+    late = [line[0] for line in LOGGED.finditer(harness.output) if float(line["seconds"]) > signalled]
+    return status, harness.output, late
 
 
 def _interrupted_rclpy(status: int | None, output: str) -> bool:

@@ -22,6 +22,7 @@ MOVES = ("drive_moves",)
 SLACK = 0.02  # m; and m/s, a tenth of the default speed
 PUSHED = 0.2  # m, made good within a second
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
+HELD = 0.8  # s for which the wheels are held, too short for it to be stuck
 LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real
 NAMES = {
     GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
@@ -81,7 +82,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
 
 
-@check(points=2, holds=("arrives", "stop", "odom", "overshoot"), depends=MOVES, doc=contract.ACTION)
+@check(points=2, holds=("arrives", "stop", "odom", "overshoot", "drives"), depends=MOVES, doc=contract.ACTION)
 @hint(*EXECUTOR)
 def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
@@ -96,6 +97,9 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         expect(stopped(commands), "After the goal had ended, the last command was no stop.")
         most = distance + 3 * contract.PERIOD * speed + SLACK
         expect(distance - SLACK <= driven <= most, f"With {distance:.2f} m to drive, the robot drove {driven:.2f} m.")
+        other = [told for told in commands if told.linear.x != 0.0 and not straight(told, speed)]
+        said = f"On its way at {speed} m/s the robot was told {_describe(other[0]) if other else ''}."
+        expect(not other, said, fraction=0.5)
         placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
@@ -155,6 +159,14 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
         seen = mean_period(told)
         paced = is_paced(seen, contract.PERIOD, placed_driver.time)
         expect(paced, f"A {what} came every {seen:.3f} s, instead of every {contract.PERIOD} s.", fraction=0.5)
+    placed_driver.stuck = True
+    goal = placed_driver.start(distance, 0.5)
+    placed_driver.roll(goal, HELD)
+    placed_driver.abandon(goal)
+    still = [stamped for stamped in goal.feedback if stamped.message.driven < SLACK]
+    count = HELD / contract.PERIOD
+    said = f"While the robot was held for {HELD} s, {len(still)} feedbacks came, instead of {count:.0f}."
+    expect(len(still) >= count / 2, said, fraction=0.5)
 
 
 @check(points=2, holds="rejects", depends=("drive_serves",), doc=contract.ACTION)

@@ -11,7 +11,7 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, straight
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import PATIENCE
-from autograder.checks.ch03_interfaces.support.driver import COMMANDS, Driver, stopped
+from autograder.checks.ch03_interfaces.support.driver import COMMANDS, LOOK, Driver, stopped
 from autograder.harness import Goal, Stamped
 from autograder.time_record import LOCKSTEP, REAL
 
@@ -21,6 +21,7 @@ BLUR = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early; 
 PUSH_AFTER = 0.5  # s
 TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m, around a centimetre
 SLOW = 0.007  # m/s
+ROLLS_BACK = 0.015  # m each time the robot is looked at, far more than a centimetre in 1 s
 SOON_THERE, UNHURRIED = 0.04, 0.015  # m, m/s: a little more than a centimetre in 1 s
 
 
@@ -99,6 +100,8 @@ def test_drive_stuck(placed_driver: Driver) -> None:
         f"The robot got {ENOUGH:.4f} m further after {PUSH_AFTER} s, and was given up {seconds:.2f} s after the start.",
         fraction=0.7,
     )
+    given_up = _is_given_up_rolling_back(placed_driver)
+    expect(given_up, "The robot rolled back, which is no way further, and was not given up.", fraction=0.7)
     placed_driver.stuck = False
     goal = placed_driver.start(1.0, SLOW)
     placed_driver.finish(goal, 6.0, f"At {SLOW} m/s, which is slower than 0.01 m/s")
@@ -137,6 +140,20 @@ def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:
     driver.push(distance)
     driver.finish(goal, 6.0, "With wheels that do not turn")
     return goal, driver.messages(COMMANDS)[before:]
+
+
+def _is_given_up_rolling_back(driver: Driver) -> bool:
+    """Hold the wheels of a robot that is on its way, and roll it back; return whether its goal is aborted in time."""
+    driver.stuck = False
+    goal = driver.start(4.5, 0.5)
+    driver.roll(goal, 1.0)
+    driver.stuck, end = True, driver.seconds + PATIENCE + LATE[driver.time]
+    while goal.result is None and driver.seconds < end:
+        driver.push(-ROLLS_BACK)
+        driver.roll(goal, LOOK)
+    given_up = bool(goal.status == GoalStatus.STATUS_ABORTED)
+    driver.abandon(goal)
+    return given_up
 
 
 def _driving(commands: list[Stamped]) -> float:

@@ -50,15 +50,15 @@ def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
-    for _ in range(4):
+    # Percent that the charge has more than its whole level, and part of a percent that the legs take: whoever reckons
+    # with the charge itself comes to another whole number.
+    for charge, share in ((0.4, 0.2), (-0.4, 0.8)) * 2:
         level = draw.randrange(50, 101)
         legs = [draw.uniform(1.0, 20.0) for _ in range(draw.randrange(1, 7))]
         legs += [draw.uniform(0.1, 0.9), 0.0]  # a leg may be short, and it may be none
+        legs.append((share - sum(legs) / METRES_PER_PERCENT) % 1.0 * METRES_PER_PERCENT)
         used = sum(legs) / METRES_PER_PERCENT
-        if abs(math.remainder(used, 1.0)) < 0.01:  # too near to a whole percent to be told apart
-            legs[0] += 0.1
-            used = sum(legs) / METRES_PER_PERCENT
-        reporter.set_battery(level)
+        reporter.set_battery(level, charge)
         answer = reporter.ask(legs, 0)
         left = math.floor(level - used)
         situation = f"At {level} % and {len(legs)} legs of {sum(legs):.1f} m in all"

@@ -57,10 +57,10 @@ class Reporter(AutoHarness):
         expect(bool(heard), "No message came on robot_status for more than a second.")
         return heard[-1].message
 
-    def set_battery(self, percent: int) -> None:
-        """Set the battery's level; wait until the status shows that the program has heard of it."""
+    def set_battery(self, percent: int, over: float = 0.25) -> None:
+        """Charge the battery to a level, `over` percent more; wait until the status shows that the program knows it."""
         began = self.seconds
-        self.publish_battery(min(1.0, (percent + 0.25) / 100.0))
+        self.publish_battery(min(1.0, (percent + over) / 100.0))
 
         def shown() -> bool:
             return any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC, since=began)[-1:])

@@ -44,7 +44,7 @@ def test_reporter_first(launches: Launches, inputs: Inputs) -> None:
     """The reporter starts immediately, while the self-test still runs."""
     harness = launches.safe(battery=inputs.enough)
     expect(REPORTER in harness.nodes(), "The reporter does not run.")
-    launch_probe.expect_parameters(harness, REPORTER, contract.NO_FILE)
+    launch_probe.expect_parameters(harness, REPORTER, contract.NO_FILE[REPORTER])
     before = harness.output.partition("process has finished cleanly")[0]
     expect("reporter" in launch_probe.started(before), "The reporter was started only after the self-test had ended.")
 
@@ -102,8 +102,10 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
 @check(points=1, holds="safe-driver", depends=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
-    """When the driver ends by itself, with exit status 0, everything ends too."""
-    _expect_end(launches.safe(battery=inputs.whole_battery), signal.SIGINT, "The driver ended with exit status 0")
+    """The driver has its own defaults; when it ends by itself, with exit status 0, everything ends too."""
+    harness = launches.safe(battery=inputs.whole_battery)
+    launch_probe.expect_parameters(harness, DRIVER, contract.NO_FILE[DRIVER])
+    _expect_end(harness, signal.SIGINT, "The driver ended with exit status 0")
 
 
 def _expect_refusal(harness: LaunchHarness, what: str) -> None:

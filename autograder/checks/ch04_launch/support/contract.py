@@ -12,7 +12,10 @@ SAFE = "safe_start.launch.py"
 DRIVER, REPORTER = "/driver", "/reporter"
 SHARED = "/fleet/status"
 ROBOT_NAME, SPEED = "robot1", 0.2  # the defaults of robot.launch.py
-NO_FILE: dict[str, Value] = {"robot_name": "nobody", "report_period": 1.0}  # the defaults of the reporter itself
+NO_FILE: dict[str, dict[str, Value]] = {  # the defaults of the nodes themselves
+    DRIVER: {"speed": 0.1, "turn_rate": 0.0},
+    REPORTER: {"robot_name": "nobody", "report_period": 1.0},
+}
 FIRST, SECOND = "robot1", "robot2"  # those of two_robots.launch.py
 
 LAUNCH = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"

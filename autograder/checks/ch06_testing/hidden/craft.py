@@ -4,17 +4,33 @@ from __future__ import annotations
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import Examination
+from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
-from autograder.checks.ch06_testing.support.contract import LEAST
+from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
 from autograder.probes.test_reports import ClaimedOutcome
 
 check = group("craft")
+GIVEN = (PACKAGE, "launch", "config")  # its folders; a student writes test/, and may write setup.py anew
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
+
+
+@check(points=1, holds="as-given", depends=("limits_pass",), doc=contract.PYTEST)
+@hint("The package is right. Where a test fails on it, change the test.")
+@hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
+def test_as_given(examination: Examination) -> None:
+    """The module, the launch file and the configuration of the package are as they were given."""
+    kept = examination.source.files
+    changed = [
+        name
+        for name, text in style(STYLES[0]).files.items()
+        if name.split("/")[0] in GIVEN and kept.get(name, b"").split() != text.encode().split()
+    ]
+    expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
 
 
 @check(points=1, holds="no-sleep", depends=("guard_pass",), doc=contract.PYTEST)

@@ -107,13 +107,14 @@ LINES = (
     ),
     Line(
         id="parameters",
-        holds=("parameters", "node-lines"),
-        title="A test fails when the parameters stop_distance and slow_distance have no effect.",
-        promise="stop_distance and slow_distance are parameters of the node.",
+        holds=("parameters", "defaults", "node-lines"),
+        title="A test fails when a parameter has no effect, or another default.",
+        promise="stop_distance (0.5 m), slow_distance (1.5 m) and timeout (0.5 s) are parameters of the node.",
         points=2,
         hints=(
             "parameter_overrides=[Parameter('stop_distance', value=1.0)] starts a node with other parameters.",
-            "Choose both anew, and ask at a distance at which the defaults would answer otherwise.",
+            "Choose both distances anew, and ask at a distance at which the defaults would answer otherwise.",
+            "node.get_parameter('timeout').value is the default where nothing was chosen.",
         ),
         doc=contract.PARAMETERS,
     ),
@@ -131,7 +132,7 @@ LINES = (
     ),
     Line(
         id="stale",
-        holds=("stale", "node-lines"),
+        holds=("stale", "commands-come", "node-lines"),
         title="A test fails when an old distance is still believed.",
         promise="a distance that came more than timeout seconds ago is not known.",
         points=2,

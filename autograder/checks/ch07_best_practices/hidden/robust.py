@@ -98,13 +98,26 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
 
 @check(points=1, holds=("seed", "generator"), depends=("once_a_second",), doc=RANDOM)
 @hint("random.Random() without a seed takes one from the operating system.", "seed 0: random.Random().")
-def test_no_seed(workspace: Workspace) -> None:
-    """Without a seed, two runs differ."""
+def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
+    """Without a seed, two runs differ; and the node's generator is its own."""
     runs = []
     for _ in range(2):
         with Robust(workspace, failure_probability=0.5) as harness:
             runs.append(harness.hear(50))
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
+    seed = draw.randrange(10**6)
+    *_, shared = calls(
+        workspace,
+        ROBUST,
+        call("init", module="rclpy"),
+        call("seed", seed, module="random"),
+        make("RobustNode"),
+        call("random", module="random"),
+        network=True,
+    )
+    own = shared.value == random.Random(seed).random()
+    said = "When a RobustNode was made, the generator of the module random changed, which all share"
+    expect(own, f"{said}: the node's is a random.Random of its own.", fraction=0.5)
 
 
 @check(points=2, holds=("unstable", "max-errors"), depends=("once_a_second",))
@@ -135,6 +148,11 @@ def test_errors_throttled(workspace: Workspace) -> None:
     expect(errors > 0, "Its sensor failed for 30 s, and it said nothing at level ERROR.")
     expect(errors > 1, "Its sensor failed for 30 s, and it logged only one error.", fraction=0.5)
     expect(errors <= 7, f"Its sensor failed for 30 s, and it logged {errors} errors.", fraction=0.5)
+    with Robust(workspace, failure_probability=1.0, max_errors=2) as harness:
+        harness.hear(4)
+        errors = logged(harness.output, "ERROR")
+    said = f"Its sensor failed four times in 4 s, the third time too often, and it logged {errors} errors."
+    expect(errors == 1, said, fraction=0.5)
 
 
 @check(points=1, holds="fatal-log", depends=("once_a_second",), doc=LOGGING)

@@ -208,7 +208,7 @@ def test_turns(driving: System, draw: random.Random) -> None:
         expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
     for near in (NEAR + EDGE, NEAR - EDGE):
         driving.see(OPEN)
-        said = driving.see(scan(Part(-10.0, 10.0, near))).commands
+        said = driving.see(scan(Part(-10.0, 10.0, near), fill=math.inf)).commands  # the same room on both sides
         situation = f"With something {near:.2f} m ahead, and a safety distance of {NEAR:.2f} m"
         if near > NEAR:
             expect_driving(said, situation, SPEED, fraction=0.5)
@@ -237,6 +237,8 @@ def test_stops(driving: System, slow_system: SharedSystem) -> None:
     driving.see(OPEN)
     old = driving.see(OPEN, 1.5, age=1.0).commands
     expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
+    ahead = driving.see(OPEN, 1.5, age=-1.0).commands
+    expect_driving(ahead, "With scans whose stamp is 1.0 s ahead of the clock, which is not old,", SPEED, fraction=0.75)
     if driving.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
         slow = slow_system.get(PROCESSOR, CONTROLLER)
         slow.see(OPEN)
@@ -278,5 +280,5 @@ def _hold_and_release(system: System) -> None:
 def _hold(system: System) -> None:
     """Hold the robot still for a moment, and let it go."""
     system.call(SetBool, "/enable", SetBool.Request(data=False))
-    system.wait(0.3)
+    system.see(OPEN)  # the way is clear for a moment, and no turn ends while it stands still
     system.call(SetBool, "/enable", SetBool.Request(data=True))

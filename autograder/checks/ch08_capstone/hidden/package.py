@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
@@ -11,6 +12,7 @@ from autograder.checks.ch08_capstone.support.sources import require_built, sourc
 from autograder.diagnosis import OK, Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports, manifest
+from autograder.probes.growth import install_with
 from autograder.probes.installed import look
 from autograder.probes.packaging import expect_installs_itself
 
@@ -90,6 +92,18 @@ def test_shares(workspace: Workspace) -> None:
     wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
     absent = [path for path in wanted if path not in found.shared]
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
+
+
+@check(points=1, holds="installs", depends=("shares",))
+@hint("A list of names written by hand is wrong on the day when somebody adds a file.")
+@hint("glob('launch/*.launch.py') and glob('config/*.yaml') look at what is there when the package is built.")
+def test_grows(workspace: Workspace, draw: random.Random) -> None:
+    """A new launch file and a new configuration are installed without a change of setup.py."""
+    word = f"maze_{draw.randrange(100, 1000)}"
+    added = (f"launch/{word}.launch.py", f"config/{word}.yaml")
+    shared = install_with(workspace, PACKAGE, added).shared
+    left = [path for path in added if path not in shared]
+    expect(not left, f"The new {' and '.join(left)} stayed behind: look at data_files.", fraction=0.5)
 
 
 @check(points=1, holds=("agree", "installs", "interfaces-cmake"), depends=("manifests", "build"))

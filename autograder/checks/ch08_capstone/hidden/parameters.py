@@ -88,8 +88,9 @@ def test_ranges(system: System) -> None:
 def test_used(system: System) -> None:
     """A parameter that is changed while the system runs has an effect immediately."""
     wrong = [said for said in (_effect(system, *case) for case in _CASES) if said]
+    wrong += _said_of_change_in_turn(system)
     if wrong:
-        raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / len(_CASES), 2))
+        raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / (len(_CASES) + 1), 2))
 
 
 @check(points=2, holds="config", depends=("shares",))
@@ -164,6 +165,19 @@ def _effect(system: System, node: str, name: str, value: float, look: Callable[[
         asked.change({name: PARAMETERS[node][name].default})
         system.see(OPEN)
     return ""
+
+
+def _said_of_change_in_turn(system: System) -> list[str]:
+    """Say how the robot goes on turning after safety_distance was set so low that the turn has to end, if so."""
+    ahead = Part(-40.0, 40.0, 0.5)
+    _settled(system, ahead)
+    with system.changed(CONTROLLER, "safety_distance", 0.3):
+        commands = system.see(scan(ahead, fill=3.0)).commands
+    try:
+        expect_driving(commands, "With safety_distance set to 0.3 in a turn, 0.5 m before something", 0.3)
+    except CheckFailed as failed:
+        return [failed.message]
+    return []
 
 
 def _settled(system: System, *parts: Part) -> Sequence[Stamped]:

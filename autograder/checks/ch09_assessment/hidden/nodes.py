@@ -99,7 +99,7 @@ def test_average(start: Start, draw: Random) -> None:
 @check(points=2, holds=("window", "at-start"), depends=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
-    """The parameter window says how many readings count, from 1 to 100; 0 and 101 are refused at the start."""
+    """The parameter window says how many readings count, from 1 to 100; 0, 101 and 2.5 are refused at the start."""
     window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
     with start(SMOOTHER, window=window) as harness:
         told = harness.send(readings)
@@ -108,7 +108,7 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
         told += harness.send(readings)
         after = "After another window was set: "
         _expect_averages([message.celsius for message in told], readings * 2, window, after, fraction=0.5)
-    for limit, right in ((0, False), (1, True), (100, True), (101, False)):
+    for limit, right in ((0, False), (1, True), (100, True), (101, False), (2.5, False)):
         started = not refuses(workspace, types, SMOOTHER, window=limit)
         said = f"smoother {'started' if started else 'did not start'} with window {limit}."
         expect(started is right, said, fraction=0.5)
@@ -157,9 +157,9 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
         where = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
         _expect_decisions(harness, [hot + 1.0, cool - 1.0], where, hot=hot, cool=cool, fraction=0.5)
-    for impossible in (hot, hot + 5.0, math.nan):
-        refused = refuses(workspace, types, GUARD, hot=hot, cool=impossible)
-        expect(refused, f"guard started with hot {hot} and cool {impossible}.", fraction=0.5)
+    for high, low in ((hot, hot), (hot, hot + 5.0), (hot, math.nan), (math.nan, cool)):
+        refused = refuses(workspace, types, GUARD, hot=high, cool=low)
+        expect(refused, f"guard started with hot {high} and cool {low}.", fraction=0.5)
 
 
 @check(points=1, holds="unknown", depends=("hysteresis",))
@@ -171,10 +171,10 @@ def test_unknown(start: Start) -> None:
             _expect_decisions(harness, [20.0, unknown, 55.0], "")
 
 
-@check(points=1, holds="guard", depends=("hysteresis",))
+@check(points=1, holds=("guard", "guard-topics"), depends=("hysteresis",))
 @hint("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was.")
 def test_passes_on(start: Start, draw: Random) -> None:
-    """A decision carries the stamp and the temperature that it was made of."""
+    """Each average gets a decision, which carries the stamp and the temperature that it was made of."""
     celsius, first = draw.uniform(20.0, 80.0), draw.randint(100, 999)
     with start(GUARD) as harness:
         told = harness.send([celsius], first=first)
@@ -184,6 +184,10 @@ def test_passes_on(start: Start, draw: Random) -> None:
     expect(right, f"The decision's stamp is {stamp.sec} s and {stamp.nanosec} ns, not that of the average.")
     said = f"The decision on {celsius:.5f} °C says {given:.5f} °C."
     expect(math.isclose(given, celsius, rel_tol=FLOAT32), said, fraction=0.5)
+    with start(GUARD) as harness:
+        made = len(harness.send([celsius] * QUEUE, apart=0.0))
+    said = f"Of {QUEUE} averages that came at once, {made} got a decision: a queue of {QUEUE} holds them all."
+    expect(made == QUEUE, said, fraction=0.5)
 
 
 @check(points=1, holds="relative", depends=("readings", "average", "hysteresis"), doc=contract.NODES_DOC)

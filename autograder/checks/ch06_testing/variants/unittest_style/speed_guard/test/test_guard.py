@@ -24,6 +24,7 @@ class Harness:
 
     def __init__(self, context, guard):
         """Connect to the guard's topics."""
+        self.guard = guard
         self.node = Node("harness", context=context)
         self.out = queue.Queue()
         self.echo = queue.Queue()
@@ -135,6 +136,21 @@ def test_stale():
         harness.distance(9.0)
         assert harness.out.get(timeout=8.0) == Twist()
         assert harness.answer(0.5).linear.x == 0.0
+
+
+def test_stale_under_command():
+    """A planner that goes on talking does not make up for a sensor that is silent."""
+    with guarded(timeout=1.0) as harness:
+        harness.distance(9.0)
+        answers = (harness.answer(0.5).linear.x for _ in range(60) if harness.silence(0.05))
+        assert 0.0 in answers
+
+
+def test_defaults():
+    """The defaults are those of the class's docstring."""
+    with guarded() as harness:
+        defaults = {"stop_distance": 0.5, "slow_distance": 1.5, "timeout": 0.5}
+        assert {name: harness.guard.get_parameter(name).value for name in defaults} == defaults
 
 
 def test_watchdog():

@@ -1,0 +1,33 @@
+"""What is installed of a package to which files were added: a list of names written by hand leaves them behind."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable
+from dataclasses import replace
+
+from autograder.building.build import build
+from autograder.packages import find_packages
+from autograder.probes.installed import Installed, look
+from autograder.workspace import Workspace
+
+
+def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> Installed:
+    """Copy a package, add empty files to the copy, build it, and return what was installed.
+
+    Args:
+        workspace: the built workspace; it is left as it is.
+        package: the package's name.
+        files: paths below the package's folder.
+
+    Raises:
+        StudentError: the copy does not build.
+    """
+    copy = replace(workspace, root=workspace.root.parent / "grown")
+    folder = copy.root / "src" / package
+    shutil.copytree(find_packages(workspace.root / "src")[0][package], folder)
+    for file in files:
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        (folder / file).write_text("")
+    build(copy, (package,))
+    return look(copy.install, package)
