@@ -9,6 +9,7 @@ A student can forge what a node answers. It is shown shortened, and checks belie
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import SequenceMatcher
@@ -153,6 +154,11 @@ def said(value: Value) -> str:
     return "not set" if value is None else shortened(repr(value))
 
 
+def override_arguments(values: Mapping[str, Value]) -> list[str]:
+    """Return what stands behind `--ros-args` for a node that is started with these values of its parameters."""
+    return [word for name, value in values.items() for word in ("-p", f"{name}:={_in_yaml(value)}")]
+
+
 def read_file(path: Path) -> dict[str, dict[str, Value]]:
     """Read a parameter file: values by parameter, by the node or wildcard that they are for, in the file's order.
 
@@ -198,3 +204,8 @@ def _values(file: str, node: str, below: object) -> dict[str, Value]:
 
 def _listed(names: Iterable[object]) -> str:
     return ", ".join(shortened(str(name)) for name in names)
+
+
+def _in_yaml(value: Value) -> str:
+    """Return a value as YAML has it, in one line: `.nan` for nan."""
+    return str(yaml.safe_dump(value, width=math.inf)).partition("\n")[0]

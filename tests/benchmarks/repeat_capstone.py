@@ -60,6 +60,11 @@ def stored(report: Path, version: str) -> dict[int, Grading]:
     return found
 
 
+def cut_off(report: Path) -> bool:
+    """Return whether the last line of a report has no end: what is written next would be part of it."""
+    return report.is_file() and report.read_bytes()[-1:] not in (b"", b"\n")
+
+
 def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
     """Grade the reference in `folder`."""
     began = time.monotonic()
@@ -100,6 +105,7 @@ def main() -> int:
     print(f"checks and grader {version}: {len(known)} of {args.n} are graded", flush=True)
     args.report.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name, args.report.open("a") as report:
+        report.write("\n" if cut_off(args.report) else "")
         write_reference(suites.hidden(ASSIGNMENT).packages, Path(name) / "reference")
         for grading in gradings(Path(name), version, args.n, dict(known)):
             report.write(json.dumps(asdict(grading)) + "\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -52,9 +53,13 @@ ENOUGH = report(*[GOOD] * LEAST[LIMITS])
         ),
         (report(status=5), "No test in test_limits.py ran on the package as it is."),
         (report(status=2), "pytest cannot run test_limits.py on the package as it is; it ended with exit status 2."),
+        (
+            replace(report(ending=Ending.MEMORY), status=None),
+            "The tests in test_limits.py ended on the package as it is before pytest could say how they went: memory.",
+        ),
         (report(GOOD), "Only 1 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one."),
     ],
-    ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "few"],
+    ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "stopped", "few"],
 )
 def test_what_does_not_pass_on_the_package_as_it_is_is_named(run: Report | None, sentence: str) -> None:
     assert not is_usable(LIMITS, run)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from autograder.probes.parameters import (
     for_node,
     missing_sentence,
     near_misses,
+    override_arguments,
     read_file,
     same,
     shortened,
@@ -143,3 +145,9 @@ def test_any_text_is_a_parameter_file_or_refused(
     path.write_text("\n".join(f"{key}{value}" for key, value in lines), encoding="utf-8", errors="surrogatepass")
     with contextlib.suppress(CheckFailed):
         read_file(path)
+
+
+def test_overrides_are_written_as_yaml() -> None:
+    values = {"hot": math.nan, "cool": 0.5, "on": True, "name": "07", "window": 2}
+    wanted = ["hot:=.nan", "cool:=0.5", "on:=true", "name:='07'", "window:=2"]
+    assert override_arguments(values) == [word for one in wanted for word in ("-p", one)]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.benchmarks.repeat_capstone import Grading, stored, summarise
+from tests.benchmarks.repeat_capstone import Grading, cut_off, stored, summarise
 
 ONE = Grading("v1", 1, 2, 100.0, (), {"corner.json": "0123"}, 7.5)
 
@@ -21,6 +21,15 @@ def test_the_gradings_of_one_version_are_kept_and_a_torn_line_is_not(tmp_path: P
     assert {number: asdict(each) for number, each in stored(report, "v1").items()} == {
         1: {**asdict(ONE), "lost": ()},
     }
+    assert cut_off(report)
+
+
+@pytest.mark.parametrize("text", [None, "", "a line\n"])
+def test_a_report_that_ends_with_a_line_is_not_cut_off(text: str | None, tmp_path: Path) -> None:
+    report = tmp_path / "capstones.jsonl"
+    if text is not None:
+        report.write_text(text)
+    assert not cut_off(report)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 from autograder.harness import Shared, Workspace
+from autograder.probes.parameters import override_arguments
 
 TUNED_PERIOD = 0.25  # s
 FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
@@ -25,7 +26,7 @@ def tuned_name(seed: int) -> str:
 @pytest.fixture(scope="session")
 def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
     """Keeps the status publisher that is given other parameters."""
-    arguments = ("--ros-args", "-p", f"status_period:={TUNED_PERIOD}", "-p", f"robot_name:={tuned_name}")
+    arguments = ("--ros-args", *override_arguments({"status_period": TUNED_PERIOD, "robot_name": tuned_name}))
     with Shared(lambda: Reporter(workspace, types, arguments)) as shared:
         yield shared
 

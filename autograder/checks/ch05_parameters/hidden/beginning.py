@@ -14,7 +14,7 @@ from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, 
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
 from autograder.probes.calls import call, calls, made, make
-from autograder.probes.parameters import Value, as_declared, differences
+from autograder.probes.parameters import Value, as_declared, differences, override_arguments
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
@@ -143,7 +143,7 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
 
 def _called(workspace: Workspace, distance: float) -> tuple[Value, str]:
     """Return what contradiction says of distances that fit, and what declare_configuration raises at equal ones."""
-    given = [part for name in ("safety_distance", "slow_distance") for part in ("-p", f"{name}:={distance}")]
+    given = override_arguments(dict.fromkeys(("safety_distance", "slow_distance"), distance))
     outcomes = calls(
         workspace,
         CONFIGURATION,

@@ -18,7 +18,7 @@ from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
 from autograder.harness.steps import FINEST_TICK_NS
 from autograder.probes.pace import mean_period
-from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences
+from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences, override_arguments
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
@@ -43,7 +43,6 @@ class Robot(AutoHarness):
         arguments: Sequence[str] = (),
         name: str = NODE,
     ) -> None:
-        given = [part for key, value in (values or {}).items() for part in ("-p", f"{key}:={text(value)}")]
         offers = {**OFFERS, "/battery_state": BatteryState}
         super().__init__(
             workspace,
@@ -51,7 +50,7 @@ class Robot(AutoHarness):
             EXECUTABLE,
             offers=offers,
             listens=LISTENS,
-            arguments=("--ros-args", *given, *arguments),
+            arguments=("--ros-args", *override_arguments(values or {}), *arguments),
         )
         self.parameters = NodeParameters(self, name)
 
@@ -146,11 +145,6 @@ def missing_from(sentence: str, distances: Mapping[str, float]) -> list[str]:
     values = distances.values()
     absent = [str(value) for value in values if not any(abs(number - value) < ROUNDED for number in numbers)]
     return [name for name in distances if name not in sentence] + absent
-
-
-def text(value: Value) -> str:
-    """Return a value as it is written on the command line."""
-    return repr(value) if isinstance(value, float) else str(value)
 
 
 def expect_speed(speed: float, wanted: float, situation: str) -> None:

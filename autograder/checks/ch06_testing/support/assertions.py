@@ -57,4 +57,7 @@ def describe_failure(name: str, report: Report, where: str, *, said: bool = Fals
         return f"{count} {where}: {test.partition('::')[2]}{f': {message}' if message else ''}"
     if report.status in (0, 5):
         return f"No test in {name} ran {where}."
+    if report.status is None:
+        why = report.ending.value.replace("_", " ") if report.ending else "no report"
+        return f"The tests in {name} ended {where} before pytest could say how they went: {why}."
     return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

@@ -13,6 +13,7 @@ from std_msgs.msg import Float32, String
 from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, PACKAGE
 from autograder.harness import AutoHarness, Workspace
 from autograder.harness.drive import SCAN_SECONDS
+from autograder.probes.parameters import override_arguments
 from autograder.time_record import LOCKSTEP
 
 FILTERED, MEAN, WORDS = "/scan_filtered", "/mean_distance", "/status"
@@ -48,10 +49,8 @@ class Robust(AutoHarness):
     """The harness of robust_node, started with parameters of the check's choice."""
 
     def __init__(self, workspace: Workspace, **parameters: float) -> None:
-        arguments = [part for name, value in parameters.items() for part in ("-p", f"{name}:={value}")]
-        super().__init__(
-            workspace, PACKAGE, "robust_node", listens={WORDS: String}, arguments=("--ros-args", *arguments)
-        )
+        arguments = ("--ros-args", *override_arguments(parameters))
+        super().__init__(workspace, PACKAGE, "robust_node", listens={WORDS: String}, arguments=arguments)
         self._told = 0
 
     def hear(self, readings: int) -> list[str]:

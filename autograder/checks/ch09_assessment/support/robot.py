@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
-from autograder.probes.parameters import NodeParameters, Value
+from autograder.probes.parameters import NodeParameters, Value, override_arguments
 from autograder.time_record import LOCKSTEP
 from autograder.unwritten import explain
 
@@ -62,8 +61,7 @@ class NodeHarness(AutoHarness):
     ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
         offers, listens = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
-        words = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_in_yaml(value)}")]
-        arguments = ("--ros-args", *words) if words else ()
+        arguments = ("--ros-args", *override_arguments(parameters))
         super().__init__(
             workspace, PACKAGE, name, offers=offers, listens=listens, arguments=arguments, clock_rate=clock_rate
         )
@@ -126,10 +124,6 @@ class NodeHarness(AutoHarness):
 
 
 Start = Callable[..., NodeHarness]  # takes a node's name and its parameters
-
-
-def _in_yaml(value: float) -> str:
-    return ".nan" if math.isnan(value) else str(value)
 
 
 def near(one: float, other: float) -> bool:
