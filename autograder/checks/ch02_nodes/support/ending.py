@@ -9,7 +9,7 @@ import time
 from geometry_msgs.msg import Twist
 
 from autograder.checks import expect
-from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
+from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
 from autograder.harness import RealTimeHarness, Workspace
 from autograder.lockstep.failures import tail
 
@@ -17,7 +17,7 @@ START_SECONDS = 30.0  # of real time
 COMPUTING = 10.0  # s of processor time; a node that is to publish needs one of them
 QUIET = 0.05  # s after a command: half a period later, a node at 10 Hz waits for work, as it does most of the time
 TRIALS = 3
-LOGGED = re.compile(r"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[.*", re.MULTILINE)  # a line of its log, with its time
+LOGGED = re.compile(rf"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[{NODE[1:]}\]: .*", re.MULTILINE)  # what the node logs
 STOP_SECONDS = 15.0  # of real time; a node that ends cleanly needs 0.2
 HINTS = (
     "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",
