@@ -1,17 +1,21 @@
-"""Whether the tests that came with a package are as they were: they pass on it, and fail when a module is faulty.
+"""Whether the files that came with a package are as they were: its tests notice a faulty module, the rest is unchanged.
 
 A linter's test that `ros2 pkg create` wrote does so, too. Its test_copyright is skipped, so that one is not asked.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
+from pathlib import Path
 
 from autograder import layout
 from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
+from autograder.checks.ch01_package_structure.support.assertions import source_of
 from autograder.harness import Workspace
 from autograder.probes import test_runs
+from autograder.probes.given import changed_files
 from autograder.probes.laid_fault import UNTIDY, expect_failures
 from autograder.probes.test_reports import Source, TestRun
 from autograder.probes.versions import read
@@ -19,8 +23,11 @@ from autograder.probes.versions import read
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",
     "A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.",
+    "The node, its helper, the launch file and the configuration were right, too: copy what you changed again.",
 )
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
+# What a linter's test imports. `ros2 pkg create`, by which square_dance may have been made, words them in its own way.
+IMPORTED = {f"test/test_{name}.py": f"ament_{name}".encode() for name in ("copyright", "flake8", "pep257")}
 
 
 @dataclass(frozen=True)
@@ -59,7 +66,7 @@ ALARM = Given(
 
 
 def expect_given_tests(workspace: Workspace, given: Given) -> None:
-    """Fail the check unless each given test passes on a right package, and fails on one with a faulty module."""
+    """Fail the check unless each given test passes on a right package, fails on a faulty one, and no file changed."""
     taken = test_runs.take(workspace, given.package)
     files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in given.tests}))
     absent = [name for name in files if name not in taken.tests]
@@ -72,3 +79,20 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     failed = " and ".join(test.partition("::")[2] for test in report.failed)
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})
+    own = {name for name, imported in IMPORTED.items() if given is DANCE and imported in taken.files.get(name, b"")}
+    _expect_unchanged(workspace, given.package, own)
+
+
+def _expect_unchanged(workspace: Workspace, package: str, own: Collection[str]) -> None:
+    """Fail the check, with half of its points, unless the files that came with a package are there, unchanged.
+
+    Args:
+        workspace: the built workspace.
+        package: the package's name.
+        own: those of its files that may be the student's own, as each __init__.py may.
+    """
+    folders = (package, "launch", "config", "test")
+    changed = changed_files(source_of(workspace, package), layout.SOLUTIONS / package, folders)
+    changed = [name for name in changed if name not in own and Path(name).name != "__init__.py"]
+    said = f"In {package}, {' and '.join(changed[:3])} should be as given, and was changed or deleted."
+    expect(not changed, said, fraction=0.5)

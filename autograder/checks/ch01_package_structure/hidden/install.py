@@ -14,6 +14,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_manifest,
     expect_modules,
     expect_shared,
+    programs,
     source_of,
 )
 from autograder.checks.ch01_package_structure.support.growth import Grown
@@ -103,8 +104,9 @@ def test_grows(grown: Grown) -> None:
     expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 4)
 
 
-@check(points=1, holds=("tests-stay", "modules"), depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=1, holds=("tests-stay", "modules", "program"), depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
+@hint("A setup.py copied from another package still names its programs: remove the lines of those that are not yours.")
 def test_tests_stay(grown: Grown) -> None:
     """Nothing is installed beside its module: no module called test, also with an __init__.py beside the tests."""
     modules = grown.installed.modules
@@ -112,6 +114,10 @@ def test_tests_stay(grown: Grown) -> None:
     expect(not strays, f"{', '.join(strays[:2])} was installed: it would hide Python's own module test.")
     strays = sorted(name for name in modules if name.split(".")[0] != contract.SQUARE_DANCE)
     expect(not strays, f"{', '.join(strays[:2])} was installed, a module beside {contract.SQUARE_DANCE}.", fraction=0.5)
+    for name, module in programs(grown.installed).items():
+        if name != contract.DANCER:  # the dancer's own module is for other checks
+            said = f"The program {name} is installed, and its module {module} is not: remove it from console_scripts."
+            expect(module in modules, said, fraction=0.5)
 
 
 @check(points=1, holds="given", depends=("builds",), doc=contract.COLCON)

@@ -18,6 +18,8 @@ ALARM_CONFIG = "config/wall_alarm.yaml"
 NEAR = 0.8  # m, in the alarm's configuration
 
 LICENCE = "Apache-2.0"
+# The classifiers of setup.py that agree with it.
+CLASSIFIERS = ("License :: OSI Approved", "License :: OSI Approved :: Apache Software License")
 BUILD_TYPE = "ament_python"
 
 DOCS = "https://docs.ros.org/en/jazzy/"

@@ -18,7 +18,7 @@ class Grown:
         installed: what colcon installed of it.
         launch: the new launch file.
         config: the new configuration.
-        modules: the new modules, each in a subpackage of its own, one of them deeper than the other.
+        modules: the new modules, each in a subpackage of its own; one is deeper, and has "test" within its name.
     """
 
     installed: Installed
@@ -39,7 +39,7 @@ def grow(workspace: Workspace, word: str) -> Grown:
     """
     name = contract.SQUARE_DANCE
     launch, config, test = f"launch/{word}.launch.py", f"config/{word}.yaml", f"test/test_{word}.py"
-    folders = f"{name}/{word}", f"{name}/utils/{word}"
+    folders = f"{name}/{word}", f"{name}/utils/contest_{word}"
     code = [f"{folder}/{file}.py" for folder in folders for file in ("__init__", "steps")]
     return Grown(
         install_with(workspace, name, (launch, config, test, "test/__init__.py", *code)),

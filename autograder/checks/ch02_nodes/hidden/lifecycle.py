@@ -43,4 +43,6 @@ def test_fails(workspace: Workspace) -> None:
     case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
     expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
     expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
+    said = "error" in output.lower()  # an exception's class or text has the word; what rclpy warns of here has not
+    expect(said, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
     expect("another exception" not in output, f"{case} its clean-up failed, too: {tail(output, 1)}", fraction=0.5)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.robot import Robot, expect_forward, expect_turn
+from autograder.checks.ch02_nodes.support.robot import SETTLED, Robot, expect_forward, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.time_record import LOCKSTEP
 
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 EDGE = 1.5  # degrees from the edge of the forward sector, a twentieth of its half; the edge itself is left open
+GLANCE = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
 @check(points=2, holds=("clear", "in-range"), depends=TALKS)
@@ -41,9 +44,15 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(Part(-3.0, 3.0, far))), f"With something {far:.2f} m ahead")
     limit = contract.SAFETY_DISTANCE  # not nearer than that, and exact in a message's float32
     expect_forward(robot.see(scan(Part(-3.0, 3.0, limit))), f"With something exactly {limit:g} m ahead")
+    if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
+        for distance, expect_reaction in ((near, expect_turn), (far, expect_forward)):
+            began = robot.seconds
+            robot.show(scan(Part(-3.0, 3.0, distance)), GLANCE)
+            seen = robot.messages("/cmd_vel", since=began + SETTLED)
+            expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 
 
-@check(points=3, holds="sector", depends=("forward_when_clear",), doc=contract.LASER_SCAN)
+@check(points=3, holds=("sector", "minus-inf"), depends=("forward_when_clear",), doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
@@ -57,17 +66,34 @@ def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
         expect_turn(robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, inside the forward sector")
         edge = scan(Part(outside - 0.6, outside + 0.6, near))
         expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
+    around = (Part(first, last, -math.inf) for first, last in ((150.0, 180.0), (45.0, 110.0), (-110.0, -45.0)))
+    expect_forward(robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85)
 
 
-@check(points=2, holds="bearings", depends=("forward_when_clear", "turns_when_blocked"), doc=contract.LASER_SCAN)
+@check(
+    points=2,
+    holds=("bearings", "sector"),
+    depends=("forward_when_clear", "turns_when_blocked"),
+    doc=contract.LASER_SCAN,
+)
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")
 @hint("Use angle_min and angle_increment of the message, never a fixed index or a fixed number of beams.")
 def test_other_lidars(robot: Robot, draw: random.Random) -> None:
     """It reads bearings from the message: any number of beams, any first bearing."""
     near = draw.uniform(0.4, 0.8)
-    for beams, first, last in ((draw.randrange(500, 800), -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
+    many = draw.randrange(500, 800)
+    for beams, first, last in ((many, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
         name = f"from a lidar of {beams} beams that starts at {first:.0f}°"
         ahead = scan(Part(-5.0, 5.0, near), beams=beams, first_bearing=first, last_bearing=last)
         aside = scan(Part(60.0, 85.0, near), beams=beams, first_bearing=first, last_bearing=last)
         expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
         expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}")
+    # Who wraps no bearing errs at the right, who counts beams errs far from the middle.
+    for right, left, expect_reaction in (
+        (-85.0, -60.0, expect_forward),
+        (-28.0, -22.0, expect_turn),
+        (22.0, 28.0, expect_turn),
+    ):
+        shown = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
+        where = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
+        expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)

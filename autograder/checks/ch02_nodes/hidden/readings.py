@@ -28,6 +28,10 @@ def test_nan(robot: Robot, draw: random.Random) -> None:
     first = Part(0.0, 0.0, math.nan)
     expect_turn(robot.see(scan(Part(-10.0, 10.0, near), first)), f"With something {near:.2f} m ahead and beam 0 nan")
     expect_forward(robot.see(scan(hole)), "With nothing ahead and a few nan beams")
+    for distance, expect_reaction in ((near, expect_turn), (2.0, expect_forward)):
+        lone = scan(Part(-35.0, 35.0, math.nan), Part(bearing, bearing + 1.5, distance))
+        said = f"With nan ahead but for one or two beams, which read {distance:.2f} m"
+        expect_reaction(robot.see(lone), said, fraction=0.75)
 
 
 @check(points=1, holds=("plus-inf", "readings"), depends=REACTS, doc=contract.REP_117)
@@ -67,7 +71,7 @@ def test_phantoms(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m")
 
 
-@check(points=2, holds="blind", depends=REACTS)
+@check(points=2, holds=("blind", "phantom", "stale"), depends=REACTS)
 @hint(contract.RULE_STOP, 'What does your minimum give when no reading is left? It must not mean "clear".')
 def test_blind(robot: Robot) -> None:
     """It stands still when no beam in front has a usable reading."""
@@ -78,3 +82,10 @@ def test_blind(robot: Robot) -> None:
     none = scan()
     none.ranges = []
     expect_stop(robot.see(none), "With a scan that has no readings at all")
+    for shown, situation in (
+        (none, "With scans that have no readings"),
+        (scan(Part(-35.0, 35.0, 0.0)), "With nothing but 0.0 in front"),
+        (scan(Part(-35.0, 35.0, -1.0)), "With nothing but -1.0 in front"),
+    ):
+        robot.see(scan(), 0.5)  # it must not count on
+        expect_stop(robot.see(shown), f"{situation}, after clear ones", fraction=0.75)

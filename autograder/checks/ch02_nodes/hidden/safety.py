@@ -14,7 +14,7 @@ from autograder.checks.ch02_nodes.support.robot import (
     expect_forward,
     expect_stop,
 )
-from autograder.checks.ch02_nodes.support.scans import scan
+from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.harness import Workspace
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.time_record import LOCKSTEP
@@ -22,6 +22,7 @@ from autograder.time_record import LOCKSTEP
 check = group("safety")
 MARGIN = 0.02  # s around the time-out, two of the shortest steps: a tenth too much is seen
 REAL_MARGIN = 0.15  # s, where time is real and messages are late
+LATE = 2.0  # s: how old a stamp is, of a scan of which only the arrival counts
 FINE = 0.01  # s between two looks at the clock
 SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a robot that must not look at them
 
@@ -55,13 +56,18 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, draw: random.Rando
         _expect_ros_time(workspace, scan(fill=distance))
 
 
-@check(points=1, holds=("stale", "clear"), depends=("stops_when_stale",))
+@check(points=1, holds=("stale", "clear", "ros-time"), depends=("stops_when_stale",))
 @hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
 def test_recovers(robot: Robot, draw: random.Random) -> None:
     """It drives again when scans come again."""
     distance = draw.uniform(1.5, 3.0)
-    robot.left_alone(2.0)
+    robot.see(scan(Part(-10.0, 10.0, 0.5)), 0.5)
+    robot.left_alone(1.0)
+    blind = robot.left_alone(1.0)
     expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
+    expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
+    late = robot.see(scan(fill=distance), late=LATE)
+    expect_forward(late, f"With scans that arrive now, and whose stamps are {LATE:g} s old", fraction=0.5)
 
 
 def _expect_ros_time(workspace: Workspace, shown: LaserScan) -> None:

@@ -27,16 +27,16 @@ class Robot(AutoHarness):
     def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
         super().__init__(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS, clock_rate=clock_rate)
 
-    def see(self, scan: LaserScan, seconds: float = 1.0) -> list[Stamped]:
+    def see(self, scan: LaserScan, seconds: float = 1.0, *, late: float = 0.0) -> list[Stamped]:
         """Show a scan ten times a second; return the commands that came once the controller had time to react."""
         began = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
-            self.show(scan)
+            self.show(scan, late=late)
         return self.messages("/cmd_vel", since=began + SETTLED)
 
-    def show(self, scan: LaserScan, seconds: float = SCAN_SECONDS) -> None:
-        """Show one scan, taken now, and let this time pass."""
-        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(self.next_ns, 10**9)
+    def show(self, scan: LaserScan, seconds: float = SCAN_SECONDS, *, late: float = 0.0) -> None:
+        """Show one scan, taken now or `late` seconds ago, and let this time pass."""
+        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(self.next_ns - round(late * 1e9), 10**9)
         self.publish("/scan", scan)
         self.run(seconds)
 
@@ -60,19 +60,19 @@ def qos_mismatch(robot: Robot) -> str:
     return ""
 
 
-def expect_forward(commands: Sequence[Stamped], situation: str) -> None:
+def expect_forward(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command drives straight on."""
-    _expect(commands, FORWARD, 0.0, situation, "drive straight on at 0.3 m/s")
+    _expect(commands, FORWARD, 0.0, situation, "drive straight on at 0.3 m/s", fraction)
 
 
-def expect_turn(commands: Sequence[Stamped], situation: str) -> None:
+def expect_turn(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command turns left on the spot."""
-    _expect(commands, 0.0, TURN, situation, "turn left on the spot at 0.5 rad/s")
+    _expect(commands, 0.0, TURN, situation, "turn left on the spot at 0.5 rad/s", fraction)
 
 
-def expect_stop(commands: Sequence[Stamped], situation: str) -> None:
+def expect_stop(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
-    _expect(commands, 0.0, 0.0, situation, "publish zero velocity")
+    _expect(commands, 0.0, 0.0, situation, "publish zero velocity", fraction)
 
 
 def describe_command(command: Twist) -> str:
@@ -85,14 +85,17 @@ def describe_command(command: Twist) -> str:
     return " and ".join(part for part in (drive, turn) if part) or "stood still"
 
 
-def _expect(commands: Sequence[Stamped], linear: float, angular: float, situation: str, wanted: str) -> None:
-    expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.")
+def _expect(
+    commands: Sequence[Stamped], linear: float, angular: float, situation: str, wanted: str, fraction: float
+) -> None:
+    expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.", fraction=fraction)
     wrong = [
         stamped.message
         for stamped in commands
         if not (_near(stamped.message.linear.x, linear) and _near(stamped.message.angular.z, angular))
     ]
-    expect(not wrong, f"{situation}, the robot {describe_command(wrong[0]) if wrong else ''}: it should {wanted}.")
+    did = describe_command(wrong[0]) if wrong else ""
+    expect(not wrong, f"{situation}, the robot {did}: it should {wanted}.", fraction=fraction)
 
 
 def _near(value: float, wanted: float) -> bool:

@@ -16,11 +16,14 @@ from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, stopped
 from autograder.checks.ch03_interfaces.support.hearing import expect_heard
 from autograder.probes.pace import is_paced, mean_period
+from autograder.time_record import LOCKSTEP
 
 check = group("action")
 MOVES = ("drive_moves",)
 SLACK = 0.02  # m; and m/s, a tenth of the default speed
 PUSHED = 0.2  # m, made good within a second
+SOON = 0.25  # s after a push: there is feedback, and not half of the push is made good
+SILENCE = 2.0  # s without odometry before a goal
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
 HELD = 0.8  # s for which the wheels are held, too short for it to be stuck
 LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real
@@ -112,12 +115,14 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # a tenth of it is more than what is allowed
     placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.6)
+    top, pushed = math.dist((x, y), (placed_driver.x, placed_driver.y)), placed_driver.seconds
     placed_driver.push(-PUSHED)
     placed_driver.finish(goal, LONG, f"With a way of some metres to drive, and pushed back by {PUSHED} m")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.1, f"The result says {goal.result.driven:.2f} m, it was {driven:.2f} m."
     )
+    soon = [one.message.driven for one in goal.feedback if pushed < one.seconds <= pushed + SOON]
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(1.0, 0.5)
     placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
@@ -138,6 +143,9 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         plain = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
         expect(plain, "cmd_vel does not have the quality of service that a plain 10 stands for.", fraction=0.5)
     expect_heard(placed_driver.node, ODOMETRY)
+    if soon and placed_driver.time == LOCKSTEP:  # elsewhere it may have made the push good
+        said = f"Pushed back from {top:.2f} m to {top - PUSHED:.2f} m, the feedback said {min(soon):.2f} m or more."
+        expect(min(soon) <= top - PUSHED / 2, said, fraction=0.75)
 
 
 @check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)
@@ -195,7 +203,7 @@ def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
     expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
 
 
-@check(points=1, holds=("rejects", "drives"), depends=MOVES, doc=contract.ACTION)
+@check(points=1, holds=("rejects", "drives", "no-odometry"), depends=MOVES, doc=contract.ACTION)
 @hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
 def test_drive_limits(placed_driver: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""
@@ -207,6 +215,12 @@ def test_drive_limits(placed_driver: Driver) -> None:
         told = _describe(commands[0]) if commands else "nothing"
         right = bool(commands) and straight(commands[0], wanted)
         expect(right, f"With {distance} m at {wanted} m/s, the robot was told {told}.")
+    placed_driver.run(SILENCE)
+    goal = placed_driver.send(MAX_DISTANCE)
+    if goal.accepted:
+        placed_driver.abandon(goal)
+    said = f"{SILENCE:.0f} s after the last odometry, which has told where the robot is, a goal was rejected."
+    expect(goal.accepted is True, said, fraction=0.5)
 
 
 def straight(command: Twist, speed: float) -> bool:

@@ -14,6 +14,7 @@ from autograder.harness import Shared, Workspace
 from autograder.probes.parameters import override_arguments
 
 TUNED_PERIOD = 0.25  # s
+ODD_PERIOD = 0.7  # s; most statuses come between two whole seconds
 FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
 
 
@@ -39,8 +40,9 @@ def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
 
 @pytest.fixture
 def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
-    """A status publisher on a machine whose clocks are faster than ROS time."""
-    with Reporter(workspace, types, clock_rate=FAST) as reporter:
+    """A status publisher with an odd period, on a machine whose clocks are faster than ROS time."""
+    arguments = ("--ros-args", *override_arguments({"status_period": ODD_PERIOD}))
+    with Reporter(workspace, types, arguments, clock_rate=FAST) as reporter:
         yield reporter
 
 

@@ -6,6 +6,7 @@ import math
 import random
 
 from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Twist
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, straight
@@ -19,6 +20,8 @@ check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond the patience: two commands, and the harness's looks at the result
 BLUR = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early; in lockstep, or too late
 PUSH_AFTER = 0.5  # s
+HEIGHT = 1.0  # m, which makes no way longer
+LONGEST = 80  # characters that fit into a reason
 TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m, around a centimetre
 SLOW = 0.007  # m/s
 ROLLS_BACK = 0.015  # m each time the robot is looked at, far more than a centimetre in 1 s
@@ -52,26 +55,36 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
 
 
-@check(points=2, holds=("busy", "next-goal"), depends=("drive_cancels",))
+@check(points=2, holds=("busy", "next-goal", "drive-cmd-vel"), depends=("drive_cancels",))
 @hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(placed_driver: Driver) -> None:
     """While a goal is driven another one is rejected; the first goes on, and after it there is room for the next."""
     first = placed_driver.start(4.5, 0.3)
     placed_driver.roll(first, 0.3)
-    second = placed_driver.send(1.0, 0.5)
-    commands = placed_driver.roll(first, 0.4)
-    expect(not second.accepted, "While a goal was driven, another one was accepted.")
-    expect(first.result is None, "The first goal ended when another one came.", fraction=0.3)
+    before, others, commands = len(placed_driver.messages(COMMANDS)), list[Goal](), list[Twist]()
+    for distance in (1.0, -1.0, 1.0):  # whichever is rejected, and for whatever, the first still has the robot
+        others.append(placed_driver.send(distance, 0.5))
+        commands += placed_driver.roll(first, 0.2)
+    told = [stamped.message for stamped in placed_driver.messages(COMMANDS)[before:]]
+    goes_on = first.result is None
+    for goal in (first, *others):
+        if goal.accepted:
+            placed_driver.abandon(goal)
+    expect(not others[0].accepted, "While a goal was driven, another one was accepted.")
+    late = any(goal.accepted for goal in others)
+    expect(not late, "While a goal was driven, another one was rejected, and one after it accepted.", fraction=0.75)
+    expect(goes_on, "The first goal ended when another one came.", fraction=0.3)
     expect(
         bool(commands) and all(straight(command, 0.3) for command in commands),
         "The first goal was not driven on when another one came.",
         fraction=0.3,
     )
-    placed_driver.abandon(first)
     third = placed_driver.send(0.1, 0.5)
     expect(third.accepted is True, "After a goal had ended, the next one was rejected.", fraction=0.5)
     placed_driver.finish(third, LONG, "With 0.10 m to drive")
+    own = all(straight(command, 0.3) for command in told)
+    expect(own, "With a goal that was rejected came a command that was not the first goal's.", fraction=0.75)
 
 
 @check(points=2, holds=("stuck", "stop-in-time", "slow-goal"), depends=MOVES)
@@ -115,13 +128,16 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     expect(arrived, f"At {UNHURRIED} m/s, more than a centimetre in 1 s, the goal ended {ended}.", fraction=0.7)
 
 
-@check(points=2, holds=("stuck", "drive-time"), depends=("drive_stuck",))
+@check(points=2, holds=("stuck", "drive-time", "driven", "result-reason"), depends=("drive_stuck",))
 @hint("Without odometry the position stays as it was, and that is no progress, either.")
 @hint("time.sleep() and time.monotonic() know nothing of ROS time; self.get_clock() does.")
 def test_drive_blind(tardy_driver: Driver) -> None:
     """When the odometry falls silent on the way, the robot is stopped after 1 s of ROS time; the goal ends ABORTED."""
     goal = tardy_driver.start(4.5, 0.5)
     tardy_driver.roll(goal, 0.6)
+    tardy_driver.height = HEIGHT
+    tardy_driver.place(tardy_driver.x, tardy_driver.y, tardy_driver.heading)  # it hears exactly where it is
+    driven = math.hypot(tardy_driver.x, tardy_driver.y)  # from (0, 0)
     tardy_driver.deaf, silent = True, tardy_driver.seconds
     commands = tardy_driver.finish(goal, LONG, "With odometry that fell silent")
     seconds = tardy_driver.seconds - silent
@@ -130,6 +146,11 @@ def test_drive_blind(tardy_driver: Driver) -> None:
     expect(stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.5)
     late = seconds > PATIENCE + LATE[tardy_driver.time]
     expect(not late, f"The goal was given up {seconds:.1f} s of ROS time after the last odometry.", fraction=0.5)
+    said = goal.result.driven
+    sentence = f"The last odometry was {driven:.2f} m away, and {HEIGHT:g} m higher; the result says {said:.2f} m."
+    expect(abs(said - driven) <= 0.1, sentence, fraction=0.75)
+    length = len(goal.result.reason)
+    expect(length <= LONGEST, f"The reason has {length} characters, instead of at most {LONGEST}.", fraction=0.75)
 
 
 def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:

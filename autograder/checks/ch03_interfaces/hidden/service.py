@@ -9,12 +9,14 @@ from typing import Any
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import METRES_PER_PERCENT, UNKNOWN
-from autograder.checks.ch03_interfaces.support.reporter import SERVICE, Reporter
+from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, Reporter
+from autograder.time_record import LOCKSTEP, REAL
 
 check = group("service", doc=contract.SERVICE)
 WORD, LONGEST = 3, 80  # characters: less gives no reason, more does not fit
 ANSWERS = ("trip_answers",)
 SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
+HEARD = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # s for a battery to be heard; in lockstep, long before the next status
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
@@ -39,11 +41,16 @@ def test_trip_answers(reporter: Reporter) -> None:
     reporter.ask([])
 
 
-@check(points=2, holds=("trip-unknown", "trip-reason"), depends=ANSWERS)
+@check(points=2, holds=("trip-unknown", "trip-reason", "newest"), depends=ANSWERS)
 @hint("An unknown battery makes no trip possible; start with possible = False.")
-def test_trip_unknown_battery(silent_reporter: Reporter) -> None:
+def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
     _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
+    reporter.set_battery(60)
+    reporter.publish_battery(1.5)  # which is no level
+    reporter.run(HEARD[reporter.time])
+    situation = f"{HEARD[reporter.time]:.1f} s after the percentage went from 0.6 to 1.5, which is unknown"
+    _expect(reporter.ask([10.0], 0), UNKNOWN, situation, fraction=0.75)
 
 
 @check(points=2, holds="trip-rule", depends=ANSWERS)
@@ -93,6 +100,9 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
     answer = reporter.ask([level * METRES_PER_PERCENT, draw.uniform(1.0, 4.0)], 0)
     _expect(answer, 0, "After a trip that takes less than one percent more than there is, with a reserve of 0 %")
+    reporter.set_battery(0)
+    left = reporter.ask([], 0).battery_at_end
+    expect(left == 0, f"At 0 %, which is known, and without legs, battery_at_end is {left}, not 0.", fraction=0.5)
 
 
 @check(points=2, holds=("trip-unknown", "trip-reason"), depends=ANSWERS)
@@ -122,9 +132,10 @@ def test_trip_reason(reporter: Reporter) -> None:
     expect(len(bad.reason.strip()) >= WORD, f"The trip is not possible, and the reason is {bad.reason!r}.")
 
 
-def _expect(answer: Any, left: int, situation: str) -> None:
-    """Fail the check unless a trip is not possible and leaves so much."""
+def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> None:
+    """Fail the check unless a trip is not possible and leaves so much; `fraction` is for what came before."""
     found = answer.battery_at_end
-    expect(not answer.possible, f"{situation}, the trip is said to be possible.")
-    expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.")
-    expect(len(answer.reason.strip()) >= WORD, f"{situation}, the reason is {answer.reason!r}.", fraction=0.5)
+    expect(not answer.possible, f"{situation}, the trip is said to be possible.", fraction=fraction)
+    expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.", fraction=fraction)
+    said = f"{situation}, the reason is {answer.reason!r}."
+    expect(len(answer.reason.strip()) >= WORD, said, fraction=max(0.5, fraction))

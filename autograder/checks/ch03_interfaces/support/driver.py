@@ -26,6 +26,7 @@ class Driver(AutoHarness):
 
     Attributes:
         x, y, heading: where the robot is, in m and rad.
+        height: of where it is, in m, which counts for no distance.
         stuck: whether the wheels are held.
         deaf: whether the odometry is silent.
     """
@@ -34,7 +35,7 @@ class Driver(AutoHarness):
         offers, listens = {ODOMETRY: Odometry}, {COMMANDS: Twist}
         super().__init__(workspace, PACKAGE, DRIVER, offers=offers, listens=listens, clock_rate=clock_rate)
         self.types = types
-        self.x, self.y, self.heading = 0.0, 0.0, 0.0
+        self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
         self.stuck = self.deaf = False
 
     def place(self, x: float, y: float, heading: float) -> None:
@@ -115,6 +116,7 @@ class Driver(AutoHarness):
         odometry.header.frame_id, odometry.child_frame_id = "odom", "base_link"
         odometry.header.stamp.sec, odometry.header.stamp.nanosec = divmod(self.now_ns, 10**9)
         odometry.pose.pose.position.x, odometry.pose.pose.position.y = self.x, self.y
+        odometry.pose.pose.position.z = self.height
         odometry.pose.pose.orientation.z = math.sin(self.heading / 2.0)
         odometry.pose.pose.orientation.w = math.cos(self.heading / 2.0)
         self.publish(ODOMETRY, odometry)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import FIRST, FLEET, PACKAGE, SECOND, SHARED, in_spaces
 from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
+from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 
@@ -80,7 +83,7 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
 @check(points=3, holds="fleet-status", depends=("two_robots",), doc=contract.LARGE)
 @hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
 @hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
-def test_status(launches: Launches) -> None:
+def test_status(launches: Launches, inputs: Inputs) -> None:
     """Both robots report on /fleet/status."""
     harness = launches.fleet()
     wanted = [f"/{FIRST}/reporter", f"/{SECOND}/reporter"]
@@ -93,20 +96,27 @@ def test_status(launches: Launches) -> None:
     heard = sorted(reporting_robots(harness))
     said = f"On {SHARED}, {' and '.join(heard) or 'nobody'} was heard within {HEAR_SECONDS:.0f} s."
     expect(len(heard) == 2, said, fraction=0.5)
+    renamed = _renamed(launches, inputs)
+    if _starts(renamed, *inputs.names):
+        wanted = sorted(f"/{name}/reporter" for name in inputs.names)
+        alike = renamed.wait_for(lambda: renamed.publishers(SHARED) == wanted, MATCH_SECONDS)
+        said = f"{', '.join(renamed.publishers(SHARED)) or 'nobody'}, instead of {' and '.join(wanted)}"
+        expect(alike, f"With other names of the robots, reports on {SHARED} come from {said}.", fraction=0.8)
 
 
 @check(points=2, holds="fleet-status", depends=("two_robots",), doc=contract.LARGE)
 @hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
-def test_own_commands(launches: Launches) -> None:
+def test_own_commands(launches: Launches, inputs: Inputs) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
-    harness = launches.fleet()
     for name in (FIRST, SECOND):
-        wanted = [f"/{name}/driver"], [f"/{name}/reporter"]
-        expect(
-            harness.wait_for(lambda name=name, wanted=wanted: _ends(harness, name) == wanted, MATCH_SECONDS),  # type: ignore[misc]
-            f"/{name}/cmd_vel goes from {' to '.join(', '.join(end) or 'nobody' for end in _ends(harness, name))}.",
-        )
+        _expect_own_commands(launches.fleet(), name, "")
+    for harness, names, where in (
+        (_renamed(launches, inputs), inputs.names, "With other names of the robots, "),
+        (launches.own_fleet(), (FIRST, SECOND), "With your robot.launch.py, "),
+    ):
+        for name in names if _starts(harness, *names) else ():
+            _expect_own_commands(harness, name, where, fraction=0.75)
 
 
 @check(points=1, holds="fleet-ctrl-c", depends=("two_robots",))
@@ -116,8 +126,23 @@ def test_fleet_stop(launches: Launches) -> None:
     launch_probe.expect_clean_stop(launches.fleet())
 
 
+def _expect_own_commands(harness: LaunchHarness, name: str, where: str, fraction: float = 0.0) -> None:
+    """Fail the check unless a robot's driver alone commands its reporter alone."""
+    wanted = [f"/{name}/driver"], [f"/{name}/reporter"]
+    seen = harness.wait_for(lambda: _ends(harness, name) == wanted, MATCH_SECONDS)
+    way = " to ".join(", ".join(end) or "nobody" for end in _ends(harness, name))
+    expect(seen, f"{where}/{name}/cmd_vel goes from {way}.", fraction=fraction)
+
+
 def _ends(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
     return harness.publishers(f"/{name}/cmd_vel"), harness.subscribers(f"/{name}/cmd_vel")
+
+
+def _starts(harness: LaunchHarness, *names: str) -> bool:
+    """Return whether a launch starts these robots and nothing else; if it does not, other checks say so."""
+    with suppress(StudentError):
+        return launch_probe.settle(harness, in_spaces(*names)) == in_spaces(*names)
+    return False
 
 
 def _renamed(launches: Launches, inputs: Inputs) -> LaunchHarness:

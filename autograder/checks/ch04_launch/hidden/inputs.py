@@ -53,6 +53,11 @@ def draw_inputs(draw: random.Random) -> Inputs:
     )
 
 
+def with_sim_time(text: str) -> str:
+    """Return a parameters file that sets one parameter more for driver and reporter, which every node has."""
+    return re.sub(r"(?m)^([ \t]+)(?=(?:turn_rate|report_period):)", r"\1use_sim_time: true\n\1", text)
+
+
 def with_values(text: str, values: dict[str, float]) -> str:
     """Return a parameters file with other numbers in it; what it does not have is not added."""
     for name, value in values.items():

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from std_msgs.msg import String
 
 from autograder.checks.ch04_launch.hidden import included
-from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_values
+from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, with_values
 from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
@@ -17,16 +17,24 @@ from autograder.probes.launch_probe import Argument, shown_arguments, with_files
 CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
+ON_STDERR = {**ON_STDOUT, "RCUTILS_LOGGING_USE_STDOUT": "0"}  # as nodes log by themselves
 # Self-tests that end otherwise than with the exit status 0 or 1.
 UNUSUAL = {"by a signal": "#!/bin/sh\nkill -KILL $$\n", "with exit status 3": "#!/bin/sh\nexit 3\n"}
+# Stand-ins for all three: the self-test takes a while, the reporter ends again and again, the driver when it is told.
+SCRIPTS = {
+    "self_test": "#!/bin/sh\nexec sleep 3\n",
+    "reporter": "#!/bin/sh\nexec sleep 0.1\n",
+    "driver": "#!/bin/sh\ntrap 'exit 3' TERM\nwhile sleep 0.2; do :; done\n",
+}
+PROGRAMS = {"scripts": SCRIPTS, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
 class Launches:
     """Starts each launch once, when it is first asked for, and ends all at the end.
 
-    One robot is launched with other numbers in its parameters file. Two robots include a robot.launch.py of the
-    grader's own, so that a mistake in the student's counts once.
+    One robot is launched with other numbers and one parameter more in its parameters file. Two robots include a
+    robot.launch.py of the grader's own, so that a mistake in the student's counts once; `own_fleet` includes that one.
     """
 
     def __init__(self, workspace: Workspace, inputs: Inputs) -> None:
@@ -37,8 +45,8 @@ class Launches:
         self._arguments: dict[str, dict[str, Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
-        """Return robot.launch.py as it runs with these arguments."""
-        return self._harness(ROBOT, arguments, {})
+        """Return robot.launch.py as it runs with these arguments; with `report`, its nodes log on standard error."""
+        return self._harness(ROBOT, arguments, {}, environment=ON_STDERR if "report" in arguments else ON_STDOUT)
 
     def robot_arguments(self) -> dict[str, Argument]:
         """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
@@ -56,13 +64,21 @@ class Launches:
         """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
         return self._harness(FLEET, {}, {}, robot="wheels")
 
+    def own_fleet(self) -> LaunchHarness:
+        """Return two_robots.launch.py, above the student's robot.launch.py."""
+        return self._harness(FLEET, {}, {})
+
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
         return self._harness(SAFE, arguments, {})
 
     def unusual(self, ending: str) -> LaunchHarness:
         """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, self_test=ending)
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs=ending)
+
+    def scripted(self) -> LaunchHarness:
+        """Return safe_start.launch.py above `SCRIPTS`."""
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts")
 
     def safe_arguments(self) -> dict[str, Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
@@ -83,23 +99,25 @@ class Launches:
         arguments: Mapping[str, object],
         listens: Mapping[str, type],
         robot: str | None = None,
-        self_test: str | None = None,
+        programs: str | None = None,
+        environment: Mapping[str, str] = ON_STDOUT,
     ) -> LaunchHarness:
-        key = f"{file} {robot} {self_test} {sorted(arguments.items())}"
+        key = f"{file} {robot} {programs} {sorted(arguments.items())}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
-            copy = self._copy(file, robot, self_test)
-            harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=ON_STDOUT)
+            copy = self._copy(file, robot, programs)
+            harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
         return self._harnesses[key]
 
-    def _copy(self, file: str, robot: str | None, self_test: str | None = None) -> Workspace:
-        name = robot or (self_test or file).partition(".")[0].replace(" ", "_")
+    def _copy(self, file: str, robot: str | None, programs: str | None = None) -> Workspace:
+        name = robot or (programs or file).partition(".")[0].replace(" ", "_")
         if name not in self._copies:
             files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
-                files[CONFIG] = with_values(config.read_text(errors="replace"), self._inputs.file)
-            programs = {"self_test": UNUSUAL[self_test]} if self_test else {}
-            self._copies[name] = with_files(self._workspace, name, PACKAGE, files, programs)
+                text = with_values(config.read_text(errors="replace"), self._inputs.file)
+                files[CONFIG] = with_sim_time(text) if file == ROBOT else text
+            texts = PROGRAMS[programs] if programs else {}
+            self._copies[name] = with_files(self._workspace, name, PACKAGE, files, texts)
         return self._copies[name]

@@ -65,6 +65,10 @@ def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
     """Both nodes get the parameters of config/robot.yaml."""
     launch_probe.expect_parameters(launches.robot(), DRIVER, {"turn_rate": inputs.file["turn_rate"]})
     launch_probe.expect_parameters(launches.robot(), REPORTER, {"report_period": inputs.file["report_period"]})
+    for node in (DRIVER, REPORTER):
+        found = (launches.robot().parameters(node, ["use_sim_time"]) or {}).get("use_sim_time")
+        said = f"The checks add use_sim_time: true to the file; {node} has use_sim_time = {found!r}, instead of True."
+        expect(found is True, said, fraction=0.75)
 
 
 @check(points=2, holds=("speed", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)
@@ -89,7 +93,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, REPORTER, {"robot_name": inputs.number_name})
 
 
-@check(points=2, holds=("report", "reporter"), depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("report", "reporter", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 @hint("UnlessCondition is the other way round.")
 def test_quiet(launches: Launches, inputs: Inputs) -> None:
@@ -100,9 +104,10 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
         REPORTER not in nodes and "reporter" not in launch_probe.started(harness.output),
         "With report:=false, the reporter is started all the same.",
     )
+    expect(len(nodes) < 2, f"With report:=false, {', '.join(nodes)} run, instead of {DRIVER} alone.", fraction=0.75)
 
 
-@check(points=1, holds="speed", depends=("speed",))
+@check(points=1, holds=("speed", "screen"), depends=("speed",))
 @hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
@@ -113,6 +118,7 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
         f"With speed:={inputs.whole_speed}, the driver does not run. {launch_probe.trouble(harness.output)}",
     )
     launch_probe.expect_parameters(harness, DRIVER, {"speed": float(inputs.whole_speed)})
+    _expect_on_screen(harness, DRIVER, "Driving at")
 
 
 @check(points=2, holds="ctrl-c", depends=("starts",))
@@ -124,6 +130,6 @@ def test_clean_stop(launches: Launches) -> None:
 
 
 def _expect_on_screen(harness: LaunchHarness, node: str, line: str) -> None:
-    """Fail the check unless a node's standard output is shown, on which these launches make it log."""
+    """Fail the check unless the stream is shown on which a launch makes its nodes log; see `Launches.robot`."""
     shown = harness.wait_for(lambda: line in harness.output, SHOWN_SECONDS)
     expect(shown, f"What {node} prints is not on the screen: it lacks output='screen'.", fraction=0.5)

@@ -12,9 +12,11 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
+from autograder.sandbox.procfs import children
 
 check = group("safe_start")
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
+ENDS = 6  # how often the scripted reporter ends by itself before it is seen that it always comes back
 WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
 FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
@@ -90,6 +92,11 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.safe(battery=inputs.enough))
+    harness = launches.scripted()
+    often = harness.wait_for(lambda: _reporters(harness.output) > ENDS, launch_probe.START_SECONDS)
+    times = _reporters(harness.output)
+    said = f"A reporter that ends by itself, with exit status 0, was started {times} times, and then no more."
+    expect(often, said, fraction=0.75)
 
 
 @check(points=2, holds="safe-driver", depends=("order",), doc=contract.EVENTS)
@@ -97,15 +104,28 @@ def test_respawns(launches: Launches, inputs: Inputs) -> None:
 def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
     _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
+    harness = launches.scripted()
+    up = harness.wait_for(lambda: _driver_listens(harness), launch_probe.START_SECONDS)
+    expect(up, f"After a self-test of 3 s, no driver runs. {launch_probe.trouble(harness.output)}", fraction=0.75)
+    before = harness.output.partition("[driver-")[0]
+    early = "The driver was started before a self-test of 3 s had ended."
+    expect("self_test" in launch_probe.ended(before), early, fraction=0.75)
+    _expect_end(harness, signal.SIGTERM, "The driver ended with exit status 3", fraction=0.75)
+    # One may be on its way when the driver ends; 2 s later, there were more.
+    times = _reporters(harness.output.partition("exit code 3,")[2])
+    late = f"After the driver had ended, the reporter was started {times} times more before everything shut down."
+    expect(times <= 2, late, fraction=0.75)
 
 
-@check(points=1, holds="safe-driver", depends=("whole_battery",), doc=contract.EVENTS)
+@check(points=1, holds=("safe-driver", "battery"), depends=("whole_battery",), doc=contract.EVENTS)
 @hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """The driver has its own defaults; when it ends by itself, with exit status 0, everything ends too."""
     harness = launches.safe(battery=inputs.whole_battery)
     launch_probe.expect_parameters(harness, DRIVER, contract.NO_FILE[DRIVER])
     _expect_end(harness, signal.SIGINT, "The driver ended with exit status 0")
+    others = ", ".join(sorted(launches.safe_arguments().keys() - {"battery"}))
+    expect(not others, f"safe_start.launch.py declares {others}, too; battery is the one argument.", fraction=0.5)
 
 
 def _expect_refusal(harness: LaunchHarness, what: str) -> None:
@@ -119,12 +139,20 @@ def _expect_refusal(harness: LaunchHarness, what: str) -> None:
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
-def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str) -> None:
-    expect(
-        harness.kill("driver", number) == 1, f"There is not one driver. {launch_probe.trouble(harness.output)}".strip()
-    )
+def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str, fraction: float = 0.0) -> None:
+    missing = f"There is not one driver. {launch_probe.trouble(harness.output)}".strip()
+    expect(harness.kill("driver", number) == 1, missing, fraction=fraction)
     over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
-    expect(over, f"{what}, and the launch goes on without it.")
-    expect(
-        not harness.left(), f"{what} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
-    )
+    expect(over, f"{what}, and the launch goes on without it.", fraction=fraction)
+    left = f"{what} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
+    expect(not harness.left(), left, fraction=fraction)
+
+
+def _reporters(output: str) -> int:
+    """Return how many reporters were started by a launch's output."""
+    return launch_probe.started(output).count("reporter")
+
+
+def _driver_listens(harness: LaunchHarness) -> bool:
+    """Return whether the scripted driver has come to its loop, where it heeds SIGTERM."""
+    return any(children(program.pid) for program in harness.programs() if program.name == "driver")

@@ -13,8 +13,8 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
-from autograder.probes.calls import call, calls, made, make
-from autograder.probes.parameters import Value, as_declared, differences, override_arguments
+from autograder.probes.calls import Outcome, call, calls, made, make
+from autograder.probes.parameters import Value, as_declared, differences, override_arguments, shortened
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
@@ -124,9 +124,10 @@ def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) ->
     expect(end < configured.safety + NEAR, sentence, fraction=0.5)
 
 
-@check(points=2, holds=("contradictory-start", "contradiction"), depends=("overrides",))
+@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), depends=("overrides",))
 @hint("After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.")
 @hint("Equal distances do not fit together, either: it divides by their difference.")
+@hint("At a value outside of a range, declare_parameter raises: let that end the node, too.")
 def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = draw.randrange(40, 90) / 100
@@ -136,24 +137,34 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
         told = f"safety_distance {safety} and slow_distance {slow}"
         expect(words is not None, f"Started with {told}, the node runs.")
         expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
-    fits, raised = _called(workspace, distance)
-    expect(fits == "", f"contradiction(0.5, 1.0) returned {fits!r}, instead of ''.", fraction=0.5)
+    frequency = draw.randrange(55, 90) + 0.5
+    fits, equal, start, beyond = _called(workspace, distance, frequency)
+    raised, message, sentence = start.raised, shortened(start.message), shortened(str(equal.value))
+    expect(fits.value == "", f"contradiction(0.5, 1.0) returned {fits.value!r}, instead of ''.", fraction=0.5)
     expect(raised == "ValueError", f"declare_configuration raised {raised or 'nothing'}, no ValueError.", fraction=0.5)
+    said = f"declare_configuration raised ValueError with “{message}”; contradiction says “{sentence}”"
+    expect(sentence[:100] in message, f"{said}.", fraction=0.75)
+    said = f"Started with control_frequency {frequency}, declare_configuration raised nothing"
+    expect(bool(beyond.raised), f"{said}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75)
 
 
-def _called(workspace: Workspace, distance: float) -> tuple[Value, str]:
-    """Return what contradiction says of distances that fit, and what declare_configuration raises at equal ones."""
-    given = override_arguments(dict.fromkeys(("safety_distance", "slow_distance"), distance))
+def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[Outcome, ...]:
+    """Ask contradiction about distances that fit and equal ones; declare at equal ones and at a frequency."""
+    equal = override_arguments({"safety_distance": distance, "slow_distance": distance})
+    beyond = override_arguments({"control_frequency": frequency})
     outcomes = calls(
         workspace,
         CONFIGURATION,
         call("contradiction", 0.5, 1.0),
-        call("init", module="rclpy", args=["--ros-args", *given]),
-        make("Node", "bench", module="rclpy.node"),
-        call("declare_configuration", made(2)),
+        call("contradiction", distance, distance),
+        call("init", module="rclpy"),
+        make("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
+        call("declare_configuration", made(3)),
+        make("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
+        call("declare_configuration", made(5)),
         network=True,
     )
-    return outcomes[0].value, outcomes[-1].raised
+    return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
 
 
 def _towards_a_wall(draw: random.Random) -> Simulation:

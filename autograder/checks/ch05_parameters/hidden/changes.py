@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS
+from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
-from autograder.probes.parameters import Value, differences
+from autograder.harness import Workspace
+from autograder.probes.calls import call, calls, look, made, make
+from autograder.probes.parameters import Value, differences, shortened
 from autograder.time_record import LOCKSTEP
 
 check = group("changes")
@@ -38,16 +41,26 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It refused {_told(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("reason", "refused"), depends=("contradiction",))
+@check(points=1, holds=("reason", "refused", "keep-value"), depends=("contradiction",))
 @hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
-def test_reason(robot: Robot, draw: random.Random) -> None:
+@hint("The distance that a request does not name is the present one: neither the default nor that of the start.")
+def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """Its reason names both parameters and their values."""
-    safety = (10 * draw.randrange(12, 28) + draw.randrange(2, 9)) / 100
-    reason = robot.change({"safety_distance": safety}).reason
-    missing = missing_from(reason, {"safety_distance": safety, "slow_distance": 1.0})
-    expect(
-        not missing, f"Its reason is “{reason}”: it does not name {', '.join(missing)}.", fraction=0.5 if reason else 0
-    )
+    safety, slow, far, near = ((10 * tenths + draw.randrange(2, 9)) / 100 for tenths in (7, 13, 19, 6))
+    present = {"safety_distance": safety, "slow_distance": slow}
+    for name in reversed(DISTANCES):  # each fits the default of the other, too
+        _change(robot, {name: present[name]})
+    pairs = present | {"safety_distance": far}, present | {"slow_distance": near}
+    outcomes = calls(workspace, f"{PACKAGE}.configuration", *(call("contradiction", *pair.values()) for pair in pairs))
+    for name, pair, outcome in zip(DISTANCES, pairs, outcomes, strict=True):
+        answer = robot.change({name: pair[name]})
+        reason, sentence = answer.reason, shortened(str(outcome.value))
+        expect(not answer.accepted, f"With {_told(present)}, it took {name} = {pair[name]}.", fraction=0.5)
+        missing = missing_from(reason, pair)
+        said = f"With {_told(present)}, its reason to refuse {name} = {pair[name]} is “{reason}”"
+        fraction = 0.5 if reason or name == "slow_distance" else 0.0
+        expect(not missing, f"{said}: it does not name {', '.join(missing)}.", fraction=fraction)
+        expect(sentence[:100] in reason, f"{said}; contradiction says “{sentence}”.", fraction=0.5)
 
 
 @check(points=2, holds="validate", depends=("contradiction",))
@@ -68,7 +81,7 @@ def test_together(robot: Robot, draw: random.Random) -> None:
 @check(points=2, holds="no-effect", depends=("contradiction",), doc=contract.PARAMETERS)
 @hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
 @hint("What is to be done once a request was accepted stands in apply.")
-def test_no_side_effects(fresh_robot: Robot) -> None:
+def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     """A refused request changes nothing: no value, no speed, no rate."""
     robot = fresh_robot
     request: dict[str, Value] = {"control_frequency": 25.0, "max_linear_velocity": 0.8, "safety_distance": 2.0}
@@ -86,6 +99,12 @@ def test_no_side_effects(fresh_robot: Robot) -> None:
     expect(not wrong, f"It refused the request, and yet {'; '.join(wrong)}.")
     expect_speed(robot.speed_at(2.5), SPEED, "After a refused request for 0.8 m/s, with a wall 2.5 m ahead")
     expect_rate(robot.command_rate(), before, "After a refused request for 25 Hz")
+    _change(robot, {name: value for name, value in CHANGEABLE.items() if name != "control_frequency"})
+    situation = "After a refused request for 25 Hz and an accepted one without a frequency"
+    expect_rate(robot.command_rate(), before, situation, fraction=0.75)
+    first, then = _periods(workspace)
+    told = f"While validate judged a request for 25 Hz, the timer's period went from {first} to {then} ns"
+    expect(first == then, f"{told}: another callback may still refuse it.", fraction=0.75)
 
 
 @check(points=2, holds="at-once", depends=("names",), doc=contract.IN_A_CLASS)
@@ -99,7 +118,7 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
     expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
 
 
-@check(points=2, holds="at-once", depends=("together",))
+@check(points=2, holds=("at-once", "contradiction"), depends=("together",))
 @hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide immediately where it slows down and where it stops."""
@@ -109,6 +128,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
     for distance, speed in ((safety - 0.1, 0.0), (safety + 0.3, SPEED / 2), (slow + 0.1, SPEED)):
         situation = f"With {safety:.2f} m and {slow:.2f} m, and a wall {distance:.2f} m ahead"
         expect_speed(robot.speed_at(distance), speed, situation)
+    _change(robot, {"slow_distance": round(safety + 0.004, 3)}, fraction=0.75)  # millimetres count, too
 
 
 @check(points=1, holds="at-once", depends=("names",))
@@ -138,8 +158,13 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
         expect(exact, f"{said}: the timer's period is in whole nanoseconds.", fraction=0.5)
 
 
-@check(points=1, holds=("apply-rate", "lets-pass"), depends=("rate_change", "speed_change"))
+@check(
+    points=1,
+    holds=("apply-rate", "lets-pass", "refused", "max_linear_velocity"),
+    depends=("rate_change", "speed_change"),
+)
 @hint("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.")
+@hint("ROS has already checked the range, and the limits are part of it: validate judges the distances alone.")
 def test_undisturbed(robot: Robot) -> None:
     """Its commands keep coming while somebody turns at another parameter all the time."""
     robot.see(2.5)
@@ -147,7 +172,7 @@ def test_undisturbed(robot: Robot) -> None:
     for turn in range(turns):
         if turn % 2 == 0:
             robot.publish("/scan", scan(2.5))
-        _change(robot, {"max_linear_velocity": 0.2 + 0.01 * turn})
+        _change(robot, {"max_linear_velocity": turn / (turns - 1)}, fraction=0.5)  # from one limit to the other
         robot.live(0.05)
     expect_rate(robot.rate_since(began), 10.0, "While max_linear_velocity was changed all the time")
 
@@ -176,10 +201,30 @@ def test_beside_others(robot: Robot, draw: random.Random) -> None:
         expect_rate(robot.command_rate(), frequency, f"After {_told(request)}")
 
 
-def _change(robot: Robot, request: dict[str, Value]) -> None:
+def _periods(workspace: Workspace) -> tuple[Value, Value]:
+    """Return the timer's period in ns before and after validate judges 25 Hz, None from a node with other names."""
+    outcomes = calls(
+        workspace,
+        f"{PACKAGE}.nodes.{EXECUTABLE}",
+        call("init", module="rclpy"),
+        make("ConfiguredNode"),
+        make("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
+        make("list", module="builtins"),
+        call("append", made(2), on=3),
+        look("timer", on=1),
+        look("timer_period_ns", on=5),
+        call("validate", made(3), on=1),
+        look("timer", on=1),
+        look("timer_period_ns", on=8),
+        network=True,
+    )
+    return outcomes[6].value, outcomes[9].value
+
+
+def _change(robot: Robot, request: Mapping[str, Value], fraction: float = 0.0) -> None:
     answer = robot.change(request)
-    expect(answer.accepted, f"It refused {_told(request)}: “{answer.reason}”.")
+    expect(answer.accepted, f"It refused {_told(request)}: “{answer.reason}”.", fraction=fraction)
 
 
-def _told(request: dict[str, Value]) -> str:
+def _told(request: Mapping[str, Value]) -> str:
     return " and ".join(f"{name} = {value}" for name, value in request.items())

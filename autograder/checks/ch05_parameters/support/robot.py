@@ -155,9 +155,10 @@ def expect_speed(speed: float, wanted: float, situation: str) -> None:
     )
 
 
-def expect_rate(rate: float, wanted: float, situation: str) -> None:
+def expect_rate(rate: float, wanted: float, situation: str, fraction: float = 0.0) -> None:
     """Fail the check unless commands come at the wanted rate. An error of a tenth is seen."""
     expect(
         abs(rate - wanted) <= RATE_TOLERANCE * wanted,
         f"{situation}, it published {rate:.1f} commands a second; it should publish {wanted:.0f}.",
+        fraction=fraction,
     )

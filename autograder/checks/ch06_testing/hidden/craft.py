@@ -11,10 +11,12 @@ from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
+from autograder.probes.installed import look
 from autograder.probes.test_reports import ClaimedOutcome
 
 check = group("craft")
-GIVEN = (PACKAGE, "launch", "config")  # its folders; a student writes test/, and may write setup.py anew
+SHARED = ("launch", "config")  # folders of which setup.py installs the files
+GIVEN = (PACKAGE, *SHARED)  # its folders; a student writes test/, and may write setup.py anew
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
@@ -22,15 +24,24 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @check(points=1, holds="as-given", depends=("limits_pass",), doc=contract.PYTEST)
 @hint("The package is right. Where a test fails on it, change the test.")
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
-def test_as_given(examination: Examination) -> None:
+def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
-    kept = examination.source.files
+    given, kept = style(STYLES[0]).files, examination.source.files
     changed = [
         name
-        for name, text in style(STYLES[0]).files.items()
+        for name, text in given.items()
         if name.split("/")[0] in GIVEN and kept.get(name, b"").split() != text.encode().split()
     ]
     expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
+    # The runs install each version themselves, so only this sees what the student's own setup.py leaves out.
+    installed = look(workspace.install, PACKAGE)
+    missing = [name for name in given if name.split("/")[0] in SHARED and installed.read(name) is None]
+    expect(
+        not missing,
+        f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "
+        "in data_files.",
+        fraction=0.5,
+    )
 
 
 @check(points=1, holds="no-sleep", depends=("guard_pass",), doc=contract.PYTEST)

@@ -6,7 +6,7 @@ import random
 from math import inf, isclose, isnan, nan
 from statistics import fmean
 
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
 from autograder.checks import expect, group, hint
@@ -26,7 +26,8 @@ from autograder.probes.qos import not_plain
 
 check = group("processor")
 SECONDS = 20.0
-GLIMPSES = 20  # blind scans with a good one after each
+GLIMPSES = 15  # blind scans with a good one after each
+SLOW, SLOW_SECONDS = 9, 0.5  # scans of a slow lidar, and s between two of them
 
 
 @check(points=1, holds=("scan", "scan-filtered", "mean-topic", "processor-name"))
@@ -52,6 +53,8 @@ def test_sensor_qos(processor: Processor) -> None:
     offered = processor.node.get_publishers_info_by_topic("/scan_filtered")
     reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in offered)
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*taken, *offered))
+    expect(not durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5)
     differs = not_plain(processor.node, "/mean_distance")
     expect(not differs, differs, fraction=0.75)
 
@@ -78,11 +81,11 @@ def test_filtered(processor: Processor, draw: random.Random) -> None:
     expect(right, f"{sent} (0.05 to {far + 1.0} m) came out as {[round(r, 3) for r in got]}.")
 
 
-@check(points=1, holds="all-else", depends=("filtered",))
+@check(points=1, holds=("all-else", "other-fields"), depends=("filtered",))
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
 def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
-    sent = scan([1.0, 2.0, 3.0])
+    sent = scan([1.0, 0.06, 9.0])  # of which the limits of the scan in test_filtered would mask none
     sent.header.frame_id = f"/Laser_{draw.randint(1, 9)} "  # unusual, so that any change of it is seen
     sent.header.stamp.sec = draw.randint(1, 1000)
     sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
@@ -92,7 +95,13 @@ def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     for field in (name for name in sent.get_fields_and_field_types() if name != "ranges"):
         got, wanted = getattr(filtered[0], field), getattr(sent, field)
         alike = _alike(got, wanted) if isinstance(wanted, float) else got == wanted
-        expect(alike, f"{field} went in as {wanted} and came out as {got}.")
+        fraction = 0.5 if field == "intensities" else 0.0
+        expect(alike, f"{field} went in as {wanted} and came out as {got}.", fraction=fraction)
+    got = list(filtered[0].ranges)
+    shown = (
+        f"After a scan with other limits, [1.0, 0.06, 9.0] (0.12 to 3.5 m) came out as {[round(r, 3) for r in got]}."
+    )
+    expect(len(got) == 3 and all(map(_alike, got, [1.0, nan, nan])), shown, fraction=0.5)
 
 
 @check(points=2, holds=("mean-of-ten", "mean-topic"), depends=("filtered",))
@@ -119,7 +128,7 @@ def test_blind_scan(processor: Processor) -> None:
     expect(not means, f"A scan without any distance made it say {means} m.")
 
 
-@check(points=2, holds="warns", depends=("blind_scan",), doc=LOGGING)
+@check(points=2, holds=("warns", "other-fields"), depends=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
 def test_warns_now_and_then(fresh_processor: Processor) -> None:
     """While the lidar sees nothing, it warns once a second; while it sees something, it does not."""
@@ -139,6 +148,13 @@ def test_warns_now_and_then(fresh_processor: Processor) -> None:
     seconds, by_turns = 2 * GLIMPSES * SCAN_SECONDS, _warnings(fresh_processor, [blind, seeing] * GLIMPSES)
     often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {by_turns} times."
     expect(by_turns <= seconds + 2, often, fraction=0.5)
+    slow = _warnings(fresh_processor, [blind] * SLOW, apart=SLOW_SECONDS)
+    seldom = f"Blind for {SLOW * SLOW_SECONDS} s, with two scans a second, it warned {slow} times."
+    expect(slow >= 2, seldom, fraction=0.75)  # three are due; real time needs room
+    filtered, _ = fresh_processor.show(blind)
+    got = [list(message.ranges) for message in filtered]
+    masked = len(got) == 1 and len(got[0]) == 4 and all(map(_alike, got[0], [inf, nan, -inf, nan]))
+    expect(masked, f"A blind scan of [inf, nan, -inf, 0.05] (0.12 to 3.5 m) came out as {got}.", fraction=0.75)
 
 
 @check(points=1, holds="any-length", depends=("filtered",))
@@ -151,10 +167,10 @@ def test_any_lidar(processor: Processor) -> None:
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
 
 
-def _warnings(processor: Processor, scans: list[LaserScan]) -> int:
-    """Return how often it warns when it is shown these scans."""
+def _warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:
+    """Return how often it warns when it is shown these scans, so many seconds apart."""
     before = logged(processor.output, "WARN")
-    processor.show(*scans)
+    processor.show(*scans, apart=apart)
     return logged(processor.output, "WARN") - before
 
 

@@ -20,6 +20,7 @@ from autograder.probes.calls import Outcome, call, calls, made, make, same, valu
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
+HAIR = 1e-4  # m beyond a limit, more than what rounding does
 DEFAULT_HISTORY = 100
 SEQUENCES = {
     "a tuple": ("builtins", "tuple", ()),
@@ -72,11 +73,15 @@ def test_infinities_stay(workspace: Workspace) -> None:
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
     near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
-    readings = [near, far, near / 2, far * 2]
-    (outcome,) = calls(workspace, UTILS, call("mask_invalid", readings, near, far))
-    shown = f"mask_invalid({readings}, {near}, {far})"
-    masked = value(outcome, shown)
-    expect(same(masked, [near, far, nan, nan]), f"{shown} returned {masked}.")
+    rows = (
+        ([near, far, near / 2, far * 2], [near, far, nan, nan], 0.0),
+        ([near - HAIR, far + HAIR], [nan, nan], 0.75),
+    )
+    outcomes = calls(workspace, UTILS, *(call("mask_invalid", readings, near, far) for readings, _, _ in rows))
+    for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
+        shown = f"mask_invalid({readings}, {near}, {far})"
+        masked = value(outcome, shown)
+        expect(same(masked, wanted), f"{shown} returned {masked} instead of {wanted}.", fraction=fraction)
 
 
 @check(points=1, holds="leave-lists", depends=("keeps_places",))
@@ -181,9 +186,21 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
     outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
-    outcomes += calls(workspace, UTILS, call("mask_invalid", [0.0], LOW, HIGH), call("mean_distance", [nan]))
-    printed = "".join(outcome.printed for outcome in outcomes)
+    outcomes += calls(
+        workspace,
+        UTILS,
+        make("StringIO", module="io"),
+        make("import_module", "sys", module="importlib"),
+        call("setattr", made(1), "stderr", made(0), module="builtins"),
+        call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
+        call("disable", module="logging"),  # nor is a record of logging
+        call("mask_invalid", [0.0], LOW, HIGH),
+        call("mean_distance", [nan]),
+        call("getvalue", on=0),
+    )
+    printed, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
     expect(not printed, f"They printed: {printed[:80]!r}")
+    expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)
 
 
 def _masked(workspace: Workspace, readings: list[float]) -> list[float]:

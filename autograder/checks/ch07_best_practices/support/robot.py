@@ -32,12 +32,12 @@ class Processor(AutoHarness):
             listens={FILTERED: LaserScan, MEAN: Float32},
         )
 
-    def show(self, *scans: LaserScan) -> tuple[list[LaserScan], list[float]]:
-        """Show scans, 0.1 s apart; return the filtered ones and the means that came."""
+    def show(self, *scans: LaserScan, apart: float = SCAN_SECONDS) -> tuple[list[LaserScan], list[float]]:
+        """Show scans, so many seconds apart; return the filtered ones and the means that came."""
         began = self.seconds
         for scan in scans:
             self.publish("/scan", scan)
-            self.run(SCAN_SECONDS)
+            self.run(apart)
         self.wait_for_late(lambda: len(self.messages(FILTERED, since=began)) >= len(scans))
         if self.time != LOCKSTEP:
             self.run(SCAN_SECONDS)  # of the means nobody knows how many are to come

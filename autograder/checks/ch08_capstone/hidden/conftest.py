@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from autograder.checks.ch08_capstone.hidden.drives import Drives
-from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 from autograder.harness import Workspace
 
@@ -34,11 +34,11 @@ def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
     shared.close()
 
 
-@pytest.fixture
-def undriven(workspace: Workspace) -> Iterator[System]:
-    """The system without its controller."""
-    shared = SharedSystem(workspace, absent=(CONTROLLER,))
-    yield shared.get(PROCESSOR, MONITOR)
+@pytest.fixture(scope="session")
+def lone_monitor(workspace: Workspace) -> Iterator[SharedSystem]:
+    """Keeps the monitor alone; a check speaks for the other two."""
+    shared = SharedSystem(workspace, absent=(PROCESSOR, CONTROLLER))
+    yield shared
     shared.close()
 
 

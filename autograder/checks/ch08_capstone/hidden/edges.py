@@ -68,6 +68,18 @@ def said_of_limits(system: System) -> list[str]:
     return found
 
 
+def said_of_empty(system: System) -> list[str]:
+    """Say that a scan without beams becomes no clearance, or one that claims to know something, if so."""
+    shown = scan()
+    shown.ranges = []
+    said = system.see(shown, 0.5).clearances
+    if not said:
+        return ["Scans without beams became no clearance: each scan becomes one."]
+    newest = said[-1].message
+    unknown = not newest.valid and all(map(math.isnan, (newest.front, newest.left, newest.right)))
+    return [] if unknown else ["With a scan without beams, valid was true or a distance was not nan."]
+
+
 def newest_clearance(system: System, shown: LaserScan) -> Any:
     """Show a scan for a while; return the last clearance, fail the check if none comes."""
     said = system.see(shown, 0.5).clearances

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
+
+from geometry_msgs.msg import Twist
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
@@ -17,9 +20,11 @@ from autograder.checks.ch08_capstone.support.contract import (
     PARAMETERS,
     PROGRAMS,
     SAID_WITHIN,
+    WATCHED,
 )
-from autograder.checks.ch08_capstone.support.system import SharedSystem, System, describe_report
+from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem, System, describe_report
 from autograder.harness import Stamped
+from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.pace import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
@@ -27,8 +32,11 @@ check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar
 SILENT = PARAMETERS[MONITOR]["silence_timeout"].default
 MARGIN = 0.1  # s
+REAL_MARGIN = 0.25  # s, where time is real
 LATE, EARLY = 5.0, -2.0  # s: how old the stamps of a lidar with another clock are; of 2 s ahead, more than SILENT
 STAMPED = 0.2  # s between a report's stamp and its arrival, generous for a machine that is busy
+# s from a report to the last message of a topic, so that a report falls 1.15 to 1.25 s after that message
+PHASE, PHASE_END = 0.25, 0.35
 
 
 @check(
@@ -40,7 +48,7 @@ STAMPED = 0.2  # s between a report's stamp and its arrival, generous for a mach
 @hint("A topic that was never heard is silent, too, from the first report on: start with None for each.")
 @hint("What counts is when a message arrives, by self.get_clock().now(), not what its stamp says.")
 @hint("FAILED if any topic is silent; else DEGRADED if the newest clearance is not valid; else OK.")
-def test_health_levels(system: System, undriven: System) -> None:
+def test_health_levels(system: System, lone_monitor: SharedSystem) -> None:
     """Twice a second it reports: FAILED before anything was seen, OK when all is well, DEGRADED when blind."""
     first = system.first.reports
     _expect_reports(first[-1:], FAILED, DEAD, "Before the first scan")
@@ -61,14 +69,18 @@ def test_health_levels(system: System, undriven: System) -> None:
     _expect_reports(system.see(OPEN, 1.0).reports, OK, set(), "When it sees again", fraction=0.5)
     late = system.see(OPEN, 1.5, age=LATE).reports
     _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier,", fraction=0.5)
-    alone = undriven.see(OPEN, 1.5).reports
-    _expect_reports(alone, FAILED, {"cmd_vel"}, "With scans, and no controller that runs", fraction=0.5)
+    alone = lone_monitor.get(MONITOR)
+    undriven = _tell(alone, ("scan", "clearance"), 1.5)
+    _expect_reports(undriven, FAILED, {"cmd_vel"}, "With scans, and no controller that runs", fraction=0.5)
+    half_blind = _tell(alone, WATCHED, 1.0, left=math.nan)[-1:]
+    situation = "With a clearance that is not valid, as it has nan on the left alone"
+    _expect_reports(half_blind, DEGRADED, set(), situation, fraction=0.85)
 
 
 @check(points=3, holds=("silent", "silent-field", "monitor", "health-header"), depends=("health_levels",))
 @hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
 @hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")
-def test_dead_sensor(system: System, slow_system: SharedSystem) -> None:
+def test_dead_sensor(system: System, slow_system: SharedSystem, lone_monitor: SharedSystem) -> None:
     """Within 2 s of a lidar's death health is FAILED and names what is silent; within 2 s of its return it is OK."""
     system.see(OPEN, 2.0)
     began = system.seconds
@@ -93,6 +105,8 @@ def test_dead_sensor(system: System, slow_system: SharedSystem) -> None:
     _expect_reports(again, FAILED, DEAD, said, fraction=0.75)
     if system.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
         _expect_ros_time(slow_system.get(*PROGRAMS))
+    for topic in ("cmd_vel", "clearance"):
+        _expect_silence_said(lone_monitor.get(MONITOR), topic)
 
 
 def _expect_ros_time(system: System) -> None:
@@ -101,6 +115,38 @@ def _expect_ros_time(system: System) -> None:
     reports = system.wait(SAID_WITHIN).reports
     _expect_reports(reports[-1:], FAILED, DEAD, f"{SAID_WITHIN:.0f} s of ROS time after the last scan", fraction=0.5)
     _expect_stamped(system, reports[-1])
+
+
+def _expect_silence_said(system: System, topic: str) -> None:
+    """Fail the check unless a topic is called silent once it has been for longer than the time-out, the others not."""
+    _tell(system, WATCHED, 0.5)
+    for _ in range(10):
+        newest = system.harness.messages("/health")[-1:]
+        if newest and PHASE <= system.seconds - newest[0].seconds < PHASE_END:
+            break
+        _tell(system, WATCHED, SCAN_SECONDS)
+    margin = MARGIN if system.harness.time == LOCKSTEP else REAL_MARGIN
+    ended = system.seconds
+    _tell(system, [other for other in WATCHED if other != topic], SAID_WITHIN)
+    late = system.messages(ended + SILENT + margin).reports
+    situation = f"More than {SILENT:.0f} s after the last message on {topic}, while the others went on"
+    _expect_reports(late, FAILED, {topic}, situation, fraction=0.85)
+
+
+def _tell(system: System, topics: Sequence[str], seconds: float, **distances: float) -> Sequence[Stamped]:
+    """Send the lone monitor a message on each topic ten times a second; return the reports after the time to react.
+
+    The clearance is valid and free to all sides, but for these distances.
+    """
+    began, valid = system.seconds, not any(map(math.isnan, distances.values()))
+    free = {"front": math.inf, "left": math.inf, "right": math.inf}
+    clearance = system.types.clearance(valid=valid, **{**free, **distances})
+    messages: dict[str, Any] = {"scan": OPEN, "clearance": clearance, "cmd_vel": Twist()}
+    for _ in range(round(seconds / SCAN_SECONDS)):
+        for topic in topics:
+            system.send(f"/{topic}", messages[topic])
+        system.harness.run(SCAN_SECONDS)
+    return system.messages(began + SETTLED).reports
 
 
 def _expect_stamped(system: System, report: Stamped) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -23,11 +24,14 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
+from autograder.probes.files import read_plain
 
 check = group("step_4", doc=contract.LAUNCH_DOC)
 SHARED = ("shares", "interface_package")
 STARTS = ("executables", *SHARED)
 OTHER_CONFIG = "config/of_another_robot.yaml"
+MAX_SCRIPT = 64 * 1024  # bytes; setuptools writes about a thousand
+SHOWN_SECONDS = 5.0  # real time until a line of a program that runs is shown
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
     "parameters=[LaunchConfiguration('params_file'), {'use_sim_time': LaunchConfiguration('use_sim_time')}]",
@@ -36,10 +40,21 @@ HINTS = (
 
 @dataclass(frozen=True)
 class Launched:
-    """The launch file as it runs with a parameters file of the grader's own, and with simulated time."""
+    """The launch file as it runs with a parameters file of the grader's own, and with simulated time.
+
+    Attributes:
+        harness: where it runs.
+        values: what the parameters file says, by node.
+        lines: what a program prints first, by its name.
+    """
 
     harness: LaunchHarness
     values: Mapping[str, Mapping[str, float]]
+    lines: Mapping[str, str]
+
+    def unseen(self) -> list[str]:
+        """Return the programs whose lines are not on the screen."""
+        return [name for name, line in self.lines.items() if line not in self.harness.output]
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +66,12 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         for node, parameters in PARAMETERS.items()
     }
     text = yaml.safe_dump({node: {"ros__parameters": dict(own)} for node, own in values.items()})
-    copy = launch_probe.with_files(workspace, "launched", PACKAGE, {OTHER_CONFIG: text})
+    lines = {name: f"{name} begins" for name in PROGRAMS}
+    scripts = {name: script for name, line in lines.items() if (script := _printing(workspace, name, line))}
+    copy = launch_probe.with_files(workspace, "launched", PACKAGE, {OTHER_CONFIG: text}, scripts)
     arguments = {"params_file": str(copy.install / PACKAGE / "share" / PACKAGE / OTHER_CONFIG), "use_sim_time": "true"}
     with LaunchHarness(copy, PACKAGE, LAUNCH_FILE, arguments) as harness:
-        yield Launched(harness, values)
+        yield Launched(harness, values, {name: lines[name] for name in scripts})
 
 
 @check(points=1, holds="launch-arguments", depends=SHARED)
@@ -69,14 +86,11 @@ def test_launch_arguments(workspace: Workspace) -> None:
     found = arguments["params_file"]
     if found.default is None:
         _expect_starts_without(workspace, "params_file")
-    # A default that is put together when the launch runs is not shown as a text.
-    default = CONFIG if found.default is None else found.default
-    is_installed = default.endswith(CONFIG) and (found.default is None or default.startswith("/"))
-    expect(
-        is_installed,
-        f"The argument params_file has the default {default!r}, instead of the whole path of the installed {CONFIG}.",
-        fraction=0.5,
-    )
+    else:  # a default that is put together when the launch runs is not shown as a text
+        installed = workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
+        said = f"The argument params_file has the default {found.default!r}, instead of"
+        is_installed = Path(found.default).resolve() == installed.resolve()
+        expect(is_installed, f"{said} the whole path of the installed {CONFIG}.", fraction=0.5)
     expect(bool(found.description), "The argument params_file has no description.", fraction=0.5)
 
 
@@ -101,7 +115,7 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, holds="launch-arguments", depends=("launch_starts",))
+@check(points=2, holds=("launch-arguments", "launches"), depends=("launch_starts",))
 @hint(*HINTS)
 def test_launch_configures(launched: Launched) -> None:
     """What params_file and use_sim_time say reaches all three nodes."""
@@ -111,6 +125,9 @@ def test_launch_configures(launched: Launched) -> None:
         # Which parameters a node declares is judged by itself: here it counts that the file's values arrive.
         known = {name: value for name, value in values.items() if declared.get(name) is not None}
         launch_probe.expect_parameters(launched.harness, name_of(node), known)
+    launched.harness.wait_for(lambda: not launched.unseen(), SHOWN_SECONDS)
+    unseen = ", ".join(launched.unseen())
+    expect(not unseen, f"What {unseen} prints is not on the screen: output='screen' is missing.", fraction=0.75)
 
 
 @check(points=2, holds="launch-ctrl-c", depends=("launch_starts",))
@@ -119,6 +136,14 @@ def test_launch_configures(launched: Launched) -> None:
 def test_launch_stops(launched: Launched) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
     launch_probe.expect_clean_stop(launched.harness)
+
+
+def _printing(workspace: Workspace, name: str, line: str) -> str:
+    """Return an installed program that prints a line before anything else; empty if it is no script that can."""
+    data = read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
+    first, _, rest = data.decode(errors="replace").partition("\n")
+    can = "python" in first and "__future__" not in rest  # such an import has to come first
+    return f"{first}\nprint({line!r}, flush=True)\n{rest}" if can else ""
 
 
 def _between(draw: Random, parameter: Bounded) -> float:

@@ -15,6 +15,7 @@ from autograder.checks.ch08_capstone.hidden.edges import (
     expect_exact_limits,
     newest_clearance,
     said_of_edge,
+    said_of_empty,
     said_of_limits,
 )
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
@@ -173,9 +174,9 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         front = newest_clearance(seeing, scan(Part(first, first + 1.0, 1.0))).front
         if abs(front - wanted) > TOLERANCE:
             wrong.append(f"With something 1.00 m away at {first:.0f}° to {first + 1.0:.0f}°, front was {front:.2f}.")
-    wrong += said_of_edge(seeing) + said_of_limits(seeing)
+    wrong += said_of_edge(seeing) + said_of_limits(seeing) + said_of_empty(seeing)
     if wrong:
-        total = len(cases) + len(blind) + len(edges) + 3
+        total = len(cases) + len(blind) + len(edges) + 4
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
 
 

@@ -106,7 +106,19 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
     expect(not left, f"The new {' and '.join(left)} stayed behind: look at data_files.", fraction=0.5)
 
 
-@check(points=1, holds=("agree", "installs", "interfaces-cmake"), depends=("manifests", "build"))
+@check(
+    points=1,
+    holds=(
+        "agree",
+        "installs",
+        "interfaces-cmake",
+        "manifest",
+        "processor-executable",
+        "controller-executable",
+        "monitor-executable",
+    ),
+    depends=("manifests", "build"),
+)
 @hint("Copy the four from one file to the other, to the letter.")
 @hint("data_files as ros2 pkg create writes it installs the marker and package.xml; ament_package() does it in CMake.")
 def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -127,3 +139,8 @@ def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> Non
     if builds[INTERFACES] is OK:
         unknown = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
         expect(look(workspace.install, INTERFACES).marker, unknown, fraction=0.5)
+    told = declared.description
+    expect(manifest.PLACEHOLDER not in told, f"package.xml describes the package as {told!r}.", fraction=0.5)
+    modules = [f"{PACKAGE}.{name}" for name in PROGRAMS]
+    absent = [module for module in modules if module not in installed.modules]
+    expect(not absent, f"There is no module {', '.join(absent)}, which the table of step 1 names.", fraction=0.5)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from autograder.checks import CheckFailed, expect, group, hint, temporal
+from autograder.checks.ch02_nodes.support.robot import describe_command
+from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
 from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
+from autograder.checks.ch08_capstone.hidden.edges import OPEN
+from autograder.checks.ch08_capstone.support.contract import TOLERANCE
+from autograder.checks.ch08_capstone.support.system import System, expect_still
 from autograder.gallery import Gallery
+from autograder.time_record import LOCKSTEP
 from sim import clearance
 from sim.rows import row_at, state_at
 
@@ -20,12 +27,13 @@ STOPPING = 0.3  # m: 0.5 s until the data are stale, and what a chain at 10 Hz a
 BLIND_STOPPING = 0.15  # m: a blocked lidar says so at once
 STANDS = 0.01  # m/s
 BACK_WITHIN = 2.0  # s
+SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
 @check(points=3, holds=("turn", "starts-turn"), depends=DRIVES)
 @hint(*PICTURE)
-def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
+def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
     driven = drives.room
     recording = driven.recording
@@ -38,6 +46,7 @@ def test_touches_nothing(drives: Drives, gallery: Gallery) -> None:
     metres = float(tracks.path(recording)[-1])
     _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
     expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
+    _expect_no_touch(driving)
 
 
 @check(points=2, holds=("more-room", "ends-turn"), depends=("drives", "turns"))
@@ -71,7 +80,7 @@ def test_gets_on(drives: Drives, gallery: Gallery) -> None:
 @check(points=3, holds="untrusted", depends=("stops",))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
-def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
+def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     driven, rules = drives.faulty, {}
     for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
@@ -89,6 +98,7 @@ def test_stops_in_time(drives: Drives, gallery: Gallery) -> None:
             _fail(gallery, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
     caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
     _keep(gallery, driven, caption, rules)
+    _expect_half_blind_stop(driving)
 
 
 @check(points=2, holds="drive", depends=("stops_in_time",))
@@ -105,6 +115,28 @@ def test_drives_again(drives: Drives, gallery: Gallery) -> None:
                 f"The lidar was {trouble.name} until t = {trouble.end:.0f} s; {BACK_WITHIN:.0f} s later it still stood."
             )
             _fail(gallery, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
+
+
+def _expect_no_touch(system: System) -> None:
+    """Fail the check if the robot drives towards something that is too near to measure: in the room nothing is."""
+    system.see(OPEN)
+    said = system.see(scan(Part(-SECTOR, SECTOR, -math.inf), fill=math.inf)).commands
+    system.see(OPEN, 0.2)  # the next drive begins without a turn
+    bad = next((command.message for command in said if command.message.linear.x > TOLERANCE), None)
+    did = "" if bad is None else describe_command(bad)
+    near = "With -inf from every beam ahead, something too near to measure"
+    expect(bad is None, f"{near}, the robot {did}: it should turn on the spot.", fraction=0.85)
+
+
+def _expect_half_blind_stop(system: System) -> None:
+    """Fail the check unless the robot stands still when one side is blocked; in lockstep from the first command on."""
+    for side, middle in (("left", 90.0), ("right", -90.0)):
+        system.see(OPEN)
+        began = system.seconds
+        said = system.see(scan(Part(middle - SECTOR, middle + SECTOR, math.nan), fill=math.inf)).commands
+        if system.harness.time == LOCKSTEP:
+            said = system.messages(began).commands
+        expect_still(said, f"With nan from every beam on the {side}, and the way ahead clear", fraction=0.85)
 
 
 Rules = Mapping[str, temporal.Verdict]

@@ -13,7 +13,15 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch02_nodes.support.robot import describe_command
-from autograder.checks.ch08_capstone.support.contract import LEVELS, PACKAGE, PROGRAMS, TOLERANCE, name_of
+from autograder.checks.ch08_capstone.support.contract import (
+    CONTROLLER,
+    LEVELS,
+    PACKAGE,
+    PROCESSOR,
+    PROGRAMS,
+    TOLERANCE,
+    name_of,
+)
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
 from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
 from autograder.harness.drive import SCAN_SECONDS
@@ -43,10 +51,11 @@ class System:
         types: of the student's messages.
         needed: those without which it is of no use; the others may be missing, or fail.
         clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
-        absent: programs that are not started.
+        absent: programs that are not started; what they publish can be sent in their place.
 
     Attributes:
         harness: where they run.
+        types: of the student's messages.
         first: what they said before the first scan.
     """
 
@@ -58,11 +67,13 @@ class System:
         clock_rate: float = 1.0,
         absent: Collection[str] = (),
     ) -> None:
+        self.types = types
+        published = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
         there = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
         self.harness = AutoHarness(
             workspace,
             programs=tuple(Program(PACKAGE, name) for name in there),
-            offers={"/scan": LaserScan},
+            offers={"/scan": LaserScan, **dict(published[name] for name in published if name in absent)},
             listens={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
             clock_rate=clock_rate,
         )
@@ -140,10 +151,15 @@ class System:
 
     def show(self, scan: LaserScan, age: float = 0.0) -> None:
         """Show one scan and let 0.1 s pass."""
-        stamp = self.harness.next_ns - round(age * 1e9)
-        scan.header.stamp.sec, scan.header.stamp.nanosec = divmod(stamp, 10**9)
-        self.harness.publish("/scan", scan)
+        self.send("/scan", scan, age)
         self.harness.run(SCAN_SECONDS)
+
+    def send(self, topic: str, message: Any, age: float = 0.0) -> None:
+        """Publish a message; a header's stamp is `age` seconds old when it comes."""
+        if hasattr(message, "header"):
+            stamp = self.harness.next_ns - round(age * 1e9)
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+        self.harness.publish(topic, message)
 
     def wait(self, seconds: float) -> Received:
         """Show nothing for a while; return what was said in that time."""

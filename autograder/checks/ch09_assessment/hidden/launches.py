@@ -7,9 +7,9 @@ from random import Random
 
 import pytest
 
-from autograder.checks import expect, group, hint
+from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
-from autograder.checks.ch09_assessment.support.contract import GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
+from autograder.checks.ch09_assessment.support.contract import COOL, GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.robot import Types
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
@@ -48,13 +48,17 @@ def test_launches(launched: LaunchHarness) -> None:
     expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(points=2, holds="hot-argument", depends=("launches",))
+@check(points=2, holds=("hot-argument", "hot-cool"), depends=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0', description='...')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> None:
     """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
     launch_probe.expect_parameters(launched, f"/{GUARD}", {"hot": float(hot)})
     launch_probe.expect_argument(launch_probe.shown_arguments(workspace, PACKAGE, LAUNCH_FILE), "hot", "60.0")
+    try:
+        launch_probe.expect_parameters(launched, f"/{GUARD}", {"cool": COOL})
+    except CheckFailed as failed:
+        raise CheckFailed(f"Launched with hot:={hot} and nothing else: {failed.message}", fraction=0.75) from failed
 
 
 @check(points=1, holds="ctrl-c", depends=("launches",))

@@ -86,6 +86,12 @@ def test_dependencies(workspace: Workspace) -> None:
     expect_same_facts(installed, found, fraction=0.5)
     expect_installs_itself(installed)
     expect_pytest(workspace, installed, fraction=0.5)
+    called = installed.metadata.get("Name", "").replace("-", "_")  # setuptools may write the one for the other
+    expect(called == PACKAGE, f"The name is {called} in setup.py, {PACKAGE} in package.xml.", fraction=0.5)
+    modules = {module.rpartition(".")[2] for module in installed.modules}
+    absent = [name for name in PROGRAMS if name not in modules]
+    said = f"No module {', '.join(absent)} is installed: each program is main in the module of its name."
+    expect(not absent, said, fraction=0.5)
 
 
 def _expect_licence(found: manifest.Manifest) -> None:

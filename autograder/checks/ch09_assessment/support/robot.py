@@ -72,15 +72,17 @@ class NodeHarness(AutoHarness):
         """Return what it has published."""
         return self.messages(self._out, since=since)
 
-    def send(self, temperatures: Iterable[float], first: int = 1, *, apart: float = STEP) -> list[Any]:
-        """Send temperatures, stamped a quarter of a second after `first`, `first` + 1, ...; return what came.
+    def send(
+        self, temperatures: Iterable[float], first: int = 1, *, apart: float = STEP, nanoseconds: int = NANOSECONDS
+    ) -> list[Any]:
+        """Send temperatures, stamped `nanoseconds` after the seconds `first`, `first` + 1, ...; return what came.
 
         They are sent `apart` seconds of ROS time apart, `STEP` at most. 0 sends them all at once.
         """
         began, sent = self.seconds, list(temperatures)
         for second, celsius in enumerate(sent, first):
             message = self._types.temperature(celsius=float(celsius))
-            message.stamp.sec, message.stamp.nanosec = second, NANOSECONDS
+            message.stamp.sec, message.stamp.nanosec = second, nanoseconds
             self.publish(self._in, message)
             self.run(apart)
         self.run(STEP - apart)
@@ -141,13 +143,21 @@ def _expect_topics(node: str, verb: str, found: Mapping[str, list[str]], wanted:
 
 
 def refuses(workspace: Workspace, types: Types, name: str, **parameters: float) -> bool:
-    """Return whether a node ends at its start with these parameters, by an exception or by itself."""
+    """Return whether a node ends at its start with these parameters, by an exception or by itself.
+
+    Raises:
+        CheckFailed: it ended by itself as if there were no error.
+    """
     try:
         with NodeHarness(workspace, types, name, **parameters):
             return False
     except StudentError as error:
         if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):
             raise
+        silent = error.diagnosis.kind is Kind.ENDED_EARLY and "(exit status 0)" in error.diagnosis.sentence
+        shown = ", ".join(f"{parameter} {value}" for parameter, value in parameters.items())
+        said = f"Started with {shown}, {name} ended with exit status 0: one that ends with an error has another status."
+        expect(not silent, said, fraction=0.75)
         return True
 
 

@@ -66,7 +66,7 @@ def assemble(node):
     commands = node.create_publisher(Twist, "cmd_vel", 1)
     watchdog = node.create_timer(0.5, lambda: decide(stop), callback_group=MutuallyExclusiveCallbackGroup())
     node.create_subscription(LaserScan, "scan", on_scan, LIDAR, callback_group=MutuallyExclusiveCallbackGroup())
-    node.create_subscription(String, "status", lambda said: node.get_logger().info(said.data), 1)
+    node.create_subscription(String, "status", lambda said: node.get_logger().info(said.data), 10)
     node.create_timer(1 / 10, beat, callback_group=MutuallyExclusiveCallbackGroup())
     return node
 
