@@ -86,7 +86,7 @@ def describe_command(command: Twist) -> str:
 
 
 def _expect(
-    commands: Sequence[Stamped], linear: float, angular: float, situation: str, wanted: str, fraction: float
+    commands: Sequence[Stamped], linear: float, angular: float, situation: str, wanted: str, fraction: float = 0.0
 ) -> None:
     expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.", fraction=fraction)
     wrong = [
