@@ -13,6 +13,8 @@ WITH_ROS := $(BIN)/autograder ros
 
 # Where a machine forbids compiled modules, each of the programs that tests start compiles the autograder again.
 unexport PYTHONDONTWRITEBYTECODE
+# In a terminal that has another virtual environment active, IPython warns, and a warning fails a test.
+unexport VIRTUAL_ENV
 
 # More than the two cores of a small machine: much of a test is waiting. Unit tests wait for nothing.
 WORKERS ?= 4
