@@ -13,7 +13,7 @@ from autograder.time_record import LOCKSTEP
 
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
-EDGE = 1.5  # degrees from the edge of the forward sector, a twentieth of its half; the edge itself is left open
+EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
 GLANCE = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 

@@ -102,9 +102,11 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     _change(robot, {name: value for name, value in CHANGEABLE.items() if name != "control_frequency"})
     situation = "After a refused request for 25 Hz and an accepted one without a frequency"
     expect_rate(robot.command_rate(), before, situation, fraction=0.75)
-    first, then = _periods(workspace)
+    first, then, accepted = _judged(workspace)
     told = f"While validate judged a request for 25 Hz, the timer's period went from {first} to {then} ns"
     expect(first == then, f"{told}: another callback may still refuse it.", fraction=0.75)
+    told = "validate accepted slow_distance = 2.0, which was not stored, and then safety_distance = 1.5 alone"
+    expect(accepted is not True, f"{told}, though slow_distance is still 1.0.", fraction=0.75)
 
 
 @check(points=2, holds="at-once", depends=("names",), doc=contract.IN_A_CLASS)
@@ -201,8 +203,13 @@ def test_beside_others(robot: Robot, draw: random.Random) -> None:
         expect_rate(robot.command_rate(), frequency, f"After {_told(request)}")
 
 
-def _periods(workspace: Workspace) -> tuple[Value, Value]:
-    """Return the timer's period in ns before and after validate judges 25 Hz, None from a node with other names."""
+def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
+    """Ask validate alone, so that nothing is stored.
+
+    Returns:
+        The timer's period in ns before and after it judges 25 Hz; whether it takes a safety distance of 1.5 m after it
+        has judged a slow distance of 2.0 m. None from a node with other names.
+    """
     outcomes = calls(
         workspace,
         f"{PACKAGE}.nodes.{EXECUTABLE}",
@@ -216,9 +223,18 @@ def _periods(workspace: Workspace) -> tuple[Value, Value]:
         call("validate", made(3), on=1),
         look("timer", on=1),
         look("timer_period_ns", on=8),
+        make("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
+        make("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
+        call("clear", on=3),
+        call("append", made(10), on=3),
+        call("validate", made(3), on=1),
+        call("clear", on=3),
+        call("append", made(11), on=3),
+        call("validate", made(3), on=1),
+        look("successful", on=17),
         network=True,
     )
-    return outcomes[6].value, outcomes[9].value
+    return outcomes[6].value, outcomes[9].value, outcomes[18].value
 
 
 def _change(robot: Robot, request: Mapping[str, Value], fraction: float = 0.0) -> None:

@@ -29,6 +29,7 @@ BETWEEN = (COOL + 1.0, HOT - 1.0)
 FRESH = 0.1  # s that a reading may take to come
 FLOAT32 = 1e-6  # the precision of a number in a message
 BARELY = 0.002  # degrees: what is rounded to hundredths is no longer between the thresholds
+HUGE = 1e20  # degrees: a sum that it once was part of has lost all others
 SILENCE = 2.5  # s without an average, in which nothing changes
 STAMP = (1_700_000_000, 123_456_789)  # s and ns, as of our time: a float of seconds does not hold them
 QUEUE = 10
@@ -128,19 +129,24 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
     _expect_averages([message.celsius for message in told], cold, 1, where, fraction=0.75)
 
 
-@check(points=2, holds="not-finite", depends=("average",))
+@check(points=2, holds=("not-finite", "window"), depends=("average",))
 @hint("math.isfinite(reading.celsius)", "A reading that does not count gets no average either.")
 def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
     first, second = round(draw.uniform(30.0, 40.0), 1), round(draw.uniform(50.0, 60.0), 1)
     with start(SMOOTHER, window=2) as harness:  # what does not count takes no place, either
         told = harness.send([first, math.nan, math.inf, -math.inf, second])
+        after = harness.send([HUGE, first, second])
     seen = [round(message.celsius, 2) for message in told]
     shown = f"{first}, nan, inf, -inf, {second} °C became {seen}"
     wanted = [first, (first + second) / 2]
     last = bool(seen) and abs(seen[-1] - wanted[-1]) <= 0.01
     expect(last, f"{shown}: the last average should have been {wanted[-1]:.2f}.")
     expect(len(seen) == 2, f"{shown}: there are averages for what is no number.", fraction=0.5)
+    forgotten = bool(after) and abs(after[-1].celsius - wanted[-1]) <= 0.01
+    expect(
+        forgotten, f"Two readings after one of {HUGE:g} °C, which is finite, the average still has it.", fraction=0.75
+    )
 
 
 @check(points=4, holds=("hysteresis", "guard-topics"), depends=BUILT, doc=contract.NODES_DOC)
