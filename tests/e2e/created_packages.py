@@ -9,7 +9,7 @@ import ast
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -37,13 +37,14 @@ def create(folder: Path, package: str) -> Path:
     return folder / package
 
 
-def fill_in(made: Path, target: Path) -> None:
+def fill_in(made: Path, target: Path, given: Collection[str] = ()) -> None:
     """Put what the tool wrote into `target`, a copy of the reference package, and add to it what is the student's.
 
-    Modules, launch files, configuration and further tests stay the reference's.
+    Modules, launch files, configuration and further tests stay the reference's, and so do the folders of the package
+    that the chapter gives.
     """
     for file in sorted(made.rglob("*")):
-        if file.is_file():
+        if file.is_file() and file.relative_to(made).parts[0] not in given:
             copy = target / file.relative_to(made)
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(file.read_bytes())
