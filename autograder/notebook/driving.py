@@ -23,10 +23,10 @@ from sim import (
     Window,
     World,
     load_recording,
-    load_world,
 )
 from sim.codec import to_json
 from sim.grading import grading
+from sim.maps import load
 
 if TYPE_CHECKING:
     from sim.view import Picture, Player
@@ -106,7 +106,7 @@ def drive(
     Args:
         package: the package in `ws/src`.
         executable: its executable, as `ros2 run PACKAGE EXECUTABLE` names it.
-        world: a name of a world, or a `sim.World`.
+        world: a name of a world or of a ROS map, or a `sim.World`.
         seconds: of ROS time.
         faults: what is wrong with the lidar: "nan" (the beams straight ahead read nan), "dead" (no scan after 10 s), or
             a `sim.Faults`.
@@ -124,7 +124,7 @@ def drive(
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
     robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
-    world = world if isinstance(world, World) else load_world(layout.world(world))
+    world = world if isinstance(world, World) else load(layout.world(world))
     simulation = Simulation(world, (robot,), seed=seed)
     with send(
         "drive",

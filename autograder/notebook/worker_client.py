@@ -15,6 +15,7 @@ from autograder.sandbox import best_tier
 from autograder.sandbox.cell import run_in_cell
 from autograder.sandbox.limits import NOTEBOOK_CELL
 
+REQUEST = "request.json"
 ANSWER = "answer.json"
 RECORDING = "recording.npz"
 
@@ -35,7 +36,9 @@ def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[st
         def command(scratch: Path) -> list[str]:
             request = {"verb": verb, "source": source.resolve(), "out": folder, "scratch": scratch}
             request["arguments"] = arguments
-            return [sys.executable, "-m", "autograder.notebook.check_worker", json.dumps(request, default=str)]
+            file = Path(folder) / REQUEST  # a command line has no room for the walls of a large map
+            file.write_text(json.dumps(request, default=str))
+            return [sys.executable, "-m", "autograder.notebook.check_worker", str(file)]
 
         report = run_in_cell(command, best_tier(), NOTEBOOK_CELL)
         answer = Path(folder) / ANSWER

@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from nbformat.v4 import new_code_cell
 from nbgrader.validator import Validator
@@ -19,8 +20,11 @@ from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import shell
 from autograder.proof.mutants import mutants, write_mutant, write_reference
+from sim import Pose, RobotSpec, Simulation, World
+from sim.codec import to_json
 
 PACKAGE = "my_robot_package"
+ARGUMENT = 128 * 1024  # bytes that one argument of a program may have on Linux: MAX_ARG_STRLEN in limits of execve(2)
 
 
 @pytest.fixture(scope="session")
@@ -69,6 +73,21 @@ def test_a_drive_is_the_same_every_time_and_shows_its_track(right: Path) -> None
     assert first.collided_at is None
     assert "Robot controller initialised" in first.output
     assert "image/png" in str(first._repr_mimebundle_()) or "image/svg" in str(first._repr_mimebundle_())
+
+
+def test_a_drive_through_a_map_of_ros(right: Path) -> None:
+    report = drive(PACKAGE, "robot_controller", world="office", seconds=2, workspace=right)
+    assert isinstance(report, DriveReport), repr(report)
+    assert "office" in repr(report)
+
+
+def test_a_world_of_thousands_of_walls(right: Path) -> None:
+    angles = np.linspace(-np.pi, np.pi, 5001)
+    ends = 3.0 * np.column_stack([np.cos(angles), np.sin(angles)])
+    world = World.from_segments(np.hstack([ends[:-1], ends[1:]]), name="round", starts=(Pose(0.0, 0.0, 0.0),))
+    assert len(to_json(Simulation(world, (RobotSpec(),)))) > ARGUMENT
+    report = drive(PACKAGE, "robot_controller", world=world, seconds=2, workspace=right)
+    assert isinstance(report, DriveReport), repr(report)
 
 
 def test_a_dead_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_path: Path) -> None:
