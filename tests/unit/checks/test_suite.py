@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import textwrap
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
+from autograder.checks.declaration import declared
 from autograder.exceptions import GraderError, UsageError
 
 HEAD = "from autograder.checks import check\n"
@@ -86,3 +88,17 @@ def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
         assert len(loaded.checks) >= 15
         assert all(check.hints for check in loaded.checks)
         assert suites.visible(name).packages == loaded.packages
+
+
+@pytest.mark.parametrize("kind", [suites.VISIBLE, suites.HIDDEN])
+def test_every_module_with_checks_is_named_in_modules(kind: str) -> None:
+    """A module that MODULES leaves out would never be run, and nobody would hear of it."""
+    home = suites.__package__
+    for assignment in suites.names(home, kind):
+        package = importlib.import_module(f"{home}.ch{assignment}.{kind}")
+        there = [path.stem for path in Path(package.__path__[0]).glob("*.py") if path.stem != "__init__"]
+        modules = [importlib.import_module(f"{package.__name__}.{name}") for name in there]
+        with_checks = {
+            name for name, module in zip(there, modules, strict=True) if any(map(declared, vars(module).values()))
+        }
+        assert with_checks == set(package.MODULES), package.__name__
