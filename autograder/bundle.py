@@ -1,12 +1,14 @@
-"""The students' bundle as it was released, and its mending by a later release.
+"""The students' bundle as it was released, and how a later release updates it.
 
-`release.json` in a bundle has the version, the digest of each file, and those of each notebook's cells. What has
-another digest has been written by the student, and a later release never touches it.
+`release.json` in a bundle has the version, the digest of each file, and those of each notebook's cells. A file or a
+cell with another digest was changed by the student. An update leaves it alone in `chapters/`. Elsewhere, the course's
+own file takes its place, and the student's is kept beside it.
 """
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import shutil
 from collections.abc import Iterator
@@ -63,11 +65,23 @@ def read_manifest(bundle: Path) -> Manifest:
         raise UsageError(f"{bundle}: no release of the course: {error}") from None
 
 
-def mend(bundle: Path, newer: Path) -> tuple[list[str], list[str]]:
-    """Mend a student's bundle by a later release, of all chapters or of some.
+@dataclass(frozen=True)
+class Update:
+    """What an update did with the files of the release, by their paths in the bundle.
 
-    Returns:
-        The files that were written, and those of the release that were not, because the student has changed them.
+    Attributes:
+        written: the files that were written.
+        kept: the files in `chapters/` that were not, because the student has changed them.
+        set_aside: for each changed file elsewhere that was written over, the path of the copy of the student's.
+    """
+
+    written: list[str]
+    kept: list[str]
+    set_aside: dict[str, str]
+
+
+def update_bundle(bundle: Path, newer: Path) -> Update:
+    """Update a student's bundle to a later release, of all chapters or of some.
 
     Raises:
         UsageError: one of the folders is no bundle, or `newer` is the older one.
@@ -75,21 +89,26 @@ def mend(bundle: Path, newer: Path) -> tuple[list[str], list[str]]:
     old, new = read_manifest(bundle), read_manifest(newer)
     if new.version < old.version:
         raise UsageError(f"{newer} is of {new.version}, and what is here is newer, of {old.version}")
-    written: list[str] = []
-    kept: list[str] = []
+    done = Update([], [], {})
     for name, digest in new.files.items():
         source, target = newer / name, bundle / name
         there = _digest(target.read_bytes()) if target.is_file() else None
-        ours = there in (None, old.files.get(name)) or not name.startswith(f"{CHAPTERS}/")
+        changed = there not in (None, old.files.get(name))
         if there == digest:
             continue
-        if name.endswith(".ipynb") and not ours:
-            mended = _mended(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
-            write_atomically(target, nbformat.writes(mended).encode())
-        elif ours:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source, target)
-        (written if ours or name.endswith(".ipynb") else kept).append(name)
+        if changed and not name.startswith(f"{CHAPTERS}/"):
+            done.set_aside[name] = str(_set_aside(target).relative_to(bundle))
+        elif changed and name.endswith(".ipynb"):
+            merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
+            write_atomically(target, nbformat.writes(merged).encode())
+            done.written.append(name)
+            continue
+        elif changed:
+            done.kept.append(name)
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source, target)
+        done.written.append(name)
     chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{CHAPTERS}/")}
     others = {name for name in old.files if name.startswith(f"{CHAPTERS}/") and name.split("/")[1] not in chapters}
     for name in old.files.keys() - new.files.keys() - others:
@@ -98,10 +117,18 @@ def mend(bundle: Path, newer: Path) -> tuple[list[str], list[str]]:
     files = {name: old.files[name] for name in others} | new.files
     cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
     write_json(bundle / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
-    return written, kept
+    return done
 
 
-def _mended(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
+def _set_aside(file: Path) -> Path:
+    """Copy a file to a free name beside it, and return the copy."""
+    names = (f"{file.name}.yours{number or ''}" for number in itertools.count())
+    copy = next(path for path in map(file.with_name, names) if not path.exists())
+    shutil.copy2(file, copy)
+    return copy
+
+
+def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
     """Return a student's notebook with the released cells in place of those that the student has not changed."""
     new = {cell.id: cell for cell in released.cells}
     cells = []

@@ -1,4 +1,4 @@
-"""`autograder update`: a later release mends a student's bundle."""
+"""`autograder update`: updates a student's folder to a later release."""
 
 from __future__ import annotations
 
@@ -7,21 +7,24 @@ from pathlib import Path
 import click
 
 from autograder import layout
-from autograder.bundle import mend, read_manifest
+from autograder.bundle import read_manifest, update_bundle
 from autograder.exceptions import UsageError
 
 
 @click.command()
 @click.argument("release", required=False, type=click.Path(path_type=Path, file_okay=False, exists=True))
 def update(release: Path | None) -> None:
-    """Mend this bundle by a later one in the folder RELEASE (by default where the course keeps its newest).
+    """Update this folder to the release in the folder RELEASE (by default where the course keeps its newest).
 
-    What you have written stays as it is: files and cells that you have changed, and those that you have added.
+    What you have written stays as it is: files and cells in `chapters` that you have changed or added. Where you have
+    changed a file of the course elsewhere, your version gets the ending `.yours`.
     """
     course = read_manifest(layout.ROOT).course
     if release is None and not course:
         raise UsageError("this release does not say where a newer one is: unpack it somewhere and name the folder")
-    written, kept = mend(layout.ROOT, release or Path(course))
-    for name in kept:
+    done = update_bundle(layout.ROOT, release or Path(course))
+    for name in done.kept:
         click.echo(f"Kept as you have it: {name}")
-    click.echo(f"{len(written)} files mended; this is the release of {read_manifest(layout.ROOT).version} now")
+    for name, copy in done.set_aside.items():
+        click.echo(f"You had changed {name}: your version is {copy} now.")
+    click.echo(f"{len(done.written)} files updated. This is the release of {read_manifest(layout.ROOT).version} now.")

@@ -1,4 +1,4 @@
-"""A later release mends a student's bundle, and touches nothing that the student wrote."""
+"""An update writes a later release, and loses nothing that the student wrote."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder.bundle import mend, read_manifest, write_manifest
+from autograder.bundle import read_manifest, update_bundle, write_manifest
 from autograder.exceptions import UsageError
 
 NOTEBOOK = "chapters/02_nodes/02_nodes.ipynb"
@@ -63,7 +63,7 @@ def write(bundle: Path, answer: str) -> None:
 
 
 def test_what_nobody_has_changed_is_that_of_the_later_release(bundle: Path, newer: Path) -> None:
-    mend(bundle, newer)
+    update_bundle(bundle, newer)
     for name in read_manifest(newer).files:
         assert (bundle / name).read_bytes() == (newer / name).read_bytes(), name
     assert not (bundle / "sim/gone.py").exists()
@@ -72,9 +72,9 @@ def test_what_nobody_has_changed_is_that_of_the_later_release(bundle: Path, newe
 
 def test_what_a_student_wrote_is_not_touched(bundle: Path, newer: Path) -> None:
     write(bundle, "my answer")
-    written, kept = mend(bundle, newer)
-    assert kept == [GIVEN]
-    assert NOTEBOOK in written
+    done = update_bundle(bundle, newer)
+    assert (done.kept, done.set_aside) == ([GIVEN], {})
+    assert NOTEBOOK in done.written
     assert [(cell.id, cell.source) for cell in read(bundle).cells] == [
         ("title", "# Nodes"),
         ("new", "a hint"),
@@ -88,21 +88,33 @@ def test_what_a_student_wrote_is_not_touched(bundle: Path, newer: Path) -> None:
 
 def test_what_was_kept_once_is_kept_the_next_time(bundle: Path, newer: Path) -> None:
     write(bundle, "my answer")
-    mend(bundle, newer)
+    update_bundle(bundle, newer)
     before = [cell.source for cell in read(bundle).cells]
-    assert mend(bundle, newer)[1] == [GIVEN]
+    assert update_bundle(bundle, newer).kept == [GIVEN]
     assert [cell.source for cell in read(bundle).cells] == before
 
 
+def test_a_changed_file_of_the_course_is_set_aside(bundle: Path, newer: Path) -> None:
+    (bundle / "sim/world.py").write_text("mine")
+    (bundle / "sim/world.py.yours").write_text("of the update before")
+    done = update_bundle(bundle, newer)
+    assert done.set_aside == {"sim/world.py": "sim/world.py.yours1"}
+    assert (bundle / "sim/world.py").read_text() == "one, mended"
+    assert (bundle / "sim/world.py.yours").read_text() == "of the update before"
+    assert (bundle / "sim/world.py.yours1").read_text() == "mine"
+    assert "sim/world.py" in done.written
+    assert not update_bundle(bundle, newer).written
+
+
 def test_a_chapter_that_the_later_release_does_not_hold_stays(bundle: Path, newer: Path) -> None:
-    mend(bundle, newer)
+    update_bundle(bundle, newer)
     other = "chapters/03_interfaces/notes.md"
     assert (bundle / other).is_file()
-    assert other in read_manifest(bundle).files  # a release after that can still mend it
+    assert other in read_manifest(bundle).files  # a release after that can still update it
 
 
 def test_an_older_release_and_what_is_none_are_refused(bundle: Path, newer: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is of 1, and what is here is newer, of 2"):
-        mend(newer, bundle)
+        update_bundle(newer, bundle)
     with pytest.raises(UsageError, match="no release of the course"):
-        mend(bundle, tmp_path)
+        update_bundle(bundle, tmp_path)
