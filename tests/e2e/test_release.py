@@ -101,7 +101,8 @@ def test_a_release_of_one_chapter_mends_the_bundle_of_all(bundle: Path, tmp_path
     environment = {**os.environ, "PYTHONPATH": str(mine)}
     done = subprocess.run(update, cwd=mine, env=environment, text=True, capture_output=True)
     assert done.returncode == 0, done.stderr
-    assert "mended; this is the release of 20" in done.stdout
+    assert "files updated. This is the release of 20" in done.stdout
+    assert "You had changed sim/world.py: your version is sim/world.py.yours now." in done.stdout
     assert answer.read_text() == "a student's"
     assert gone.read_bytes() == (later / "sim" / "world.py").read_bytes()
     assert {path.name for path in (mine / "chapters").iterdir()} == {p.name for p in (bundle / "chapters").iterdir()}
