@@ -10,6 +10,7 @@ import contextlib
 import queue
 import signal
 import threading
+import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -20,14 +21,15 @@ from autograder.checks import suites
 from autograder.cluster import DEATHS, work
 from autograder.cluster.accept import accept, give_up, write
 from autograder.cluster.exceptions import AnswerError, ClusterError
-from autograder.cluster.fitting import TICK, FittingWorkers
-from autograder.cluster.machine import resource
+from autograder.cluster.machine import difference, resource
 from autograder.cluster.parcel import Parcel
 from autograder.exceptions import StudentError
 from autograder.grading.batch import OnResult, Request
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout, read_files
 
+TICK = 0.5  # s between two looks at the workers
+PATIENCE = 120.0  # s without any worker that fits
 TRIES = 2  # answers that are asked for before a submission is given up
 
 Grade = Callable[[bytes], bytes]
@@ -102,9 +104,12 @@ class _Dispatch:
     def __init__(
         self, client: Client, requests: Sequence[Request], on_result: OnResult, say: Callable[[str], None], grade: Grade
     ) -> None:
-        self._client, self._on_result, self._grade = client, on_result, grade
+        self._client, self._on_result, self._say, self._grade = client, on_result, say, grade
         self._resource = resource(requests[0].assignment, requests[0].isolation)
-        self._workers = FittingWorkers(client, self._resource, say)
+        self._refused: set[str] = set()
+        self._threads = 0
+        self._looked = float("-inf")
+        self._fitted = time.monotonic()
         self._parcels = self._packed(requests)
         self._under_way: dict[Future, _Sent] = {}
         self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
@@ -114,7 +119,7 @@ class _Dispatch:
         left = True
         while left or self._under_way:
             left = left and not interrupted.is_set()
-            while left and len(self._under_way) < self._workers.threads():
+            while left and len(self._under_way) < self._fitting_threads():
                 sent = next(self._parcels, None)
                 if sent is None:
                     left = False
@@ -126,6 +131,36 @@ class _Dispatch:
         """Let the scheduler drop what is under way."""
         with contextlib.suppress(Exception):  # the scheduler may be what was lost
             self._client.cancel(list(self._under_way), force=True)
+
+    def _fitting_threads(self) -> int:
+        """Return how many submissions the workers that fit can grade at once; look at them now and then."""
+        now = time.monotonic()
+        if now - self._looked >= TICK:
+            self._look()
+            self._looked = now
+            if self._threads:
+                self._fitted = now
+            elif now - self._fitted > PATIENCE:
+                raise ClusterError(
+                    f"for {PATIENCE:.0f} s there was no worker that can grade this: start one with "
+                    "`dask worker ADDRESS --preload autograder.cluster`"
+                )
+        return self._threads
+
+    def _look(self) -> None:
+        """Count the threads of the workers that fit; say once of each other why it is refused."""
+        try:
+            workers = self._client.scheduler_info()["workers"]
+        except (OSError, RuntimeError, TimeoutError) as error:
+            raise ClusterError(f"the scheduler does not answer: {error}") from None
+        self._threads = 0
+        for address, worker in workers.items():
+            why = difference(self._resource, worker["resources"])
+            if not why:
+                self._threads += worker["nthreads"]
+            elif address not in self._refused:
+                self._refused.add(address)
+                self._say(f"The worker {address} is refused: {why}.")
 
     def _packed(self, requests: Sequence[Request]) -> Iterator[_Sent]:
         """Yield what has to be sent; tell the results of the rest."""
@@ -157,7 +192,7 @@ class _Dispatch:
         try:
             future = self._ended.get(timeout=TICK)
         except queue.Empty:
-            self._workers.threads()  # has the scheduler or the last worker gone?
+            self._fitting_threads()  # has the scheduler or the last worker gone?
             return
         sent = self._under_way.pop(future)
         if future.status == "cancelled":
