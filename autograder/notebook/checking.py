@@ -6,29 +6,18 @@ import html
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from autograder import layout
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import send
+from autograder.result import CheckResult, structure
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
 AFTER = "After you hand in, {count} more checks judge, with inputs of their own:"
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
-
-
-@dataclass(frozen=True)
-class Line:
-    """One check as a student sees it."""
-
-    title: str
-    outcome: Outcome
-    message: str
-    hints: tuple[str, ...]
-    doc: str | None
 
 
 @dataclass(frozen=True)
@@ -40,7 +29,7 @@ class CheckReport:
     """
 
     assignment: str
-    lines: tuple[Line, ...]
+    lines: tuple[CheckResult, ...]
     trouble: Notice | None = None
     later: tuple[str, ...] = ()
 
@@ -60,8 +49,9 @@ class CheckReport:
         for line in self.lines:
             parts.append(f"{SYMBOLS[line.outcome]} {line.outcome.words:<11} {line.title}")
             parts += [f"    {line.message}"] if line.message else []
-            parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
-            parts += [f"    read: {line.doc}"] if line.doc and line.outcome is Outcome.FAILED else []
+            if line.outcome is Outcome.FAILED:
+                parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
+                parts += [f"    read: {line.doc}"] if line.doc else []
         parts += ["", self.summary]
         if self.passed and self.later:
             parts += ["", AFTER.format(count=len(self.later)), *(f"- {title}" for title in self.later)]
@@ -99,27 +89,23 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         trouble = None
         if diagnosis["kind"] != "ok":
             trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
-        lines = tuple(_line(result) for result in answer["checks"])
+        lines = tuple(structure(CheckResult, result) for result in answer["checks"])
     path = layout.judged_later(assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else ()
     return CheckReport(assignment, lines, trouble, tuple(later))
 
 
-def _line(result: dict[str, Any]) -> Line:
-    outcome = Outcome(result["outcome"])
-    hints = tuple(result["hints"]) if outcome is Outcome.FAILED else ()
-    return Line(result["title"], outcome, result["message"], hints, result["doc"])
-
-
-def _row(line: Line) -> str:
+def _row(line: CheckResult) -> str:
     # The colour stands beside the words: there is none that can be read on white as well as on black.
     style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
     mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.words}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
     if line.message:
         row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'
+    if line.outcome is not Outcome.FAILED:
+        return row
     for number, hint in enumerate(line.hints, 1):
         row += f'<details style="margin-left:2em"><summary>hint {number}</summary>{html.escape(hint)}</details>'
-    if line.doc and line.outcome is Outcome.FAILED:
+    if line.doc:
         row += f'<div style="margin-left:2em"><a href="{html.escape(line.doc)}">read about it</a></div>'
     return row

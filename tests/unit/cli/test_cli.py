@@ -15,11 +15,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from autograder import cli, result
-from autograder.checks import Outcome
+from autograder.checks import Check, Outcome, Visibility
 from autograder.cli.grade import grade as grade_verb
 from autograder.cli.options import table
 from autograder.exceptions import GraderError, UsageError
-from autograder.notebook.checking import CheckReport, Line
+from autograder.notebook.checking import CheckReport
 
 MakeResult = Callable[..., result.Result]
 
@@ -191,7 +191,8 @@ def test_checking_finds_the_workspace_from_the_chapter_and_from_the_course(
 def test_checking_exits_0_only_when_every_check_passed(
     outcome: Outcome, status: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    report = CheckReport("02_nodes", (Line("It turns.", outcome, "it did not", ("look left",), None),))
+    turns = Check("turns", "It turns.", 2.0, "graph", Visibility.VISIBLE, ("look left",), None, ())
+    report = CheckReport("02_nodes", (result.CheckResult.of(turns, outcome, "it did not"),))
     monkeypatch.setattr(sys.modules["autograder.cli.check"], "run_checks", lambda *arguments: report)
     done = _run("check", "02_nodes", str(tmp_path), "--json", str(tmp_path / "report.json"))
     assert done.exit_code == status
