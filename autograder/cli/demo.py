@@ -11,7 +11,8 @@ import click
 from autograder import layout
 from autograder.checks import suites
 from autograder.cli.grade import Progress, report
-from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
+from autograder.cli.options import isolation_option, jobs_option, json_option
+from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
 from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import write_json
@@ -19,21 +20,15 @@ from autograder.sandbox import Tier
 
 
 @click.command()
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=layout.BUILD / "demo",
-    help="The folder for the results.",
-)
 @jobs_option
-@seed_option
 @isolation_option
 @json_option
-def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None) -> None:
-    """Grade the reference solution and flawed submissions, and show what each loses.
+def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
+    """Grade the reference solution and flawed submissions, and show what each loses. The results are in .build/demo.
 
     The exit status is 0 when the reference has all marks and no flawed submission has, and 1 otherwise.
     """
+    out = layout.BUILD / "demo"
     assignment = layout.COURSE.demo or suites.graded()[0]
     sources = suites.hidden(assignment).sources
     shown = [mutant for mutant in mutants(assignment) if mutant.demo]
@@ -48,7 +43,7 @@ def demo(out: Path, jobs: int, seed: int, isolation: str, json_file: Path | None
             results = grade_all(
                 entries,
                 assignment,
-                seed=seed,
+                seed=DEFAULT_SEED,
                 out=out,
                 jobs=jobs,
                 isolation=Tier(isolation),

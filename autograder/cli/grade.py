@@ -51,12 +51,6 @@ INTERRUPTED = 130  # as a shell tells it
     help="Keep a result whose submission, suite and seed have not changed. Say whose mark is another one.",
 )
 @click.option(
-    "--require",
-    type=click.FloatRange(0, 100),
-    metavar="PERCENT",
-    help="The least mark. If one is below it, the exit status is 1.",
-)
-@click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
     help="The table of students as CSV. PATHS is then one download of Moodle, Canvas, Gradescope or GitHub Classroom.",
@@ -82,7 +76,6 @@ def grade(
     assignment: str,
     out: Path,
     resume: bool,
-    require: float | None,
     roster: Path | None,
     scheduler: str | None,
     certificates: Path,
@@ -95,9 +88,8 @@ def grade(
 
     A path is a submission (a folder, a zip or a notebook), or a folder with a submission for each student.
 
-    The exit status is 0 when every submission was graded, 1 when one was not graded, fits no student of --roster or is
-    below --require, 2 for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their
-    end.
+    The exit status is 0 when every submission was graded, 1 when one was not graded or fits no student of --roster, 2
+    for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
     """
     suites.hidden(assignment)
     with _submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
@@ -124,8 +116,7 @@ def grade(
     if changed := changes(list(before.values()), again):
         click.echo("\nWhat a change of the suite or of the submission changed:")
         tell(changed)
-    short = [r for r in results if r.status is Status.NOT_GRADED or (require is not None and r.percent < require)]
-    sys.exit(1 if short or not all_fit else 0)
+    sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
 
 
 def _stored(entries: Sequence[Entry], out: Path) -> dict[str, Stored]:

@@ -95,15 +95,6 @@ def test_regrading_with_resume_says_whose_mark_is_another_one(
     assert "changed:" not in _run(*command).output
 
 
-@pytest.mark.parametrize(("percent", "status"), [("40", 0), ("41", 1)])
-def test_a_mark_below_the_required_one_exits_1(
-    tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]], percent: str, status: int
-) -> None:
-    graded(make_result("alice"))
-    path, out = str(_submission(tmp_path / "alice")), str(tmp_path / "out")
-    assert _run("grade", path, "--assignment", "02_nodes", "--out", out, "--require", percent).exit_code == status
-
-
 def test_a_submission_that_was_not_graded_exits_1_and_shows_no_zero(
     tmp_path: Path, ungraded_result: result.Result, graded: Callable[..., dict[str, Any]]
 ) -> None:
