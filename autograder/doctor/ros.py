@@ -74,7 +74,7 @@ def _manifest(prefix: Path) -> Path:
 
 def cmake_files(system: System, ros: RosEnvironment) -> Finding:
     """Look at whether the wheels' CMake files were mended; message packages do not compile before."""
-    count = system.baked(ros.prefixes[0])
+    count = len(system.baked_files(ros.prefixes[0]))
     if count:
         found = f"{count} CMake files of the wheels name folders of another machine: no message package compiles"
         return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.mend")

@@ -14,9 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from autograder.ros import RosEnvironment, find
+from autograder.ros import find
 from autograder.ros.mend import baked_files
 from autograder.sandbox import cgroup
+from autograder.sandbox.tiers import namespaces_failure
 
 PATIENCE_SECONDS = 60.0
 
@@ -47,6 +48,11 @@ class System:
         self.environ: Mapping[str, str] = os.environ
         # Not gettempdir(): it passes over a TMPDIR that cannot be written to, and that is what is to be found.
         self.tmp = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
+        self.disk_usage = shutil.disk_usage
+        self.find_ros = find
+        self.baked_files = baked_files
+        self.namespaces_failure = namespaces_failure
+        self.bounds = cgroup.bounds
 
     def which(self, command: str) -> str | None:
         """Find a command on PATH, or in the running environment even when that was not activated."""
@@ -80,10 +86,6 @@ class System:
         except OSError:
             return None
 
-    def free(self, folder: Path) -> int:
-        """Return how many bytes are free where a folder is."""
-        return shutil.disk_usage(folder).free
-
     def writable(self, folder: Path) -> bool:
         """Return whether a file can be made in a folder, or the folder itself be made."""
         nearest = next((path for path in (folder, *folder.parents) if path.exists()), Path("/"))
@@ -99,15 +101,3 @@ class System:
             return importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
             return None
-
-    def find_ros(self) -> RosEnvironment:
-        """Find ROS 2, or raise `RosError`."""
-        return find()
-
-    def bounds(self) -> frozenset[str]:
-        """Return what the kernel bounds for all processes of a sandbox of this user together: pids, memory."""
-        return cgroup.bounds()
-
-    def baked(self, prefix: Path) -> int:
-        """Return how many of the wheels' CMake files under a prefix still name the build machine."""
-        return len(baked_files(prefix))

@@ -6,8 +6,9 @@ import os
 import stat
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from autograder.doctor import Finding, Ran, Status, System, examine, healthy, re
 from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.platform_versions import PACKAGES
+from autograder.sandbox.tiers import namespaces_failure
 
 VENV = Path("/course/.venv")
 WHEELS = RosEnvironment("wheels", (VENV,), VENV / "lib/python3.12/site-packages/rclpy")
@@ -56,12 +58,13 @@ GOOD: dict[str, Any] = dict(
     which=lambda command: f"/usr/bin/{command}",
     run=answers({}),
     read=FILES.get,
-    free=lambda path: 50 * 1024**3,
+    disk_usage=lambda path: SimpleNamespace(free=50 * 1024**3),
     writable=lambda path: True,
     package=lambda name: VERSIONS.get(name, "1.2"),
     find_ros=lambda: WHEELS,
+    baked_files=lambda prefix: [],
+    namespaces_failure=lambda: None,
     bounds=lambda: frozenset({"pids", "memory"}),
-    baked=lambda prefix: 0,
 )
 
 
@@ -107,9 +110,6 @@ def unwritable(folder: str) -> Callable[[Path], bool]:
     return lambda path: path != Path(folder)
 
 
-NO_CELL = answers({"bwrap": Ran(1, DENIED)})
-NO_NESTING = answers({"--proc /proc": Ran(1, "bwrap: Can't mount proc on /newroot/proc: Operation not permitted")})
-
 LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "an old Python": ("Python", {"python": (3, 9, 18)}, Status.MISSING, "3.9.18", "make setup PYTHON=python3.12"),
     "a Python without wheels": ("Python", {"python": (3, 14, 0)}, Status.MISSING, "3.10 to 3.13", "PYTHON=python3.12"),
@@ -147,7 +147,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "half an installation": ("ROS 2", {"read": {}.get}, Status.MISSING, "no package.xml", "make setup"),
     "CMake files not mended": (
         "CMake files",
-        {"baked": lambda prefix: 15},
+        {"baked_files": lambda prefix: 15 * [prefix]},
         Status.MISSING,
         "15 CMake files",
         "-m autograder.ros.mend",
@@ -261,35 +261,38 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "Ubuntu's AppArmor restriction": (
         "isolation",
-        {"run": NO_CELL, "read": sysctl("kernel.apparmor_restrict_unprivileged_userns", "1")},
+        {"namespaces_failure": lambda: DENIED, "read": sysctl("kernel.apparmor_restrict_unprivileged_userns", "1")},
         Status.WEAK,
-        f"cannot make namespaces ({DENIED}): AppArmor restricts user namespaces",
+        f"cannot make namespaces, one inside the other ({DENIED}): AppArmor restricts user namespaces",
         "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0",
     ),
     "a kernel closed to users": (
         "isolation",
-        {"run": NO_CELL, "read": sysctl("kernel.unprivileged_userns_clone", "0")},
+        {"namespaces_failure": lambda: DENIED, "read": sysctl("kernel.unprivileged_userns_clone", "0")},
         Status.WEAK,
         "the kernel forbids user namespaces",
         "sudo sysctl -w kernel.unprivileged_userns_clone=1",
     ),
     "a kernel with no namespaces left": (
         "isolation",
-        {"run": NO_CELL, "read": sysctl("user.max_user_namespaces", "0")},
+        {"namespaces_failure": lambda: DENIED, "read": sysctl("user.max_user_namespaces", "0")},
         Status.WEAK,
         "no user namespaces at all",
         "sudo sysctl -w user.max_user_namespaces=15000",
     ),
     "a container that hides /proc": (
         "isolation",
-        {"run": NO_NESTING, "read": {**FILES, Path("/.dockerenv"): ""}.get},
+        {
+            "namespaces_failure": lambda: "bwrap: a warning\nbwrap: Can't mount proc",
+            "read": {**FILES, Path("/.dockerenv"): ""}.get,
+        },
         Status.WEAK,
-        "cannot make one namespace inside another (bwrap: Can't mount proc",
+        "cannot make namespaces, one inside the other (bwrap: Can't mount proc): this container's",
         "--security-opt systempaths=unconfined",
     ),
     "namespaces forbidden by something unknown": (
         "isolation",
-        {"run": NO_CELL},
+        {"namespaces_failure": lambda: DENIED},
         Status.WEAK,
         "the kernel or a security module forbids it",
         "sudo dmesg | tail",
@@ -301,7 +304,13 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "/full cannot be written to",
         'export TMPDIR="$HOME/tmp"',
     ),
-    "a full disk": ("disk", {"free": lambda path: 3 * 1024**2}, Status.WEAK, "0.0 GB free in /tmp", "df -h /tmp"),
+    "a full disk": (
+        "disk",
+        {"disk_usage": lambda path: SimpleNamespace(free=3 * 1024**2)},
+        Status.WEAK,
+        "0.0 GB free in /tmp",
+        "df -h /tmp",
+    ),
     "no browser": (
         "browser",
         {"which": without("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")},
@@ -415,8 +424,16 @@ def test_a_command_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) 
     assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
 
 
+@pytest.fixture
+def forgets_tries() -> Iterator[None]:
+    """Whether namespaces can be made is tried anew, and after the test, too."""
+    namespaces_failure.cache_clear()
+    yield
+    namespaces_failure.cache_clear()
+
+
 def test_a_bubblewrap_that_is_denied_namespaces_is_found_out_for_real(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None
 ) -> None:
     denied = tmp_path / "bwrap"
     denied.write_text(f"#!/bin/sh\necho '{DENIED}' >&2\nexit 1\n")
