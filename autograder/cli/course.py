@@ -28,7 +28,7 @@ def course() -> None:
 @_names
 def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
-    for chapter in _chosen(names):
+    for chapter in chapters(names):
         changed = len(sync_chapter(chapter))
         click.echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
 
@@ -37,18 +37,10 @@ def sync(names: tuple[str, ...]) -> None:
 @_names
 def check(names: tuple[str, ...]) -> None:
     """Say what is stale and which rules for notebooks are broken. If there is anything, the exit status is 1."""
-    found = [finding for chapter in _chosen(names) for finding in findings(chapter)]
+    found = [finding for chapter in chapters(names) for finding in findings(chapter)]
     for finding in found:
         click.echo(str(finding))
     sys.exit(1 if found else 0)
-
-
-def _chosen(names: tuple[str, ...]) -> list[Chapter]:
-    """Return the chapters of these names, all without any."""
-    there = {chapter.assignment: chapter for chapter in chapters()}
-    if unknown := set(names) - set(there):
-        raise click.UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(there)}")
-    return [there[name] for name in names or there]
 
 
 def findings(chapter: Chapter) -> list[Finding]:

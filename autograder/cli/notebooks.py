@@ -33,18 +33,19 @@ def notebooks(
     """
     from autograder.course.execute import run_notebook
     from autograder.course.forms import Form
+    from autograder.course.sync import Chapter, chapters
     from autograder.grading.parallel import map_parallel
     from autograder.ros import activate
 
     activate()
     named = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
     forms = [form for form, chosen in named.items() if chosen] or [Form.SOURCE]
-    names = assignments or tuple(layout.assignments())
-    wanted = [(layout.source_notebook(name), form) for form in forms for name in names]
+    wanted = [(chapter, form) for form in forms for chapter in chapters(assignments)]
 
-    def run(path_and_form: tuple[Path, Form]) -> Execution:
-        path, form = path_and_form
-        return run_notebook(path, form, report=layout.BUILD / "notebooks" / f"{path.stem}-{form.value}.ipynb")
+    def run(chapter_and_form: tuple[Chapter, Form]) -> Execution:
+        chapter, form = chapter_and_form
+        report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{form.value}.ipynb"
+        return run_notebook(chapter, form, report=report)
 
     runs = map_parallel(run, wanted, jobs=jobs, on_done=_tell)
     if json_file is not None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import re
 import shutil
 import tempfile
 import time
@@ -20,9 +19,9 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
 from autograder import layout
-from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter
+from autograder.plain_text import clean
 from autograder.ros.domains import Domain
 
 # Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
@@ -32,8 +31,6 @@ warnings.simplefilter('error')
 # ipykernel's word about itself, when it shuts down; as an error it would keep the kernel from ending.
 warnings.filterwarnings('default', message='For consistency across implementations')
 """
-
-_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
 
 @dataclass(frozen=True)
@@ -53,26 +50,20 @@ class Execution:
 
 
 def run_notebook(
-    path: Path,
+    chapter: Chapter,
     form: Form = Form.SOURCE,
     *,
     timeout: float = 120.0,
     report: Path | None = None,
 ) -> Execution:
-    """Execute a notebook in the given form and a ROS domain of its own; the chapter's folder is left as it is.
+    """Execute a chapter's notebook in a ROS domain of its own; the chapter's folder is left as it is.
 
     Args:
-        path: the notebook, `chapters/ID/ID.ipynb`.
-        form: `source`, `solved` or `released`.
+        chapter: the chapter.
+        form: the form in which its notebook is executed.
         timeout: seconds that one cell may take.
         report: where to keep the executed notebook.
-
-    Raises:
-        CourseError: the notebook is missing or is not one.
     """
-    chapter = Chapter(path.parent)
-    if chapter.path != path:
-        raise CourseError(f"{path.name}: a chapter's notebook has its folder's name, {chapter.path.name}")
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
     with working_copy(chapter.folder) as folder, Domain() as domain:
@@ -116,7 +107,7 @@ def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -
         # A loop that is closed at its end; nbclient's own call leaves one in each thread.
         asyncio.run(client.async_execute(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}))
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
-        return f"cell {begun[-1]!r}: {_COLOUR.sub('', str(error))}"
+        return f"cell {begun[-1]!r}: {clean(str(error))}"
     finally:
         del notebook.cells[0]
     return None

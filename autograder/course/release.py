@@ -26,23 +26,9 @@ COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.
 STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefile of the bundle
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
-# Parts for instructors only, as paths in the bundle.
-_PACKAGES = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")
-_VERBS = (
-    "compare",
-    "course",
-    "demo",
-    "export",
-    "grade",
-    "gradescope",
-    "new",
-    "notebooks",
-    "release",
-    "replay",
-    "similar",
-    "verify",
-)
-WITHHELD = (*(f"autograder/{name}" for name in _PACKAGES), *(f"autograder/cli/{verb}.py" for verb in _VERBS))
+# The modules of the command line that students get: their verbs, and what these need.
+STUDENT_CLI = frozenset({"__init__.py", "options.py", "check.py", "doctor.py", "ros.py", "update.py"})
+WITHHELD = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")  # parts for instructors only
 
 
 def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
@@ -55,13 +41,10 @@ def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> li
     """
     if out.exists():
         raise UsageError(f"{out} exists already: name a folder that does not exist yet")
-    known = {chapter.assignment: chapter for chapter in chapters()}
-    if unknown := set(names) - set(known):
-        raise UsageError(f"there is no chapter {', '.join(sorted(unknown))}; there are: {', '.join(known)}")
+    chosen = chapters(names)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         bundle = Path(scratch) / out.name
-        chosen = [known[name] for name in names or known]
         copy_tool(COPIED, bundle)
         _withhold(bundle)
         copy_course((layout.FILE, layout.COURSE.worlds, *layout.COURSE.released), bundle)
@@ -102,9 +85,12 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
 
 
 def _withhold(bundle: Path) -> None:
-    for withheld in WITHHELD:
-        path = bundle / withheld
-        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    tool = bundle / "autograder"
+    for name in WITHHELD:
+        shutil.rmtree(tool / name)
+    for module in (tool / "cli").iterdir():
+        if module.name not in STUDENT_CLI:
+            module.unlink()
 
 
 def write_released(chapter: Chapter, folder: Path) -> None:

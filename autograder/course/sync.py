@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -67,9 +67,9 @@ class Chapter:
         nbformat.write(notebook, self.path)
 
 
-def chapters() -> list[Chapter]:
-    """Return the chapters, sorted by name."""
-    return [Chapter(path.parent) for path in sorted(layout.CHAPTERS.glob("*/*.ipynb")) if path.stem == path.parent.name]
+def chapters(names: Sequence[str] = ()) -> list[Chapter]:
+    """Return the chapters of these names, or all in order; a UsageError lists the existing ones."""
+    return [Chapter(layout.chapter(name)) for name in names or layout.assignments()]
 
 
 def find_outdated(chapter: Chapter) -> list[Finding]:

@@ -16,6 +16,7 @@ from autograder.checks import Check, Outcome, Visibility, suites
 from autograder.cli import course as command
 from autograder.course.exceptions import CourseError
 from autograder.course.tables import titles
+from autograder.exceptions import UsageError
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result import CheckResult
@@ -72,8 +73,8 @@ def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
 
 def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path) -> None:
     result = run("check", "99_flying")
-    assert result.exit_code == 2
-    assert "there is no chapter 99_flying; there are: 01_small" in result.output
+    assert isinstance(result.exception, UsageError)
+    assert str(result.exception) == "there is no assignment '99_flying'; there are: 01_small"
     assert run("check", "01_small").exit_code == 1
 
 
