@@ -1,7 +1,7 @@
 """The export formats. Each module of this folder is a format of the same name.
 
-Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file,
-and `write`; see `Format`.
+Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file.
+Its `write(stored, out)` writes results to the file or folder `out` and returns the file to open first.
 """
 
 from __future__ import annotations
@@ -10,23 +10,13 @@ import pkgutil
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import Protocol, cast
+from types import ModuleType
 
 from autograder.exceptions import UsageError
 from autograder.export.stored import Stored
 
-
-class Format(Protocol):
-    """The members of a format's module."""
-
-    FOLDER: bool
-
-    def write(self, stored: Sequence[Stored], out: Path) -> Path:
-        """Write results to the file or folder `out` and return the file to open first."""
-
-
-FORMATS: Mapping[str, Format] = {
-    found.name: cast(Format, import_module(f"{__name__}.{found.name}")) for found in pkgutil.iter_modules(__path__)
+FORMATS: Mapping[str, ModuleType] = {
+    found.name: import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)
 }
 
 
@@ -46,4 +36,5 @@ def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
         kind = "folder" if format.FOLDER else "file"
         raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
     out.parent.mkdir(parents=True, exist_ok=True)
-    return format.write(stored, out)
+    first: Path = format.write(stored, out)
+    return first
