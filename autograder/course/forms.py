@@ -15,6 +15,13 @@ from autograder.unwritten import STILL_TO_BE_WRITTEN
 # the node that runs into it ends, and what it ended with is this sentence.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 
+# What nbgrader is told wherever it makes a form.
+SETTINGS = {
+    "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
+    # A mark scheme stands in the locked cell of its question, where autograding brings it back.
+    "ClearMarkScheme": {"enforce_metadata": False},
+}
+
 
 class Form(str, Enum):
     """Whose notebook it is."""
@@ -53,13 +60,6 @@ def _preprocessed(notebook: NotebookNode, *steps: str) -> NotebookNode:
     from nbgrader import preprocessors
     from traitlets.config import Config
 
-    config = Config(
-        {
-            "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
-            # A scheme stands in the locked cell of the question, where autograding brings it back.
-            "ClearMarkScheme": {"enforce_metadata": False},
-        }
-    )
     for step in steps:
-        notebook, _ = getattr(preprocessors, step)(config=config).preprocess(notebook, {})
+        notebook, _ = getattr(preprocessors, step)(config=Config(SETTINGS)).preprocess(notebook, {})
     return notebook

@@ -33,8 +33,7 @@ def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
     Raises:
         UsageError: the assignment has no hidden checks, or `out` exists already.
     """
-    if assignment not in suites.graded():
-        raise UsageError(f"{assignment} has no hidden checks; there are: {', '.join(suites.graded())}")
+    suites.hidden(assignment)
     if out.exists():
         raise UsageError(f"{out} exists already: name a file that does not exist yet")
     with tempfile.TemporaryDirectory() as scratch:

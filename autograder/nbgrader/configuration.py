@@ -9,9 +9,10 @@ from typing import Any
 
 from nbgrader.converters import Autograde
 from nbgrader.preprocessors import Execute
+from traitlets.config import Config
 
 from autograder import layout
-from autograder.course.forms import CODE_STUB
+from autograder.course.forms import SETTINGS
 
 
 def configure(c: Any, root: Path) -> None:
@@ -36,10 +37,7 @@ def configure(c: Any, root: Path) -> None:
         Path(exchange).mkdir(parents=True, exist_ok=True)
     c.Exchange.root = exchange
 
-    c.ClearSolutions.code_stub = {"python": CODE_STUB}
-
-    # A mark scheme is in the locked cell of its question. Autograding restores it for formgrader.
-    c.ClearMarkScheme.enforce_metadata = False
+    c.merge(Config(SETTINGS))
 
     c.Autograde.exporter_class = "autograder.nbgrader.SubmissionExporter"
     c.Autograde.sanitize_preprocessors = [

@@ -18,6 +18,7 @@ from nbgrader.utils import is_grade, is_solution
 from traitlets import Integer, Unicode
 
 from autograder import feedback
+from autograder.course.cells import group
 from autograder.exceptions import GraderError
 from autograder.feedback.model import page_view
 from autograder.grading import DEFAULT_SEED
@@ -93,23 +94,23 @@ class SandboxedGrade(NbGraderPreprocessor):
     def _write_scores(self, nb: NotebookNode, result: Result, out: Path) -> None:
         """Write the score and the feedback of each group into the outputs of its locked grade cell."""
         page = page_view(result, out)
-        groups = {group.name: group for group in page.groups}
+        groups = {view.name: view for view in page.groups}
         graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
-        named = [_group(cell) for cell in graded]
+        named = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in graded]
         if sorted(named) != sorted(groups):
             raise GraderError(
                 f"{result.assignment}: its grade cells have the groups {sorted(named)}, but its suite has "
                 f"{sorted(groups)}: correct the source notebook and run `nbgrader generate_assignment` again"
             )
         for cell, name in zip(graded, named, strict=True):
-            group, worth = groups[name], float(cell.metadata.nbgrader["points"])
-            if abs(group.max_points - worth) > 1e-6:
+            view, worth = groups[name], float(cell.metadata.nbgrader["points"])
+            if abs(view.max_points - worth) > 1e-6:
                 raise GraderError(
                     f"{result.assignment}: the cell of group {name!r} is worth {worth:g} points, its checks "
-                    f"{group.max_points:g}: run `nbgrader generate_assignment` again"
+                    f"{view.max_points:g}: run `nbgrader generate_assignment` again"
                 )
-            points = min(max(round(group.points, 4), 0.0), worth)
-            cell.outputs = grade_outputs(points, page, group, first=cell is graded[0])
+            points = min(max(round(view.points, 4), 0.0), worth)
+            cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
 
     def _request_manual_grading(self, marks: dict[str, str]) -> None:
         """Mark the submission for manual grading. A score that was booked earlier stays the same."""
@@ -123,9 +124,3 @@ class SandboxedGrade(NbGraderPreprocessor):
 def _name(cell: NotebookNode) -> str:
     """Return the key by which cells are matched: the grade id, or the cell id if there is none."""
     return f"grade {grade_id(cell)}" if grade_id(cell) else f"cell {cell.get('id')}"
-
-
-def _group(cell: NotebookNode) -> str:
-    course = cell.metadata.get("course")
-    group = course.get("group") if isinstance(course, dict) else None
-    return group if isinstance(group, str) else f"(none, cell {cell.metadata.nbgrader['grade_id']})"

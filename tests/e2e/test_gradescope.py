@@ -67,7 +67,7 @@ def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["00_welcome"], "00_welcome has no hidden checks; there are: 01_package_structure"),
+        (["00_welcome"], "there are no hidden checks for '00_welcome'; there are for: 01_package_structure"),
         ([ASSIGNMENT], "exists already: name a file that does not exist yet"),
     ],
     ids=["no checks", "exists already"],  # one that names a chapter would be made a home for on another worker
