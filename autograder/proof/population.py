@@ -91,14 +91,13 @@ def population(assignment: str) -> Population:
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
     """Yield (path, functions, given lines) of each file that students write or mend; no functions means all of them."""
-    packages = suites.hidden(assignment).sources
-    chapter = Chapter(layout.chapter(assignment))
-    for cell in chapter.read().cells:
-        copied = origin(cell) if is_solution(cell) else None
-        if copied is not None and copied.source.parts[0] in packages:
+    packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
+    copies = [(cell, copied) for cell in chapter.read().cells if (copied := origin(cell))]
+    for cell, copied in copies:
+        if is_solution(cell) and copied.source.parts[0] in packages:
             yield str(copied.source), frozenset(copied.hide) if copied.hide else None, frozenset()
     given = chapter.folder / "ws" / "src"
-    written = {copied.source.parts[0] for cell in chapter.read().cells if (copied := origin(cell))}
+    written = {copied.source.parts[0] for _, copied in copies}
     for package in set(packages) - written:  # it is given with faults, and there to be mended
         for path in sorted((given / package).rglob("*")):
             right = layout.SOLUTIONS / path.relative_to(given)
@@ -167,10 +166,5 @@ def _code(code: CodeType) -> tuple[object, ...]:
     constants = tuple(
         _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
     )
-    return (
-        code.co_code,
-        constants,
-        code.co_names,
-        code.co_varnames,
-        code.co_exceptiontable if hasattr(code, "co_exceptiontable") else b"",
-    )
+    caught = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
+    return code.co_code, constants, code.co_names, code.co_varnames, caught

@@ -61,8 +61,8 @@ def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
         yield "name", len(key), len(key), "s"
         yield from _numbers(value, len(key) + len(colon))
         if (word := value.strip()) and not NUMBER.fullmatch(word.lstrip("-")):
-            end = len(line.rstrip())
-            yield "value", end - 1 if word[-1] in "'\"" else end, end - 1 if word[-1] in "'\"" else end, "s"
+            end = len(line.rstrip()) - (word[-1] in "'\"")
+            yield "value", end, end, "s"
 
 
 def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
