@@ -24,16 +24,10 @@ MAX_PIXELS = 25_000_000
 
 
 def accept(data: object, request: Request, sha256: str) -> Result:
-    """Check a worker's answer, write its files to the request's folder, and return the result.
+    """Check a worker's answer, a packed `Answer`; write its files to the request's folder, and return the result.
 
-    Args:
-        data: what the worker sent, a packed `Answer`.
-        request: what was asked.
-        sha256: digest of the submission that was sent.
-
-    Raises:
-        AnswerError: the answer breaks a bound or the schema, is about something else, or says that the worker failed.
-            Nothing is written.
+    `sha256` is the digest of the submission that was sent. Raises AnswerError if the answer is none to the request, or
+    says that the worker failed. Nothing is written then.
     """
     answer = Answer.unpack(data)
     if answer.failure:
@@ -52,10 +46,7 @@ def accept(data: object, request: Request, sha256: str) -> Result:
 def give_up(request: Request, why: str, log: str) -> Result:
     """Write and return the result of a submission that the cluster did not grade.
 
-    Args:
-        request: what was asked.
-        why: a sentence for the result.
-        log: what an instructor reads beside the result.
+    `why` is a sentence for the result, `log` what an instructor reads beside it.
     """
     clear(request.out)
     write_atomically(request.out / LOG, log.encode("utf-8", "backslashreplace"))

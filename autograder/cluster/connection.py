@@ -31,9 +31,7 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
         jobs: how many submissions are graded at once by `local`.
         certificates: the folder that `make cluster-certificates` made, for TLS.
 
-    Raises:
-        UsageError: the address cannot be used, or a certificate is missing.
-        ClusterError: nobody answers there.
+    Raises ClusterError if nobody answers there, and UsageError if the address or a certificate cannot be used.
     """
     # A lost connection is this program's to explain, in one sentence.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
@@ -57,11 +55,7 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
 
 
 def require_address(scheduler: str) -> None:
-    """Require the address of a scheduler: `tls` and any machine, or `tcp` and this one.
-
-    Raises:
-        UsageError: it is no address, or would send submissions in clear text to another machine.
-    """
+    """Raise UsageError unless this is the address of a scheduler: `tls` and any machine, or `tcp` and this one."""
     try:
         address = urlsplit(scheduler)
         host, port = address.hostname, address.port

@@ -39,11 +39,7 @@ class Parcel:
 
     @classmethod
     def unpack(cls, data: bytes) -> Parcel:
-        """Read a parcel.
-
-        Raises:
-            ClusterError: the bytes hold none.
-        """
+        """Read a parcel. Raises ClusterError if the bytes hold none."""
         try:
             assignment, seed, tier, files = _unpacked(data, MAX_PARCEL)
             entries = [SubmittedFile(PurePosixPath(os.fsdecode(n)), bytes(d), bool(x)) for n, d, x in files]
@@ -71,11 +67,7 @@ class Answer:
 
     @classmethod
     def unpack(cls, data: object) -> Answer:
-        """Read what a worker sent.
-
-        Raises:
-            AnswerError: it breaks a bound, or is no answer.
-        """
+        """Read what a worker sent. Raises AnswerError if it breaks a bound, or is no answer."""
         if not isinstance(data, bytes):
             raise AnswerError(f"a worker sent {type(data).__name__} instead of bytes")
         try:

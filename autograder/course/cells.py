@@ -36,11 +36,7 @@ class Origin:
     cut: tuple[tuple[str, str], ...]
 
     def expected_text(self) -> str:
-        """Return the source that the cell must have.
-
-        Raises:
-            CourseError: the reference file is missing, or a function or line to hide is not in it.
-        """
+        """Return the source that the cell must have. Raises CourseError if the reference does not have it all."""
         text = strip_licence(read_solution(self.source))
         try:
             text = mark_functions(text, self.hide) if self.hide else text
@@ -86,11 +82,7 @@ def is_solution(cell: NotebookNode) -> bool:
 
 
 def metadata(node: NotebookNode) -> Mapping[str, Any]:
-    """Return the `course` part of a cell's or a notebook's metadata.
-
-    Raises:
-        CourseError: it breaks the schema. The message names the place in it.
-    """
+    """Return the `course` part of a cell's or a notebook's metadata. Raises CourseError if it breaks the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     try:
         _METADATA.validate(course)
@@ -101,11 +93,7 @@ def metadata(node: NotebookNode) -> Mapping[str, Any]:
 
 
 def read_solution(source: PurePosixPath) -> str:
-    """Return the text of a reference file.
-
-    Raises:
-        CourseError: there is no such file.
-    """
+    """Return the text of a reference file. Raises CourseError if there is none."""
     path = layout.SOLUTIONS / source
     if not path.is_file():
         raise CourseError(f"the reference has no file {source}; look in solutions/")

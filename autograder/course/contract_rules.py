@@ -21,10 +21,7 @@ from autograder.course.forms import Form, in_form
 def broken_contract(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
     """Return the sentences without a check, the checks without a sentence, and what students are not shown.
 
-    Args:
-        name: the notebook's file name, for the findings.
-        notebook: the source notebook.
-        checks: the checks of its chapter, visible and hidden.
+    Findings call the notebook by `name`. `checks` are all of its chapter, visible and hidden.
     """
     found = []
     for cell in in_form(notebook, Form.RELEASED).cells:

@@ -58,11 +58,7 @@ def run_notebook(
 ) -> Execution:
     """Execute a chapter's notebook in a ROS domain of its own; the chapter's folder is left as it is.
 
-    Args:
-        chapter: the chapter.
-        form: the form in which its notebook is executed.
-        timeout: seconds that one cell may take.
-        report: where to keep the executed notebook.
+    A cell may take `timeout` seconds. The executed notebook is kept at `report`.
     """
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
@@ -85,13 +81,9 @@ def working_copy(folder: Path) -> Iterator[Path]:
 
 
 def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -> str | None:
-    """Execute a notebook in place, in a kernel of its own; return what went wrong, or None.
+    """Execute a notebook in place, in a kernel of its own that runs in `folder`; return what went wrong, or None.
 
-    Args:
-        notebook: gets the outputs.
-        folder: where the kernel runs.
-        timeout: seconds that one cell may take.
-        domain: the `ROS_DOMAIN_ID` of the kernel.
+    A cell may take `timeout` seconds. `domain` is the kernel's `ROS_DOMAIN_ID`.
     """
     client = NotebookClient(
         notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}

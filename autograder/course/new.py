@@ -27,8 +27,7 @@ OBJECTIVES = "objectives:\n"
 def write_chapter(assignment: str) -> tuple[Path, ...]:
     """Write a chapter of this name into the course, and return its folders: notebook, checks and reference.
 
-    Raises:
-        UsageError: the name is not like `10_mapping`, or one of the folders is there. Nothing is written then.
+    Raises UsageError if the name is not like `10_mapping` or one of the folders is there. Nothing is written then.
     """
     named = NAME.fullmatch(assignment)
     if named is None or keyword.iskeyword(named[1]):

@@ -17,10 +17,7 @@ from autograder.course.findings import Difference, Finding
 def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> Iterator[Difference]:
     """Yield the grade cells whose points or group differ from the suite's, and the groups without a cell.
 
-    Args:
-        name: the notebook's file name, for the findings.
-        notebook: the notebook, in which a correction sets the points of a cell.
-        points: the points of each group of its hidden suite.
+    Findings call the notebook by `name`. `points` are those of each group of its hidden suite.
     """
     seen: set[str] = set()
     for cell in notebook.cells:

@@ -34,10 +34,8 @@ WITHHELD = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms
 def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
     """Write the students' bundle of these chapters (all by default) to the new folder `out`; return their names.
 
-    Its version is the present time. `newest` is the folder where students' machines find the newest release.
-
-    Raises:
-        UsageError: `out` exists, or a chapter does not exist. Nothing is written then.
+    Its version is the present time. `newest` is the folder where students' machines find the newest release. Raises
+    UsageError if `out` exists or a chapter does not. Nothing is written then.
     """
     if out.exists():
         raise UsageError(f"{out} exists already: name a folder that does not exist yet")

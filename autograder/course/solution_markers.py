@@ -22,15 +22,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 def mark_functions(text: str, hide: Sequence[str]) -> str:
     """Return Python source with solution markers around the bodies of the functions in `hide`.
 
-    Signature, decorators and docstring stay outside the markers, because the student needs them.
-
-    Args:
-        text: source of a module.
-        hide: qualified names, such as `main` or `RobotController.control_loop`.
-
-    Raises:
-        CourseError: the source does not parse or already has markers; a function is missing or occurs twice, has no
-            docstring or no body on lines of its own; or two of the functions overlap.
+    Signature, decorators and docstring stay outside the markers, because the student needs them. Names are qualified:
+    `main`, `RobotController.control_loop`. Raises CourseError if any of the bodies cannot be marked.
     """
     try:
         functions = list(_functions(ast.parse(text)))
@@ -47,16 +40,10 @@ def mark_functions(text: str, hide: Sequence[str]) -> str:
 
 
 def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
-    """Return text with solution markers around the lines between each pair of lines.
+    """Return text of any kind with solution markers around the lines between each pair of lines.
 
-    Args:
-        text: text of a file of any kind.
-        cuts: the line before and the line after each region, without indentation. Each line occurs once in the text.
-            An empty string stands for the start or the end of the file.
-
-    Raises:
-        CourseError: the text already has markers, a line is missing or occurs twice, or a region is empty or overlaps
-            another one.
+    The lines of a pair stand without indentation. Each occurs once in the text. An empty string stands for the start or
+    the end of the file. Raises CourseError if any of the regions cannot be marked.
     """
     lines = text.splitlines()
     regions = []

@@ -40,11 +40,7 @@ class Chapter:
         return self.folder / f"{self.folder.name}.ipynb"
 
     def read(self) -> NotebookNode:
-        """Read the notebook.
-
-        Raises:
-            CourseError: there is none, or it is not a notebook.
-        """
+        """Read the notebook. Raises CourseError if there is none, or it is none of this format."""
         if not self.path.is_file():
             raise CourseError(f"{self.folder.name}: the folder has no notebook {self.folder.name}.ipynb: create it")
         text = self.path.read_text(encoding="utf-8")
@@ -81,9 +77,7 @@ def find_outdated(chapter: Chapter) -> list[Finding]:
 def sync_chapter(chapter: Chapter) -> list[Finding]:
     """Copy the reference and the suite's points into a chapter, and return the cells and files that differed.
 
-    Raises:
-        CourseError: the metadata are wrong, a reference file is missing, or the suite has other groups than the cells.
-            Nothing is written then.
+    Raises CourseError for what only an author can correct. Nothing is written then.
     """
     notebook = chapter.read()
     differences = list(_differences(chapter, notebook))

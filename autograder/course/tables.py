@@ -49,14 +49,7 @@ def course_page() -> tuple[str, tuple[Finding, ...]]:
 
 
 def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
-    """Return the instructors' page as Markdown.
-
-    Args:
-        syllabus: the entries to cover.
-        covered: the locations that cover them.
-        titles: title of each chapter by its name, in order.
-        efforts: what there is to do in each chapter, by its name.
-    """
+    """Return the instructors' page as Markdown; titles and efforts are those of each chapter by its name, in order."""
     points = {name: _points(covered, name) for name in titles}
     return "\n".join(
         [

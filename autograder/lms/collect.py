@@ -37,8 +37,7 @@ class Collected:
 def unpacked(download: Path) -> Iterator[Path]:
     """Give the folder of a download; one that is a zip is unpacked until the block is left.
 
-    Raises:
-        UsageError: it is neither a folder nor a zip, or names a file outside of itself.
+    Raises UsageError if it is neither a folder nor a zip, or names a file outside of itself.
     """
     if download.is_dir():
         yield download
@@ -56,12 +55,9 @@ def unpacked(download: Path) -> Iterator[Path]:
 
 
 def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
-    """Find the submission of each student.
+    """Find each student's submission in an unpacked download.
 
-    Args:
-        folder: the unpacked download.
-        roster: the students.
-        assignment: the assignment; in nbgrader's layout, each student's folder holds one of this name.
+    In nbgrader's layout, the folder of a student holds one with the name of the assignment.
     """
     newest: dict[str, HandedIn] = {}
     older: list[str] = []

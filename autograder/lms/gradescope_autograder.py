@@ -23,15 +23,9 @@ COPIED = ("autograder", "sim", "assets", "pyproject.toml", "requirements.lock", 
 
 
 def write_autograder(assignment: str, out: Path, tier: Tier) -> None:
-    """Write the zip that grades one assignment on Gradescope.
+    """Write the zip `out`, which grades an assignment on Gradescope; `tier` is how students' code is kept apart there.
 
-    Args:
-        assignment: the assignment that it grades.
-        out: the zip to write.
-        tier: how students' code is kept apart there.
-
-    Raises:
-        UsageError: the assignment has no hidden checks, or `out` exists already.
+    Raises UsageError if the assignment has no hidden checks, or `out` exists already.
     """
     suites.hidden(assignment)
     if out.exists():

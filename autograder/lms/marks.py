@@ -35,21 +35,11 @@ def write_marks(
     """Write the table of a system with the marks of one assignment.
 
     A submission that was not graded, or that nobody handed in, leaves its cell as it is. Marks are scaled to the most
-    that the table says.
-
-    Args:
-        stored: the results.
-        system: a key of `SYSTEMS`.
-        roster: the table that the system exported.
-        out: the file to write.
-        late: the students whose submission was late.
-        late_penalty: what these lose, in percent of their marks.
+    that the table says. Students who were `late` lose `late_penalty` percent of theirs. `system` is a key
+    of `SYSTEMS`. Raises UsageError if the table lacks a column, or the results are of several assignments.
 
     Returns:
         The students who have a result and are not in the table.
-
-    Raises:
-        UsageError: the table lacks a column, or the results are of several assignments.
     """
     results = {item.result.student: item.result for item in stored if item.result.status is Status.GRADED}
     assignments = {item.result.assignment for item in stored}

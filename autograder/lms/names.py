@@ -69,11 +69,7 @@ def _accounts(name: str) -> Keys:
 
 
 def read_metadata(folder: Path) -> list[HandedIn]:
-    """Return what a download of Gradescope holds.
-
-    Raises:
-        UsageError: its `submission_metadata.yml` cannot be read.
-    """
+    """Return what a download of Gradescope holds. Raises UsageError if its list of submissions cannot be read."""
     path = folder / METADATA
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))

@@ -77,13 +77,9 @@ def normalized(text: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a table of students.
+    """Read a table of students: CSV in UTF-8, with headings in its first line.
 
-    Args:
-        path: a CSV file in UTF-8, with headings in its first line.
-
-    Raises:
-        UsageError: it cannot be read, has no column that names students, or names one twice. The message says which.
+    Raises UsageError if it cannot be read, has no column that names students, or names one twice.
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:

@@ -71,14 +71,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
     """Run the visible checks on the packages of a workspace.
 
     The code path is the grader's own: the packages are built by colcon and the node runs in a process of its own.
-
-    Args:
-        assignment: the name of the chapter.
-        workspace: the colcon workspace.
-
-    Raises:
-        UsageError: there is no such assignment or workspace.
-        GraderError: the check itself failed.
+    Raises GraderError if the check itself fails.
     """
     if grading():  # the sandbox holds no checks
         return Notice("The hidden checks run after this notebook has been executed.")

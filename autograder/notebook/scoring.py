@@ -108,8 +108,7 @@ def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> Scor
 def score_of(recording: Recording, run: str) -> Score:
     """Return the score of the way to the first goal, of that robot which did best.
 
-    Raises:
-        UsageError: the world has no goal.
+    Raises UsageError if the world has no goal.
     """
     world = recording.simulation.world
     if not world.goals:

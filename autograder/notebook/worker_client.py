@@ -24,9 +24,7 @@ RECORDING = "recording.npz"
 def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
     """Ask a worker to `drive` or to `check`; yield its answer and the folder with the files that it wrote.
 
-    Raises:
-        UsageError: there is no workspace at `workspace`.
-        GraderError: the worker failed.
+    Raises UsageError if there is no such workspace, and GraderError if the worker failed.
     """
     source = workspace / "src"
     if not source.is_dir():

@@ -48,12 +48,8 @@ def register(shell: InteractiveShell | None) -> None:
 def write(line: str, cell: str, original: Any) -> None:
     """Write a cell's text to the file that `line` names, unless that would destroy a student's work.
 
-    The file's old text is compared as a whole. A record that is lost makes copies, never losses.
-
-    Args:
-        line: what stands behind `%%writefile`.
-        cell: the text.
-        original: IPython's own magic, which writes the file and says so.
+    The file's old text is compared as a whole. A record that is lost makes copies, never losses. `line` is what stands
+    behind `%%writefile`, `original` is IPython's own magic, which writes the file and says so.
     """
     parse: Any = magic_arguments.parse_argstring
     arguments = parse(original, line)
