@@ -31,7 +31,7 @@ that platform, so that what a student learns here holds there. `make setup` inst
 `autograder doctor` says where a machine has others. The versions of Ubuntu are those of
 https://packages.ubuntu.com/noble; that of catkin_pkg is the one in ROS's own package repository.
 
-`python docs/platform_page.py` writes this page from the lock; a test holds it.
+`python docs/platform_page.py` writes this page from the lock. A test fails if the page is out of date.
 """
 JAZZY = "https://docs.ros.org/en/jazzy"
 COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student meets it", "why another version")

@@ -99,7 +99,7 @@ def test_what_a_person_gives_in_formgrader_is_added_everywhere(size: int, tmp_pa
     before = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
     room.nbgrader("autograde")
     after = {path: path.stat().st_mtime_ns for path in graded.glob("*/result.json")}
-    assert after == before, "graded again instead of booked"
+    assert after == before, "graded again instead of recorded"
     marks = {stored.result.student: stored.result.score for stored in load(graded)}
     assert {student.name for student in everybody if marks[student.name]} == {
         student.name for student in everybody if student.points is not None

@@ -62,7 +62,7 @@ class Classroom:
         return out
 
     def grades(self, student: str) -> Grades:
-        """Return each grade cell's points, the most that there are, and whether a person is to grade it, as booked."""
+        """Return each grade cell's points in the gradebook, its maximum, and whether a person is to grade it."""
         with Gradebook(f"sqlite:///{self.course}/gradebook.db") as gradebook:
             submission = gradebook.find_submission_notebook(self.assignment, self.assignment, student)
             return {

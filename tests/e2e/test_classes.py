@@ -111,9 +111,9 @@ def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: st
     for pupil in graded.pupils:
         result = graded.parallel[pupil.name]
         grades = graded.room.grades(pupil.name)
-        # A question that a person grades is booked with no points where nobody has touched it.
-        booked = {name: (score, worth) for name, (score, worth, _) in grades.items() if name.startswith("grade-")}
-        assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in booked)
+        # A question that a person grades has no points if the student wrote nothing. Otherwise it waits for a person.
+        recorded = {name: (score, worth) for name, (score, worth, _) in grades.items() if name.startswith("grade-")}
+        assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in recorded)
         expected = {
             f"grade-{name.replace('_', '-')}": (
                 pytest.approx(sum(check.points for check in result.group(name))),
@@ -121,8 +121,8 @@ def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: st
             )
             for name, worth in groups.items()
         }
-        assert booked == expected, pupil.name
-        assert sum(worth for _, worth in booked.values()) == pytest.approx(result.max_score)
+        assert recorded == expected, pupil.name
+        assert sum(worth for _, worth in recorded.values()) == pytest.approx(result.max_score)
 
 
 def test_two_at_once_give_what_one_after_the_other_gives(graded: Graded) -> None:
