@@ -14,13 +14,13 @@ from autograder.proof.cases import attacks
 PAGE = ROOT / "docs" / "attacks.md"
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))
 
-HEAD = """# Attacks, and what holds them
+HEAD = """# Attacks and their tests
 
 What a malicious submission can try. The proof grades submissions that try it, and tests try it on a part alone.
 `python docs/attacks_page.py` writes this page from `docs/attacks.yaml`.
 """
 OPEN = """
-## Not held
+## Not blocked
 
 - **Buffers of sockets, where no control group can be made.** There the limits of a sandbox count what its processes
   have mapped. `autograder doctor` says whether the kernel counts the rest.
