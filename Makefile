@@ -87,7 +87,7 @@ lab:            ## open JupyterLab on the chapters, with ROS switched on (LAB_AR
 
 tour:           ## solve each chapter's release in JupyterLab, keep screenshots in .build/screenshots
 	@$(BOOTSTRAP) --dev --browser
-	$(BIN)/python -m pytest tests/browser/test_tour.py $(PYTEST_ARGS)
+	$(BIN)/python -m pytest tests/browser/test_solve_in_jupyterlab.py $(PYTEST_ARGS)
 
 classes:        ## a class of five hands in each chapter, graded through nbgrader and without
 	@$(BOOTSTRAP) --dev

@@ -25,7 +25,7 @@ from autograder.proof.claims import Attack, hidden_lines
 from autograder.proof.payloads import CANARY, LOOT
 from autograder.result import Result
 from autograder.sandbox import cgroup
-from tests.drawn import commit, drawn, unless
+from tests.sampling import commit, sample, unless
 
 DRIVES = frozenset({"room", "pillars", "corridor"})
 
@@ -34,7 +34,7 @@ def _attacks() -> Iterator[object]:
     """Yield each attack with its assignment."""
     found = [(assignment, attack) for assignment in suites.graded() for attack in attacks(assignment)]
     others = [attack.id for assignment, attack in found if assignment != ASSIGNMENT]
-    chosen = drawn(others, len(others), commit())
+    chosen = sample(others, len(others), commit())
     for assignment, attack in found:
         marks = unless(assignment == ASSIGNMENT or attack.id in chosen)
         yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}", marks=marks)

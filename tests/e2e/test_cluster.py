@@ -29,7 +29,7 @@ from autograder.intake import detect_layout
 from autograder.proof.mutants import mutants, write_mutant, write_reference
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
-from tests.e2e.cluster_arena import CLIENT, SCHEDULER, WORKERS, Arena, arena
+from tests.e2e.local_cluster import CLIENT, SCHEDULER, WORKERS, LocalCluster, local_cluster
 from tests.e2e.results import without_times
 
 ASSIGNMENT = "01_package_structure"
@@ -67,12 +67,12 @@ def stored(out: Path) -> dict[str, tuple[Any, dict[str, bytes]]]:
     return found
 
 
-def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:
+def grade_during_kills(cluster: LocalCluster, kills: int, draw: random.Random) -> Path:
     """Grade the class while machines are killed; start over until as many were killed. Return the last results."""
     victims = [CLIENT, SCHEDULER, *WORKERS]
     until, run, killed = time.monotonic() + DEADLINE, 0, 0
     options = ("--scheduler", cluster.address, "--certificates", str(cluster.certificates), "--resume")
-    cluster.mend()
+    cluster.restart_ended()
     client = cluster.run(CLIENT, grade(f"out{run}", *options))
     while time.monotonic() < until:
         try:
@@ -80,7 +80,7 @@ def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:
         except subprocess.TimeoutExpired:
             cluster.kill(draw.choice(victims) if killed >= 3 else (WORKERS[0], SCHEDULER, CLIENT)[killed])
             killed += 1
-        cluster.mend()
+        cluster.restart_ended()
         if client.poll() is None:
             continue
         if client.returncode == 0:
@@ -95,12 +95,12 @@ def grade_under_fire(cluster: Arena, kills: int, draw: random.Random) -> Path:
     ("kills", "flawed"), [pytest.param(3, 0, id="3"), pytest.param(20, 8, id="20", marks=pytest.mark.nightly)]
 )
 def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, kills: int, flawed: int) -> None:
-    with arena(tmp_path) as cluster:
+    with local_cluster(tmp_path) as cluster:
         students = write_class(cluster.place / "class", flawed)
         subprocess.run(grade("serial", "-j", "1"), cwd=cluster.place, check=True)
         seed = int(os.environ.get("KILLS_SEED", 2026 if kills == 3 else time.time_ns() % 100_000))
         print(f"KILLS_SEED={seed}")  # draws the same instants again
-        out = grade_under_fire(cluster, kills, random.Random(seed))
+        out = grade_during_kills(cluster, kills, random.Random(seed))
         told = [result["student"] for result in json.loads((cluster.place / f"{out.name}.json").read_text())]
         assert sorted(told) == students
         assert stored(out) == stored(cluster.place / "serial")

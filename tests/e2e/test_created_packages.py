@@ -19,8 +19,8 @@ from autograder.proof.lanes import Lanes
 from autograder.proof.mutants import write_reference
 from autograder.proof.prove import prove
 from autograder.sandbox import Tier
-from tests.drawn import drawn, unless
 from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
+from tests.sampling import sample, unless
 
 # The packages of a chapter that its student could make by the tool.
 MADE = {
@@ -46,7 +46,7 @@ def test_the_tool_writes_what_the_real_one_writes(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize(
-    "assignment", [pytest.param(one, marks=unless(one in now)) for now in [drawn(list(MADE), 4)] for one in MADE]
+    "assignment", [pytest.param(one, marks=unless(one in now)) for now in [sample(list(MADE), 4)] for one in MADE]
 )
 def test_no_check_takes_a_point_for_what_the_tool_writes(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
     def write(folder: Path) -> None:

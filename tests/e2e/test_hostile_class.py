@@ -21,8 +21,8 @@ from autograder.proof.cases import cases
 from autograder.proof.claims import Attack, CaseKind, first_sentence
 from autograder.result import Result, from_json
 from autograder.sandbox import cgroup
+from tests.e2e.leak_monitor import grade_monitored
 from tests.e2e.results import without_times
-from tests.e2e.witness import grade_seen
 
 Writers = list[tuple[str, Callable[[Path], None]]]
 FEW = ("threshold", "ten_hertz")  # of the checks, for the small class
@@ -68,12 +68,12 @@ def hostile(names: Iterable[str]) -> Writers:
 
 
 def graded(place: Path, writers: Writers, only: tuple[str, ...]) -> dict[str, Result]:
-    """Grade submissions below a witness; return their results."""
+    """Grade submissions below a leak monitor; return their results."""
     entries = []
     for student, write in writers:
         write(folder := place / "submitted" / student)
         entries.append(Entry(student, folder / "submission" if (folder / "submission").is_dir() else folder))
-    grade_seen(place, ASSIGNMENT, entries, only)
+    grade_monitored(place, ASSIGNMENT, entries, only)
     stored = {student: place / "results" / student / RESULT for student, _ in writers}
     return {student: from_json(json.loads(path.read_text())) for student, path in stored.items()}
 

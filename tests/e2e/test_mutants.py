@@ -21,7 +21,7 @@ from autograder.proof.prove import prove
 from autograder.proof.survey import surveying
 from autograder.proof.survivors import reasons
 from autograder.sandbox import Tier
-from tests.drawn import commit, drawn, unless
+from tests.sampling import commit, sample, unless
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
@@ -40,8 +40,8 @@ def of(kind: CaseKind, assignment: str = "") -> list[str]:
 
 def chosen(draw: str | None = None) -> set[str]:
     """Return the ids of the cases that run for each change."""
-    mutants = (drawn(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded())
-    releases, variants = drawn(of(CaseKind.RELEASE), 3, draw), drawn(of(CaseKind.VARIANT), 6, draw)
+    mutants = (sample(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded())
+    releases, variants = sample(of(CaseKind.RELEASE), 3, draw), sample(of(CaseKind.VARIANT), 6, draw)
     return set().union(of(CaseKind.REFERENCE), releases, variants, *mutants)
 
 
@@ -72,12 +72,12 @@ def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes,
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "assignment", [pytest.param(name, marks=unless(name in now)) for now in [drawn(SURVEYED, 4)] for name in SURVEYED]
+    "assignment", [pytest.param(name, marks=unless(name in now)) for now in [sample(SURVEYED, 4)] for name in SURVEYED]
 )
 def test_a_drawn_part_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
     found = population(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
-    chosen = drawn(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
+    chosen = sample(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
     with surveying(assignment, lanes, 2026) as survey:
         fates = [survey.fate(mutants[name]) for name in sorted(chosen)]
     print(*fates, sep="\n")

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-ARENA = Path(__file__).parent / "ros2_records" / "arena.py"
+NODES = Path(__file__).parent / "ros2_records" / "sample_nodes.py"
 ROS2 = [sys.executable, "-m", "autograder.ros.ros2"]
 # Far above what a loaded machine needs: a command that hangs must end the test.
 PATIENCE = 120.0
@@ -24,9 +24,9 @@ WAIT = ("--spin-time", "60")
 
 
 @pytest.fixture(autouse=True)
-def arena(ros_domain: int) -> Iterator[None]:
+def nodes(ros_domain: int) -> Iterator[None]:
     """Start the nodes, and end them after the test."""
-    with subprocess.Popen([sys.executable, str(ARENA)], stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen([sys.executable, str(NODES)], stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         try:

@@ -18,9 +18,9 @@ from autograder.course.execute import run_notebook
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
 from autograder.layout import ROOT
-from tests.drawn import drawn, unless
 from tests.notebooks.alternative_texts import images_without_alt
 from tests.notebooks.outputs import said
+from tests.sampling import sample, unless
 
 CHAPTERS = chapters()
 ONE_IN = {Form.SOURCE: 4, Form.RELEASED: 10}
@@ -105,7 +105,7 @@ def runs() -> list[ParameterSet]:
     The commit draws one notebook in four and one release in ten.
     """
     runs = {f"{form.value}-{chapter.assignment}": (chapter, form) for chapter in CHAPTERS for form in ONE_IN}
-    chosen = {id for form in ONE_IN for id in drawn((id for id in runs if runs[id][1] is form), ONE_IN[form])}
+    chosen = {id for form in ONE_IN for id in sample((id for id in runs if runs[id][1] is form), ONE_IN[form])}
     return [pytest.param(*run, id=id, marks=unless(id in chosen)) for id, run in runs.items()]
 
 

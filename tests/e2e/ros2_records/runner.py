@@ -1,8 +1,8 @@
 """Runs commands of whichever `ros2` is installed, and writes down what each printed and how it ended.
 
 `python -m tests.e2e.ros2_records.runner` runs the commands of `records.yaml` and prints that file anew, or the groups
-that are named. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of `arena.py`
-answer. Each command is run by a fork of this process, which has imported what a command needs.
+that are named. It was made so with the real ros2cli: `make real-launch`, then this program. The nodes of
+`sample_nodes.py` answer. Each command is run by a fork of this process, which has imported what a command needs.
 """
 
 from __future__ import annotations
@@ -209,15 +209,17 @@ def run(out: TextIO, *names: str) -> None:
     os.environ["AMENT_PREFIX_PATH"] = f"{PREFIX}{os.pathsep}{os.environ['AMENT_PREFIX_PATH']}"
     with tempfile.TemporaryDirectory() as scratch:
         os.environ["ROS_LOG_DIR"] = f"{scratch}/log"
-        with subprocess.Popen([sys.executable, str(HERE / "arena.py")], stdout=subprocess.PIPE, text=True) as arena:
+        with subprocess.Popen(
+            [sys.executable, str(HERE / "sample_nodes.py")], stdout=subprocess.PIPE, text=True
+        ) as nodes:
             try:
-                assert arena.stdout is not None
-                assert arena.stdout.readline() == "ready\n"
+                assert nodes.stdout is not None
+                assert nodes.stdout.readline() == "ready\n"
                 prepare()
                 with _daemon():
                     found = dict(records(groups, Path(scratch)))
             finally:
-                arena.terminate()
+                nodes.terminate()
     version = {one.name: one.version for one in distributions()}.get("ros2cli", "stand-in")
     print(f"# Recorded with ros2cli {version}, Python {sys.version_info[0]}.{sys.version_info[1]}.", file=out)
     yaml.dump(found, out, Dumper=_Readable, sort_keys=False, width=160, allow_unicode=True)

@@ -1,4 +1,4 @@
-"""Draws the cases of a long test that run for this commit, so that the runs of several commits take them all.
+"""Chooses the cases of a long test that run for this commit. The runs of several commits take all cases.
 
 The environment variable `DRAW=all` takes all of them. The workflow sets it: its jobs have a machine each.
 """
@@ -24,7 +24,7 @@ def commit() -> str:
     return found.stdout.strip()
 
 
-def drawn(names: Iterable[str], one_in: int, draw: str | None = None) -> set[str]:
+def sample(names: Iterable[str], one_in: int, draw: str | None = None) -> set[str]:
     """Return one in so many names, at least one, as a draw chooses them.
 
     Every draw chooses the same number, so that all runs take equally long.

@@ -1,4 +1,4 @@
-"""A witness of a grading: it sees all processes, files, mounts, memory and shared memory that the grading leaves.
+"""A leak monitor runs a grading and finds the processes, files, mounts, memory and shared memory that are left of it.
 
 It is a process with a scratch folder, shared memory and a control group of its own. The kernel gives it every process
 below it that has lost its parent. It sees nothing of what else runs on the machine.
@@ -33,16 +33,16 @@ ROOT = Path(__file__).resolve().parents[2]
 PR_SET_CHILD_SUBREAPER = 36  # prctl(2)
 
 
-def grade_seen(place: Path, assignment: str, entries: Sequence[Entry], only: tuple[str, ...] = ()) -> None:
-    """Grade submissions by some checks into `place`/results below a witness, and require that nothing else is left."""
+def grade_monitored(place: Path, assignment: str, entries: Sequence[Entry], only: tuple[str, ...] = ()) -> None:
+    """Grade submissions by some checks into `place`/results, and require that nothing else is left of it."""
     place.mkdir(exist_ok=True, parents=True)
-    scratch = tempfile.mkdtemp(prefix="witness-", dir="/tmp")  # the path of a kernel's sockets must be short
+    scratch = tempfile.mkdtemp(prefix="monitor-", dir="/tmp")  # the path of a kernel's sockets must be short
     found = [[entry.student, str(entry.path)] for entry in entries]
     job = json.dumps({"place": str(place), "assignment": assignment, "entries": found, "only": only})
     space = ["bwrap", "--die-with-parent", "--unshare-user", "--unshare-ipc", "--dev-bind", "/", "/"]
     space += ["--tmpfs", "/dev/shm", "--tmpfs", scratch, "--chdir", str(ROOT)]
     group = cgroup.make(Limits(memory=32 * GIB, threads=8192))
-    command = group.enter([*space, "--", sys.executable, "-m", "tests.e2e.witness", job])
+    command = group.enter([*space, "--", sys.executable, "-m", "tests.e2e.leak_monitor", job])
     environment = {**os.environ, "TMPDIR": scratch}
     try:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
@@ -76,15 +76,15 @@ def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str
             scope=Scope(only=tuple(only)),
         )
 
-    def each(requests: Sequence[Request], book: OnResult) -> None:
-        map_parallel(one, requests, jobs=2, on_done=book)
+    def each(requests: Sequence[Request], on_done: OnResult) -> None:
+        map_parallel(one, requests, jobs=2, on_done=on_done)
 
     found = tuple(Entry(student, Path(path)) for student, path in entries)
     grade_all(found, assignment, seed=DEFAULT_SEED, out=Path(place, "results"), jobs=2, grade_each=each)
 
 
-def _what_is_there() -> dict[str, list[str]]:
-    """Return what a grading could leave, as the witness sees it."""
+def _leftovers() -> dict[str, list[str]]:
+    """Return what a grading could leave, as the monitor sees it."""
     queues = (line for kind in ("shm", "sem", "msg") for line in Path("/proc/sysvipc", kind).read_text().splitlines())
     return {
         "processes": [name(pid) for pid in measure(os.getpid()).pids],
@@ -95,10 +95,10 @@ def _what_is_there() -> dict[str, list[str]]:
     }
 
 
-def _witness(job: dict[str, Any]) -> None:
-    """Grade in a child, bury whoever dies here, and write down what was there before and what is there after."""
+def _monitor(job: dict[str, Any]) -> None:
+    """Grade in a child, reap each process that ends here, and write down what was there before and after."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
-    before = _what_is_there()
+    before = _leftovers()
     if (child := os.fork()) == 0:
         try:
             _grade(**job)
@@ -106,11 +106,11 @@ def _witness(job: dict[str, Any]) -> None:
         except BaseException:
             traceback.print_exc()
             os._exit(1)
-    buried = status = 0
-    while buried != child:
-        buried, status = os.wait()
+    reaped = status = 0
+    while reaped != child:
+        reaped, status = os.wait()
     deadline = time.monotonic() + 30
-    while (after := _what_is_there()) != before and time.monotonic() < deadline:
+    while (after := _leftovers()) != before and time.monotonic() < deadline:
         with suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
@@ -120,4 +120,4 @@ def _witness(job: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    _witness(json.loads(sys.argv[1]))
+    _monitor(json.loads(sys.argv[1]))

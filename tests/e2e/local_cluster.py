@@ -35,7 +35,7 @@ def can_make_namespaces() -> bool:
 
 
 @dataclass
-class Arena:
+class LocalCluster:
     """The machines of a cluster, by their names, and what runs on them.
 
     Attributes:
@@ -104,7 +104,7 @@ class Arena:
             os.killpg(process.pid, signal.SIGKILL)
         process.wait(30)
 
-    def mend(self) -> None:
+    def restart_ended(self) -> None:
         """Start again whatever has ended of the cluster, as its service manager would."""
         for machine in (SCHEDULER, *WORKERS):
             if machine not in self.running or self.running[machine].poll() is not None:
@@ -116,9 +116,9 @@ class Arena:
 
 
 @contextmanager
-def arena(folder: Path) -> Iterator[Arena]:
-    """Give an arena below a folder; nothing runs yet."""
-    made = Arena(folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines")
+def local_cluster(folder: Path) -> Iterator[LocalCluster]:
+    """Give a cluster whose files are below a folder; nothing runs yet."""
+    made = LocalCluster(folder / "client", can_make_namespaces(), folder / "cluster-certificates", folder / "machines")
     made.place.mkdir()
     made.machines.mkdir()
     subprocess.run(["make", "-f", layout.ROOT / "Makefile", made.certificates.name], cwd=folder, check=True)
@@ -132,13 +132,13 @@ def arena(folder: Path) -> Iterator[Arena]:
                 made.kill(machine)
 
 
-def _connect(arena: Arena, stack: ExitStack) -> None:
+def _connect(cluster: LocalCluster, stack: ExitStack) -> None:
     """Make the namespaces, joined by a bridge in the scheduler's. No address is added to the machine's own network."""
 
     def ip(*arguments: str) -> None:
         subprocess.run(["ip", *arguments], check=True)
 
-    names = [arena.namespace(machine) for machine in (SCHEDULER, *WORKERS, CLIENT)]
+    names = [cluster.namespace(machine) for machine in (SCHEDULER, *WORKERS, CLIENT)]
     for number, name in enumerate(names, start=1):
         ip("netns", "add", name)
         stack.callback(ip, "netns", "del", name)

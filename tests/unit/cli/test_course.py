@@ -20,8 +20,7 @@ from autograder.exceptions import UsageError
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
 from autograder.result import CheckResult
-
-from .notebooks import chapter, code, grade, notebook, prose, solution
+from tests.unit.course.notebooks import chapter, code, grade, notebook, prose, solution
 
 CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, (), ("runs",)),)
 

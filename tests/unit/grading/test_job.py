@@ -1,0 +1,15 @@
+"""A job is passed to the worker as JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autograder.grading.job import Job, Scope
+from autograder.sandbox import Tier
+
+
+def test_a_job_crosses_a_process_boundary_whole(tmp_path: Path) -> None:
+    scope = Scope(("starts", "ten_hertz"), first_loss=True, pictures=False)
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, out, scratch, Tier.PROCESS, scope)
+    assert Job.from_json(job.to_json()) == job
