@@ -87,7 +87,7 @@ def test_the_page_fits_a_phone(page: Page, flawed: Path, complaints: list[str], 
     assert complaints == []
 
 
-def test_the_page_is_dark_for_those_who_like_it_dark(
+def test_the_page_is_dark_if_the_browser_prefers_dark(
     page: Page, flawed: Path, complaints: list[str], screenshots: Path
 ) -> None:
     page.goto(flawed.as_uri())
@@ -109,7 +109,7 @@ def test_a_script_from_the_student_does_not_run(
     assert complaints == []
 
 
-def test_the_table_leads_to_each_page(
+def test_the_class_table_links_to_each_page(
     page: Page,
     make_result: Callable[..., Result],
     broken_result: Result,

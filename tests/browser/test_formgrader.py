@@ -88,7 +88,7 @@ def cell_of(notebook: NotebookNode, name: str) -> NotebookNode:
 @pytest.mark.parametrize(
     "size", [3, pytest.param(30, marks=[pytest.mark.nightly, pytest.mark.timeout(7200)])], ids=["3", "30"]
 )
-def test_what_a_person_gives_in_formgrader_is_added_everywhere(size: int, tmp_path: Path, chromium: Browser) -> None:
+def test_points_given_in_formgrader_are_added_everywhere(size: int, tmp_path: Path, chromium: Browser) -> None:
     room, everybody = Classroom(tmp_path / "class", ASSIGNMENT), students(size)
     room.nbgrader("generate_assignment")
     for student in everybody:

@@ -119,7 +119,7 @@ def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, scr
     page.screenshot(path=screenshots / "live-view-error.png")
 
 
-def test_a_recording_plays_in_the_notebook_and_its_keys_are_not_the_notebooks(
+def test_a_recording_plays_in_the_notebook_and_its_keys_do_not_reach_the_notebook(
     page: Page, lab: Lab, screenshots: Path
 ) -> None:
     first = DRIVE.format(world=str(ROOT / "assets/worlds/empty_room.yaml")).replace("\nview\n", "\nview.pause()\n")
@@ -138,7 +138,7 @@ def test_a_recording_plays_in_the_notebook_and_its_keys_are_not_the_notebooks(
     page.screenshot(path=screenshots / "replay-in-notebook.png")
 
 
-def test_a_static_picture_stands_in_the_notebook_with_its_alternative_text(
+def test_a_static_picture_is_shown_in_the_notebook_with_its_alternative_text(
     page: Page, lab: Lab, screenshots: Path
 ) -> None:
     world = str(ROOT / "assets/worlds/maze.yaml")

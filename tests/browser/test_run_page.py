@@ -57,7 +57,9 @@ def drawn(page: Page) -> str:
     return str(page.locator(".run-player canvas").evaluate("canvas => canvas.toDataURL()"))
 
 
-def test_it_plays_to_its_end_and_stops(page: Page, opened: Path, complaints: list[str], screenshots: Path) -> None:
+def test_the_player_plays_to_the_end_of_the_run_and_stops(
+    page: Page, opened: Path, complaints: list[str], screenshots: Path
+) -> None:
     clock = page.locator(".run-player output")
     expect(clock).to_have_text("0.00 s")
     before = drawn(page)
@@ -87,7 +89,7 @@ def test_the_slider_and_the_keys_show_any_instant(page: Page, opened: Path, comp
     assert complaints == []
 
 
-def test_a_link_leads_to_an_instant(page: Page, opened: Path, complaints: list[str]) -> None:
+def test_a_link_with_an_instant_opens_the_run_at_that_instant(page: Page, opened: Path, complaints: list[str]) -> None:
     page.goto("about:blank")
     page.goto(f"{opened.as_uri()}#t=1.3")
     expect(page.locator(".run-player output")).to_have_text("1.30 s")
@@ -100,7 +102,7 @@ def test_a_link_leads_to_an_instant(page: Page, opened: Path, complaints: list[s
     assert complaints == []
 
 
-def test_it_is_dark_where_the_reader_likes_it_dark(page: Page, opened: Path) -> None:
+def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, opened: Path) -> None:
     def background() -> str:
         return str(page.evaluate("getComputedStyle(document.body).backgroundColor"))
 
@@ -112,7 +114,7 @@ def test_it_is_dark_where_the_reader_likes_it_dark(page: Page, opened: Path) -> 
     page.wait_for_function("light => document.querySelector('canvas').toDataURL() !== light", arg=light)
 
 
-def test_a_rule_shows_when_it_broke_and_leads_there(
+def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     page: Page, complaints: list[str], tmp_path: Path, screenshots: Path
 ) -> None:
     recording = drive("lab", 60.0)
@@ -136,7 +138,7 @@ def test_a_rule_shows_when_it_broke_and_leads_there(
     assert complaints == []
 
 
-def test_what_the_programs_wrote_stands_at_its_instant_as_text(
+def test_lines_of_programs_are_shown_as_text_with_their_instants(
     page: Page, complaints: list[str], tmp_path: Path, screenshots: Path
 ) -> None:
     attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"

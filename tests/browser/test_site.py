@@ -108,7 +108,7 @@ def test_the_run_on_the_start_page_plays_by_keyboard(site: Path, page: Page) -> 
     expect(run.locator("output").first).not_to_have_text("0.00 s")
 
 
-def test_each_word_of_the_glossary_is_linked_once_in_a_chapter(site: Path) -> None:
+def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> None:
     for chapter in chapters():  # no parameter: see CHAPTER
         text = (site / "chapters" / f"{chapter.assignment}.html").read_text(encoding="utf-8")
         words = re.findall(r'href="\.\./glossary\.html#(term-[^"]+)"', text)
@@ -116,7 +116,7 @@ def test_each_word_of_the_glossary_is_linked_once_in_a_chapter(site: Path) -> No
         assert len(words) == len(set(words)), chapter.assignment
 
 
-def test_links_inside_lead_somewhere(site: Path) -> None:
+def test_each_internal_link_of_the_site_has_a_target(site: Path) -> None:
     """Sphinx holds the links of pages to pages. Raw HTML and the outputs of notebooks have links of their own."""
     for path in site.rglob("*.html"):
         for link in LINK.findall(path.read_text(encoding="utf-8")):

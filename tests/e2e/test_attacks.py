@@ -82,6 +82,6 @@ def test_an_attack_gains_no_point_and_learns_nothing(
             assert not cell.metadata.nbgrader.locked or cell.source == wanted[grade_id(cell)].source
 
 
-def test_there_is_hidden_text_to_look_for() -> None:
+def test_the_list_of_hidden_texts_is_not_empty() -> None:
     for assignment in suites.graded():
         assert len(hidden_lines(assignment)) > 20, assignment

@@ -51,14 +51,14 @@ def _kernels() -> list[str]:
         pytest.param("while True: print('x' * 10_000)", None, id="prints for ever"),
     ],
 )
-def test_a_cell_that_runs_wild_ends_the_run_and_what_was_written_before_counts(cell: str, printed: str | None) -> None:
+def test_a_cell_over_a_limit_ends_the_run_and_files_written_before_count(cell: str, printed: str | None) -> None:
     answer = in_cell(executed, ["%%writefile before.txt\nkept", cell])
     assert "before.txt" in answer["files"]
     assert printed is None or answer["printed"][1] == printed
     assert answer["left"] == []
 
 
-def test_a_cell_that_asks_raises_or_exits_does_not_keep_the_next_from_running() -> None:
+def test_a_cell_that_asks_for_input_raises_or_exits_does_not_stop_the_next_cell() -> None:
     cells = [
         "input('how many points? ')",
         "1 / 0",

@@ -168,7 +168,7 @@ def test_a_command_that_is_not_finite_is_not_obeyed(listener: Listener, simulato
     assert all(math.isfinite(message.pose.pose.position.x) for message in odometry)
 
 
-def test_it_takes_twist_stamped_when_asked(listener: Listener, simulator: Start) -> None:
+def test_the_simulator_takes_twist_stamped_if_its_parameter_says_so(listener: Listener, simulator: Start) -> None:
     odometry = listener.hear(Odometry, "/odom")
     publisher = listener.node.create_publisher(TwistStamped, "/cmd_vel", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "stamped_cmd_vel:=true")
@@ -198,7 +198,7 @@ def test_several_robots_live_in_their_namespaces(listener: Listener, simulator: 
     assert odometry["alpha"][-1].pose.pose.position.x == 0.0
 
 
-def test_time_stands_still_steps_exactly_and_starts_again(listener: Listener, simulator: Start) -> None:
+def test_time_can_be_paused_stepped_exactly_and_started_again(listener: Listener, simulator: Start) -> None:
     clock = listener.hear(Clock, "/clock", 10)
     simulator(WORLDS / "empty_room.yaml", "engine:=numpy", "start_paused:=true", "step_time:=0.5")
     for expected in ("paused at 0.500 s", "paused at 1.000 s"):
@@ -248,7 +248,7 @@ def test_each_parameter_is_described_and_only_two_can_change(listener: Listener,
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_ends_cleanly_when_told_to(listener: Listener, simulator: Start, number: signal.Signals) -> None:
+def test_the_simulator_ends_cleanly_on_a_signal(listener: Listener, simulator: Start, number: signal.Signals) -> None:
     clock = listener.hear(Clock, "/clock", 10)
     process = simulator(WORLDS / "empty_room.yaml", "engine:=numpy")
     listener.wait(lambda: clock, "the clock")
@@ -301,7 +301,7 @@ def test_a_recording_is_whole_when_the_interrupt_comes_in_the_middle_of_a_row(ro
         (WORLDS / "empty_room.yaml", ("seed:=abc",), "seed"),
     ],
 )
-def test_settings_that_make_no_sense_are_named(
+def test_invalid_settings_are_named(
     simulator: Start, world: str | Path, parameters: tuple[str, ...], message: str
 ) -> None:
     process = simulator(world, *parameters)

@@ -44,7 +44,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return Workspace(tmp_path / "ws", activate(), home)
 
 
-def test_one_packages_failure_is_not_the_others(workspace: Workspace) -> None:
+def test_a_failed_package_does_not_stop_the_build_of_other_packages(workspace: Workspace) -> None:
     seen = build_workspace(workspace, ("bad", "good", "missing"), may_fail=True)
     assert seen.diagnoses["good"] is OK
     assert (workspace.install / "good/share/good/package.xml").is_file()
@@ -65,7 +65,7 @@ def test_packages_that_build_are_built_by_one_run_of_colcon(workspace: Workspace
     assert all((workspace.install / name / "share" / name / "package.xml").is_file() for name in ("bad", "good"))
 
 
-def test_of_two_packages_that_are_there_the_one_that_fails_does_not_harm_the_other(workspace: Workspace) -> None:
+def test_a_failed_package_does_not_stop_the_build_if_no_package_is_missing(workspace: Workspace) -> None:
     seen = build_workspace(workspace, ("bad", "good"), may_fail=True)
     assert [found is OK for found in seen.diagnoses.values()] == [False, True]
     assert (workspace.install / "good/share/good/package.xml").is_file()
@@ -85,7 +85,7 @@ def test_a_build_that_a_limit_ended_is_not_tried_again(workspace: Workspace, mon
         build_workspace(workspace, ("bad", "good"), may_fail=True)
 
 
-def test_where_the_suite_does_not_say_so_a_missing_file_ends_the_grading(workspace: Workspace) -> None:
+def test_a_missing_file_ends_the_grading_unless_the_build_may_fail(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match="only half written"):
         build_workspace(workspace, ("good",))
 
@@ -99,7 +99,7 @@ def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Worksp
     assert "colcon does not see the package" in seen.diagnosis.sentence
 
 
-def test_the_error_that_is_quoted_is_of_the_package_that_failed(workspace: Workspace) -> None:
+def test_the_quoted_error_belongs_to_the_package_that_failed(workspace: Workspace) -> None:
     folder = workspace.root / "src" / "good"
     (folder / "package.xml").write_text("<package><name></name></package>")
     (folder / "setup.py").write_text("raise NotImplementedError('not yet')\n")
@@ -108,7 +108,7 @@ def test_the_error_that_is_quoted_is_of_the_package_that_failed(workspace: Works
 
 
 @pytest.mark.parametrize("may_fail", [True, False])
-def test_a_package_that_is_still_to_be_written_is_said_to_be_so(workspace: Workspace, may_fail: bool) -> None:
+def test_an_unwritten_package_is_reported_as_unwritten(workspace: Workspace, may_fail: bool) -> None:
     (workspace.root / "src/bad/setup.py").write_text(CODE_STUB)
     try:
         found = build_workspace(workspace, ("bad",), may_fail=may_fail).diagnosis

@@ -75,7 +75,7 @@ def test_values_cross_as_json_with_nan_and_infinities(workspace: Workspace) -> N
     assert limit.value == 3.5
 
 
-def test_what_a_step_made_serves_later_steps(workspace: Workspace) -> None:
+def test_a_value_made_by_a_step_can_be_used_in_later_steps(workspace: Workspace) -> None:
     steps = (make("Counter", start=2), make("Counter", 3), call("add", made(1), on=0), look("count", on=0))
     outcomes = calls(workspace, "demo", *steps)
     assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]

@@ -100,13 +100,13 @@ def graded(assignment: str, tmp_path_factory: pytest.TempPathFactory) -> Graded:
     )
 
 
-def test_each_answer_gets_the_mark_that_is_claimed_of_it(graded: Graded) -> None:
+def test_each_submission_gets_its_expected_mark(graded: Graded) -> None:
     assert len(graded.pupils) >= 4
     wrong = {pupil.name: pupil.verify(graded.serial[pupil.name]) for pupil in graded.pupils}
     assert set(wrong.values()) == {""}, wrong
 
 
-def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: str) -> None:
+def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assignment: str) -> None:
     groups = suites.hidden(assignment).groups
     for pupil in graded.pupils:
         result = graded.parallel[pupil.name]
@@ -125,7 +125,7 @@ def test_the_gradebook_books_what_the_grader_says(graded: Graded, assignment: st
         assert sum(worth for _, worth in recorded.values()) == pytest.approx(result.max_score)
 
 
-def test_two_at_once_give_what_one_after_the_other_gives(graded: Graded) -> None:
+def test_two_gradings_at_once_give_the_same_results_as_one_after_the_other(graded: Graded) -> None:
     def marks(results: dict[str, Result]) -> dict[str, list[tuple[str, str, float]]]:
         return {
             student: [(check.id, check.outcome.value, check.points) for check in result.checks]

@@ -132,7 +132,7 @@ def answered(data: bytes) -> bytes:
     return Answer({"result.json": json.dumps(result.to_json()).encode()}).pack()
 
 
-def test_a_submission_that_kills_two_workers_is_not_graded_and_the_rest_is(
+def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
     requests: list[Request], tmp_path: Path
 ) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
@@ -159,7 +159,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     assert sentence.endswith("and here it is another: give both the same version of the course.")
 
 
-def test_ctrl_c_takes_in_what_has_begun_and_resume_goes_on(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_gradings_that_have_begun_and_resume_grades_the_rest(tmp_path: Path) -> None:
     for student in ("alice", "bob", "carol"):
         (tmp_path / "class" / student / "src").mkdir(parents=True)
         (tmp_path / "class" / student / "src" / "notes.txt").write_text(student)

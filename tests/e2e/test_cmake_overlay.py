@@ -27,7 +27,7 @@ def test_every_generator_of_this_ros_has_its_config(overlay: Path) -> None:
     assert {path.name for path in (overlay / "share").iterdir()} == there
 
 
-def test_where_ros_lacks_a_generator_there_is_nothing_in_its_place(tmp_path: Path) -> None:
+def test_the_overlay_has_no_config_for_a_generator_that_ros_lacks(tmp_path: Path) -> None:
     assert not list(write_overlay((tmp_path / "no_ros",), tmp_path / "overlay").glob("*/*"))
 
 

@@ -108,7 +108,7 @@ def files(folder: Path) -> dict[str, list[Any]]:
     }
 
 
-def test_reference_packages_are_installed_alike() -> None:
+def test_reference_packages_are_installed_alike_by_a_forked_and_a_started_colcon() -> None:
     started, forked = in_cell(builds, [["my_robot_package"], ["my_robot_bringup"], ["speed_guard"]])
     assert (started["status"], forked["status"]) == (0, 0), forked["output"]
     assert len(started["installed"]) > 100
@@ -116,7 +116,7 @@ def test_reference_packages_are_installed_alike() -> None:
     assert told(forked["output"]) ^ told(started["output"]) == set()
 
 
-def test_a_setup_py_sees_the_same() -> None:
+def test_a_setup_py_sees_the_same_in_a_forked_and_a_started_colcon() -> None:
     found = in_cell(builds, [["speed_guard", SPIES]])
     for built in found:
         assert built["status"] == 0, built["output"]
@@ -150,7 +150,7 @@ def test_a_setup_py_sees_the_same() -> None:
         ),
     ],
 )
-def test_a_setup_py_that_fails_is_told_alike(line: str) -> None:
+def test_a_failing_setup_py_is_reported_alike_by_a_forked_and_a_started_colcon(line: str) -> None:
     started, forked = in_cell(builds, [["speed_guard", "import os, sys", line]])
     assert started["status"] != 0
     assert forked["status"] == started["status"]

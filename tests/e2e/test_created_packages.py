@@ -39,7 +39,7 @@ def lanes() -> Iterator[Lanes]:
         yield lane
 
 
-def test_the_tool_writes_what_the_real_one_writes(tmp_path: Path) -> None:
+def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
     assert facts(tmp_path) == yaml.safe_load(RECORD.read_text())
 
 
@@ -48,7 +48,7 @@ def test_the_tool_writes_what_the_real_one_writes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "assignment", [pytest.param(one, marks=unless(one in now)) for now in [sample(list(MADE), 4)] for one in MADE]
 )
-def test_no_check_takes_a_point_for_what_the_tool_writes(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
+def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
     def write(folder: Path) -> None:
         write_reference(suites.hidden(assignment).sources, folder)
         for package in MADE[assignment]:

@@ -72,7 +72,9 @@ def test_the_zip_holds_what_setup_needs_and_nothing_that_was_built(home: Path) -
     ],
     ids=["no checks", "exists already"],  # one that names a chapter would be made a home for on another worker
 )
-def test_a_wrong_call_is_told(home: Path, arguments: list[str], message: str) -> None:
+def test_a_wrong_call_of_the_gradescope_command_is_a_usage_error(
+    home: Path, arguments: list[str], message: str
+) -> None:
     ran = subprocess.run(
         [sys.executable, "-m", "autograder", "gradescope", *arguments, "--out", str(home / "upload.zip")],
         capture_output=True,

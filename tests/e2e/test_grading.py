@@ -79,11 +79,11 @@ def test_the_reference_gets_everything_in_every_layout(together: dict[str, Resul
     assert result.build.packages[-1] == PACKAGE
 
 
-def test_the_pictures_of_the_tracks_stand_beside_the_result(together: dict[str, Result]) -> None:
+def test_the_pictures_of_the_tracks_are_stored_beside_the_result(together: dict[str, Result]) -> None:
     assert {artifact.check for artifact in together["zip"].artifacts} == {"room", "pillars", "corridor"}
 
 
-def test_one_at_a_time_gives_the_same_result_as_two_at_once(
+def test_grading_one_at_a_time_gives_the_same_result_as_two_at_once(
     together: dict[str, Result], layouts: tuple[Entry, ...], tmp_path: Path
 ) -> None:
     (alone,) = grade_all(layouts[:1], ASSIGNMENT, seed=SEED, out=tmp_path, jobs=1)
@@ -138,7 +138,7 @@ def _no_script(source: Path) -> None:
         ),
     ],
 )
-def test_a_package_that_cannot_be_judged_is_told_what_to_do(
+def test_a_package_that_cannot_be_checked_gets_a_diagnosis_with_the_remedy(
     spoil: Callable[[Path], None], kind: Kind, words: str, reference: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(reference, tmp_path / "alice")
@@ -149,14 +149,14 @@ def test_a_package_that_cannot_be_judged_is_told_what_to_do(
     assert all(check.outcome is not Outcome.PASSED for check in result.checks)
 
 
-def test_a_file_that_cannot_be_read_is_told_so(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     (tmp_path / "alice.ipynb").write_text('{"cells": [')
     result = _grade(tmp_path / "alice.ipynb", tmp_path / "out")
     assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.UNREADABLE)
     assert "hand" in result.diagnosis.sentence
 
 
-def test_a_kernel_that_a_submitted_file_keeps_from_starting_is_named(tmp_path: Path) -> None:
+def test_a_submitted_file_that_stops_the_kernel_from_starting_is_named(tmp_path: Path) -> None:
     (tmp_path / "alice").mkdir()
     nbformat.write(new_notebook(cells=[new_code_cell("1")]), tmp_path / "alice" / f"{ASSIGNMENT}.ipynb")
     (tmp_path / "alice" / "ipykernel_launcher.py").write_text("raise SystemExit(0)")
@@ -220,7 +220,7 @@ SteppedHarness.step = step
         pytest.param(BROKEN_LAB + RUN, "messages were lost", id="broken harness"),
     ],
 )
-def test_a_failure_of_the_grader_is_not_graded_and_never_a_zero(
+def test_a_failure_of_the_grader_gives_not_graded_and_never_zero(
     code: str, logged: str, worker: Callable[[str], None], reference: Path, tmp_path: Path
 ) -> None:
     worker(code)
@@ -233,7 +233,7 @@ def test_a_failure_of_the_grader_is_not_graded_and_never_a_zero(
     assert logged in (tmp_path / "out" / "grader.log").read_text()
 
 
-def test_a_failure_that_passes_is_mended_by_the_second_try(
+def test_a_failure_of_the_grader_that_happens_once_is_retried(
     worker: Callable[[str], None], reference: Path, tmp_path: Path
 ) -> None:
     mark = tmp_path / "tried"
@@ -247,7 +247,7 @@ def test_a_failure_that_passes_is_mended_by_the_second_try(
     assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.MISSING_PACKAGE)
 
 
-def test_a_result_of_an_earlier_run_is_never_taken_for_this_one(
+def test_a_result_of_an_earlier_run_is_never_used_for_this_run(
     worker: Callable[[str], None], reference: Path, tmp_path: Path, together: dict[str, Result]
 ) -> None:
     (tmp_path / "out").mkdir()
@@ -256,14 +256,14 @@ def test_a_result_of_an_earlier_run_is_never_taken_for_this_one(
     assert _grade(reference, tmp_path / "out").status is Status.NOT_GRADED
 
 
-def test_what_is_not_there_is_a_wrong_call(reference: Path, tmp_path: Path) -> None:
+def test_a_missing_submission_or_assignment_is_a_usage_error(reference: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="there is no such file or folder"):
         _grade(tmp_path / "nobody", tmp_path / "out")
     with pytest.raises(UsageError, match="there are no hidden checks for '77_none'"):
         grade_submission(reference, "77_none", student="a", seed=1, out=tmp_path / "out")
 
 
-def test_a_machine_without_namespaces_refuses_rather_than_grades_weakly(
+def test_a_machine_without_namespaces_refuses_to_grade_with_the_weak_tier(
     reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tiers, "namespaces_failure", lambda: "no user namespaces")

@@ -110,7 +110,7 @@ def require_held(results: dict[str, Result], only: tuple[str, ...]) -> None:
         ),
     ],
 )
-def test_attackers_change_nothing_of_the_others(
+def test_attackers_do_not_change_the_results_of_other_students(
     tmp_path: Path, size: int, names: tuple[str, ...], checks: tuple[str, ...]
 ) -> None:
     only = suites.hidden(ASSIGNMENT).with_dependencies(*checks)
@@ -135,7 +135,7 @@ def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
 @pytest.mark.nightly
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("size", [200])
-def test_of_a_row_of_attacks_nothing_is_left(tmp_path: Path, size: int) -> None:
+def test_many_attacks_in_a_row_leave_nothing_on_the_machine(tmp_path: Path, size: int) -> None:
     only = suites.hidden(ASSIGNMENT).with_dependencies(*FEW)
     row = [
         (f"{attack.id}, {number}", partial(write_one_of_many, attack, number))

@@ -40,7 +40,7 @@ def workspace(root: Path) -> Workspace:
     return Workspace(root, activate(), root / "home")
 
 
-def test_a_bundle_is_built_once_and_works_wherever_it_is_brought(tmp_path: Path, own_cache: Path) -> None:
+def test_an_interface_bundle_is_built_once_and_works_in_each_workspace(tmp_path: Path, own_cache: Path) -> None:
     first, second = workspace(tmp_path / "first"), workspace(tmp_path / "second")
     assert build(first, (NODES,)).ok
     (kept,) = own_cache.glob("*/install")
@@ -51,7 +51,9 @@ def test_a_bundle_is_built_once_and_works_wherever_it_is_brought(tmp_path: Path,
     assert used.returncode == 0, used.stderr
 
 
-def test_a_bundle_that_does_not_build_is_the_students_error_and_is_not_kept(tmp_path: Path, own_cache: Path) -> None:
+def test_an_interface_bundle_that_does_not_build_is_a_student_error_and_is_not_kept(
+    tmp_path: Path, own_cache: Path
+) -> None:
     broken = workspace(tmp_path / "broken")
     cmake = broken.root / "src" / INTERFACES / "CMakeLists.txt"
     cmake.write_text(cmake.read_text().replace("find_package(rosidl_default_generators", "find_package(no_such_thing"))

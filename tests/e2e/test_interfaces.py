@@ -84,7 +84,7 @@ def talk(scratch: Path) -> dict[str, Any]:
     return {"levels": levels, "hashes": sorted(hashes), "output": output}
 
 
-def test_both_builds_have_one_type_hash_and_talk() -> None:
+def test_both_builds_have_the_same_type_hash_and_exchange_messages() -> None:
     answer = in_cell(talk)
     assert answer["levels"] == [42], answer
     assert len(answer["hashes"]) == 1, answer
@@ -113,7 +113,7 @@ def test_a_second_version_of_a_package_is_refused() -> None:
         ("std_msgs/Headr header", ["std_msgs has no message Headr"]),
     ],
 )
-def test_a_wrong_definition_is_the_students_to_mend(tmp_path: Path, line: str, words: list[str]) -> None:
+def test_a_wrong_definition_is_a_student_error(tmp_path: Path, line: str, words: list[str]) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(f"{line}\n")
     with pytest.raises(StudentError) as caught:
@@ -127,7 +127,7 @@ def test_a_missing_package_is_named(tmp_path: Path) -> None:
         load_from(_workspace(tmp_path), "ghost_msgs")
 
 
-def test_a_definition_that_is_still_to_be_written_is_said_to_be_so(tmp_path: Path) -> None:
+def test_an_unwritten_definition_is_reported_as_unwritten(tmp_path: Path) -> None:
     workspace = _workspace(tmp_path)
     (workspace.root / "src" / PACKAGE / "msg" / "RobotStatus.msg").write_text(CODE_STUB)
     with pytest.raises(StudentError, match=r"msg/RobotStatus\.msg is still to be written"):

@@ -28,7 +28,7 @@ def board() -> Iterator[Node]:
 
 
 @pytest.mark.parametrize("depth", [1, 3])
-def test_it_counts_the_messages_that_are_kept(board: Node, depth: int) -> None:
+def test_a_late_joiner_counts_the_messages_that_a_publisher_keeps(board: Node, depth: int) -> None:
     publisher = board.create_publisher(
         String, "/status", QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     )

@@ -97,7 +97,7 @@ def imported(path: Path, worksheet: Path) -> dict[str, str]:
         pytest.param("02_nodes", 8, 200, id="200", marks=[pytest.mark.nightly, pytest.mark.timeout(3600)]),
     ],
 )
-def test_a_class_goes_from_moodle_s_zip_to_moodle_s_worksheet(
+def test_a_zip_of_moodle_is_graded_and_its_worksheet_gets_the_marks(
     tmp_path: Path, assignment: str, flawed: int, students: int
 ) -> None:
     kinds = answers(assignment, flawed, tmp_path / "answers")

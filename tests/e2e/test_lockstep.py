@@ -143,14 +143,14 @@ def two_runs(name: str) -> Any:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_says_the_same_in_every_run_and_hears_every_message(name: str) -> None:
+def test_a_program_prints_the_same_in_every_run_and_receives_every_message(name: str) -> None:
     first, again = two_runs(name)
     assert again == first
     heard = {text.split(" heard ")[1].split()[1] for _, text in first["said"] if " heard message" in text}
     assert heard == {str(number) for number in range(STEPS)}
 
 
-def test_data_comes_before_timers_and_timers_fire_at_their_time() -> None:
+def test_messages_are_handled_before_timers_and_timers_fire_at_their_time() -> None:
     run, _ = two_runs("rclpy.spin")
     for step in range(STEPS):
         time = round((step + 1) * STEP_NS / 1e9, 3)
@@ -162,7 +162,7 @@ def test_data_comes_before_timers_and_timers_fire_at_their_time() -> None:
         ]
 
 
-def test_a_message_that_was_published_before_the_two_sides_met_is_not_waited_for() -> None:
+def test_a_message_published_before_discovery_is_not_waited_for() -> None:
     run, _ = two_runs("publishes in __init__")
     assert not [text for _, text in run["said"] if " early " in text]
 
@@ -195,7 +195,7 @@ run(lambda: rclpy.spin(Forger()))
 """
 
 
-def test_a_forged_count_makes_the_grader_wait_a_while_and_believe_nothing() -> None:
+def test_a_forged_message_count_delays_the_grader_and_is_not_believed() -> None:
     (run,) = in_cell(impatient, FORGER)
     assert 0 < len(run["said"]) <= 2 * STEPS
 
@@ -234,7 +234,7 @@ def wild(scratch: Path, program: str) -> list[str]:
         ),
     ],
 )
-def test_a_program_that_fails_is_told_how(program: str, kind: str, words: str) -> None:
+def test_a_failing_program_gets_the_reason(program: str, kind: str, words: str) -> None:
     found, sentence = in_cell(wild, program)
     assert found == kind, sentence
     assert words in sentence

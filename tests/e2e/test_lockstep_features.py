@@ -90,7 +90,7 @@ def server(scratch: Path) -> Any:
     return twice(run)
 
 
-def test_a_service_and_the_parameter_services_answer_without_time_going_by() -> None:
+def test_services_and_parameter_services_answer_without_a_step_of_ros_time() -> None:
     answers, speed, seconds, heard = in_cell(server)
     assert answers == ["1", "2", None, None, [True, ""], [False, "too fast"]]
     assert speed == 0.9
@@ -174,7 +174,7 @@ def clients(scratch: Path) -> Any:
     return found
 
 
-def test_a_client_gets_its_answers_at_once_however_it_waits_for_them() -> None:
+def test_a_client_gets_its_responses_at_once_in_each_way_of_waiting() -> None:
     found = in_cell(clients)
     for name, heard in found.items():
         times = [0.5, 0.5, 1.0, 1.0, 1.5, 1.5] if name == "await" else [0.5, 1.0, 1.5]
@@ -196,7 +196,7 @@ def late(scratch: Path) -> Any:
     return twice(run)
 
 
-def test_a_service_that_comes_later_is_there_from_the_next_step_on() -> None:
+def test_a_service_that_is_created_later_is_available_from_the_next_step() -> None:
     assert [text for _, text in in_cell(late)] == [
         "patient nobody 0.100",
         "patient nobody 0.200",
@@ -216,7 +216,7 @@ def unanswered(scratch: Path) -> Any:
     return twice(run)
 
 
-def test_a_time_out_is_one_of_ros_time_to_the_tick() -> None:
+def test_a_timeout_is_counted_in_ros_time_exact_to_the_tick() -> None:
     heard = in_cell(unanswered)
     assert [text.split()[1:3] for _, text in heard] == [["no", "answer"]] * 3
     assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.7, 1.05], abs=0.011)
@@ -235,7 +235,7 @@ def alone(scratch: Path, text: str, seconds: float) -> Any:
     return twice(run)
 
 
-def test_timers_can_be_made_late_cancelled_and_reset() -> None:
+def test_timers_can_be_created_late_cancelled_and_reset() -> None:
     heard, also, _, _ = in_cell(alone, programs.TIMERS, 1.3)
     texts = [text.rsplit(" ", 1)[0].split()[1] for _, text in heard]
     assert [s for (s, _), text in zip(heard, texts, strict=True) if text == "tick"] == [0.4, 0.8, 1.2]
@@ -256,7 +256,7 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
     ]
 
 
-def test_sleeping_by_a_clock_lets_ros_time_go_by() -> None:
+def test_sleeping_on_a_clock_lets_ros_time_pass() -> None:
     heard, _, _, notes = in_cell(alone, programs.SLEEPS_BY_CLOCKS, 1.5)
     assert not notes
     assert [seconds for seconds, _ in heard] == pytest.approx([0.35, 0.6, 0.85, 1.1, 1.1], abs=0.011)
@@ -266,7 +266,7 @@ def test_sleeping_by_a_clock_lets_ros_time_go_by() -> None:
     ]
 
 
-def test_nodes_of_one_program_talk_to_each_other_within_a_step() -> None:
+def test_nodes_of_one_program_exchange_messages_within_a_step() -> None:
     heard, _, _, _ = in_cell(alone, programs.TALK_AT_HOME, 0.3)
     texts = ["heard why 0", "got {n}", "heard why 1", "heard why 2"]
     for n, seconds in enumerate((0.1, 0.2, 0.3), 1):
@@ -287,7 +287,7 @@ def together(scratch: Path, texts: dict[str, str], seconds: float) -> Any:
     return twice(run)
 
 
-def test_a_latched_message_reaches_who_comes_late() -> None:
+def test_a_transient_local_message_reaches_a_late_subscription() -> None:
     heard, maps, _ = in_cell(together, {"map": programs.MAP, "reader": programs.MAP_READER}, 0.2)
     assert heard == [[0.1, "reader read map 0.100"]]
     assert [text for _, text in maps] == ["map"]
@@ -297,13 +297,13 @@ def pong(following: str, qos: str) -> dict[str, str]:
     return {"pinger": programs.PINGER, "ponger": programs.PONGER.replace("{next}", following).replace("{qos}", qos)}
 
 
-def test_programs_answer_each_other_within_a_step_until_nobody_has_anything_left() -> None:
+def test_programs_answer_each_other_within_a_step_until_no_message_is_left() -> None:
     heard, _, pings = in_cell(together, pong("int(m.data) - 1", "10"), 0.3)
     assert heard == [[s, f"pinger hit {n} {s:.3f}"] for s in (0.1, 0.2, 0.3) for n in (4, 3, 2, 1, 0)]
     assert pings == [[s, str(n)] for s in (0.1, 0.2, 0.3) for n in (5, 4, 3, 2, 1)]
 
 
-def test_what_quality_of_service_keeps_apart_is_not_waited_for() -> None:
+def test_endpoints_with_incompatible_quality_of_service_are_not_waited_for() -> None:
     weak = "'ping', QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)"
     pinger = programs.PINGER.replace("'ping', 10", weak)
     heard, _, pings = in_cell(together, {"pinger": pinger, "ponger": pong("int(m.data) - 1", "10")["ponger"]}, 0.3)
@@ -311,7 +311,7 @@ def test_what_quality_of_service_keeps_apart_is_not_waited_for() -> None:
     assert len(pings) == 3
 
 
-def test_messages_of_a_type_that_the_grader_does_not_know_flow_between_programs() -> None:
+def test_programs_exchange_messages_of_a_type_that_the_grader_does_not_know() -> None:
     texts = {"listener": programs.OWN_TYPE_LISTENER, "talker": programs.OWN_TYPE_SPEAKER}
     heard, _, _ = in_cell(together, texts, 0.3)
     assert heard == [[s, f"listener hello {s:.3f}"] for s in (0.1, 0.2, 0.3)]
@@ -357,14 +357,14 @@ def failing(scratch: Path, texts: dict[str, str]) -> list[str]:
 
 
 @pytest.mark.parametrize("name", programs.DEADLOCKS)
-def test_a_deadlock_is_told_at_once_and_why(name: str) -> None:
+def test_a_deadlock_is_reported_at_once_with_its_reason(name: str) -> None:
     text, words = programs.DEADLOCKS[name]
     kind, sentence = in_cell(failing, {"node": text, "server": programs.SERVER})
     assert kind == "stuck"
     assert words in sentence
 
 
-def test_programs_that_answer_each_other_for_ever_are_stopped() -> None:
+def test_programs_that_answer_each_other_without_end_are_stopped() -> None:
     kind, sentence = in_cell(failing, pong("int(m.data)", "10"))
     assert kind == "stuck"
     assert "would go on for ever" in sentence
@@ -377,13 +377,13 @@ def flooded(scratch: Path, text: str) -> list[Any]:
         return said(harness)
 
 
-def test_a_program_that_floods_discovery_is_told_so() -> None:
+def test_a_program_that_floods_discovery_is_reported() -> None:
     _, sentence = in_cell(failing, {"node": programs.FLOODS["3,000 topics"]})
     assert "more nodes, topics, services or timers" in sentence
 
 
 @pytest.mark.parametrize("name", ["100 kHz", "100,000 at once"])
-def test_a_flood_of_messages_is_heard_as_far_as_the_queue_is_deep(name: str) -> None:
+def test_the_grader_drops_the_messages_of_a_flood_that_exceed_its_queue(name: str) -> None:
     heard = in_cell(flooded, programs.FLOODS[name])
     assert {text for _, text in heard} == {"x"}
     assert len(heard) < 20_000
@@ -393,7 +393,7 @@ def test_the_grader_serves_no_parameters_that_a_program_could_set() -> None:
     assert [text for _, text in in_cell(flooded, programs.FLOODS["the grader's parameters"])] == ["ready: False"] * 5
 
 
-def test_of_several_programs_the_one_that_crashes_is_named() -> None:
+def test_the_crashing_program_among_several_is_named() -> None:
     texts = {"server": programs.SERVER, "broken": "raise ValueError('no lidar')"}
     kind, sentence = in_cell(failing, texts)
     assert kind == "crashed_at_import"
@@ -450,11 +450,11 @@ spin(Listener)
     ],
     ids=["at the start", "at a message", "at a timer"],
 )
-def test_the_others_live_on_without_a_program_that_may_fail(text: str) -> None:
+def test_other_programs_go_on_if_a_program_that_may_fail_ends(text: str) -> None:
     assert in_cell(sparing, text) == ["1", ["map", "server"], ""]
 
 
-def test_a_program_that_may_fail_and_does_not_takes_part_until_it_must_not() -> None:
+def test_a_program_that_may_fail_takes_part_and_its_crash_is_named_once_it_must_not_fail() -> None:
     answer, running, sentence = in_cell(sparing, CRASHING.format(period=0.7, reading="pass"))
     assert (answer, running) == ("1", ["map", "server", "spared"])
     assert sentence.startswith("spared: ")
@@ -483,7 +483,7 @@ def sparing_in_real_time(scratch: Path, text: str) -> Any:
 @pytest.mark.parametrize(
     "text", ["raise ValueError('out of range')", CRASHING.format(period=0.7, reading="pass")], ids=["start", "timer"]
 )
-def test_in_real_time_the_others_live_on_too_and_one_that_must_not_fail_is_named(text: str) -> None:
+def test_in_real_time_other_programs_go_on_and_a_program_that_must_not_fail_is_named(text: str) -> None:
     answer, running, sentence = in_cell(sparing_in_real_time, text)
     assert (answer, running) == ("1", ["map", "server"])
     assert sentence.startswith("spared: ")

@@ -64,7 +64,7 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
 
 @pytest.mark.slow
 @pytest.mark.nightly
-def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_path: Path) -> None:
+def test_a_controller_with_a_wall_clock_timer_gets_its_marks_in_real_time(tmp_path: Path) -> None:
     write_reference((PACKAGE,), tmp_path)
     text = (tmp_path / NODE).read_text()
     assert "self.create_timer(CONTROL_PERIOD, self.control_loop)" in text
@@ -105,7 +105,7 @@ def test_a_controller_with_a_wall_clock_timer_earns_its_marks_in_real_time(tmp_p
         ),
     ],
 )
-def test_a_node_that_spins_in_a_thread_earns_its_marks_in_real_time(
+def test_a_node_that_spins_in_a_thread_gets_its_marks_in_real_time(
     assignment: str, file: str, checks: tuple[str, ...], tmp_path: Path
 ) -> None:
     write_reference(suites.hidden(assignment).sources, tmp_path)
@@ -117,7 +117,7 @@ def test_a_node_that_spins_in_a_thread_earns_its_marks_in_real_time(
 
 
 @pytest.mark.slow
-def test_programs_that_run_with_one_that_cannot_be_stepped_are_met_in_real_time_with_it(tmp_path: Path) -> None:
+def test_all_programs_run_in_real_time_if_one_of_them_cannot_be_stepped(tmp_path: Path) -> None:
     checks = ("build", "clearance_message", "health_message", "interface_package", "processor", "controller", "monitor")
     checks = (*checks, "sectors", "drives", "stops", "enable", "health_levels", "declared")
     assignment, package = "08_capstone", tmp_path / "src/robot_navigation_tutorial/robot_navigation_tutorial"
@@ -179,7 +179,7 @@ def met(scratch: Path, text: str) -> Any:
         ("clock", "node was met in real time: it has a timer on a clock that is not the ROS clock."),
     ],
 )
-def test_a_program_that_cannot_be_stepped_is_found_and_met_in_real_time(reason: str, words: str) -> None:
+def test_a_program_that_cannot_be_stepped_is_detected_and_runs_in_real_time(reason: str, words: str) -> None:
     ways, sentence = in_cell(met, programs.UNSTEPPABLE[reason])
     assert ways == [["real", True]] * 2
     assert sentence == words
@@ -201,7 +201,7 @@ def chosen(scratch: Path) -> str:
         return harness.time
 
 
-def test_a_program_with_a_thread_of_its_own_is_met_in_real_time_before_that_has_sent_anything() -> None:
+def test_a_program_with_its_own_thread_runs_in_real_time_before_the_thread_sends_anything() -> None:
     assert in_cell(chosen) == "real"
 
 
@@ -225,7 +225,7 @@ def unheard(scratch: Path) -> int:
         return len(harness.messages("/said", since=began, until=ended))
 
 
-def test_a_message_that_waits_for_the_grader_counts_when_it_arrived() -> None:
+def test_a_message_that_the_grader_reads_late_keeps_its_time_of_arrival() -> None:
     assert in_cell(unheard) >= 8  # one may have been taken before, one be on its way
 
 
@@ -241,7 +241,7 @@ def refused(scratch: Path, text: str) -> list[str]:
         return [error.diagnosis.kind.value, error.diagnosis.sentence]
 
 
-def test_where_lockstep_is_asked_for_the_student_hears_why_it_cannot_be() -> None:
+def test_a_program_that_must_be_stepped_and_cannot_be_gets_the_reason() -> None:
     kind, sentence = in_cell(refused, programs.UNSTEPPABLE["thread"])
     assert kind == "never_started"
     assert "cannot be stepped: it uses rclpy in threads of its own. Let a timer of the node do the work" in sentence

@@ -45,7 +45,7 @@ def chosen(draw: str | None = None) -> set[str]:
     return set().union(of(CaseKind.REFERENCE), releases, variants, *mutants)
 
 
-def test_the_commits_draw_all_cases_in_turn() -> None:
+def test_the_samples_of_many_commits_contain_all_cases() -> None:
     draws = [chosen(str(number)) for number in range(400)]
     assert set.union(*draws) == set(PROOF)
     assert len({len(draw) for draw in draws}) == 1
@@ -62,7 +62,7 @@ def lanes() -> Iterator[Lanes]:
 @pytest.mark.parametrize(
     "case", [pytest.param(PROOF[id], id=id, marks=unless(id in now)) for now in [chosen()] for id in PROOF]
 )
-def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes, tmp_path: Path) -> None:
+def test_a_submission_gets_its_expected_result(case: Case, lanes: Lanes, tmp_path: Path) -> None:
     (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
     log = tmp_path / case.assignment / case.name / "grader.log"
     messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in claim.result.checks]
@@ -74,7 +74,7 @@ def test_grading_makes_of_a_submission_what_is_claimed(case: Case, lanes: Lanes,
 @pytest.mark.parametrize(
     "assignment", [pytest.param(name, marks=unless(name in now)) for now in [sample(SURVEYED, 4)] for name in SURVEYED]
 )
-def test_a_drawn_part_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
+def test_each_sampled_mutant_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
     found = population(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
     chosen = sample(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
@@ -85,7 +85,7 @@ def test_a_drawn_part_of_the_population_is_killed_or_has_a_reason(assignment: st
 
 
 @pytest.mark.slow
-def test_a_patched_reference_is_graded_as_a_built_one(lanes: Lanes) -> None:
+def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(lanes: Lanes) -> None:
     found = [mutant for mutant in population("02_nodes").mutants if mutant.operator == "no publish"]
     with surveying("02_nodes", lanes, 2026) as survey:
         assert survey.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}

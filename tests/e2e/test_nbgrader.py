@@ -77,7 +77,9 @@ def results(graded: Classroom) -> dict[str, Result]:
 
 
 @pytest.mark.parametrize("student", CLASS)
-def test_the_gradebook_books_what_the_grader_says(student: str, graded: Classroom, results: dict[str, Result]) -> None:
+def test_the_gradebook_has_the_points_that_the_grader_gave(
+    student: str, graded: Classroom, results: dict[str, Result]
+) -> None:
     result = results[student]
     expected = {
         f"grade-{name}": (pytest.approx(sum(check.points for check in result.group(name))), worth, False)
@@ -149,7 +151,7 @@ def test_students_fetch_their_feedback(graded: Classroom) -> None:
     assert page.read_bytes() == made.read_bytes()
 
 
-def test_results_graded_in_parallel_before_can_be_booked(graded: Classroom, results: dict[str, Result]) -> None:
+def test_results_graded_before_in_parallel_are_recorded(graded: Classroom, results: dict[str, Result]) -> None:
     stored = graded.place / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns
     booked_before = graded.grades("flawed")
@@ -160,7 +162,7 @@ def test_results_graded_in_parallel_before_can_be_booked(graded: Classroom, resu
     assert sum(points for points, _, _ in booked_before.values()) == pytest.approx(results["flawed"].score)
 
 
-def test_one_that_drops_the_exercise_gets_nothing_for_what_is_put_back(graded: Classroom) -> None:
+def test_a_restored_exercise_cell_earns_no_points(graded: Classroom) -> None:
     graded.hand_in("dropped")
     folder = graded.course / "submitted" / "dropped" / ASSIGNMENT
     notebook = nbformat.read(folder / f"{ASSIGNMENT}.ipynb", as_version=4)

@@ -44,7 +44,7 @@ def test_a_new_chapter_keeps_every_rule(course: Path) -> None:
     assert "| Mapping | 10_mapping | Exercise | `nearest`, `counts`, `silent` |" in page
 
 
-def test_its_author_finds_no_word_of_the_template(course: Path) -> None:
+def test_a_new_chapter_contains_no_placeholder_of_the_template(course: Path) -> None:
     files = (path for path in course.rglob("*") if path.is_file() and not {".build", "__pycache__"} & set(path.parts))
     texts = {path: path.read_text() for path in files}
     assert len(texts) > 25
@@ -60,7 +60,7 @@ def test_every_mutant_of_a_new_chapter_is_killed(course: Path) -> None:
     assert "0 without a reason" in done.stdout
 
 
-def test_its_notebook_runs_as_its_author_and_as_a_student_have_it(course: Path) -> None:
+def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Path) -> None:
     done = on(course, "notebooks --source --released -j 2")
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -76,7 +76,9 @@ def test_its_notebook_runs_as_its_author_and_as_a_student_have_it(course: Path) 
     # One that names a chapter would be made a course for on another worker.
     ids=["no number", "a keyword", "the package exists", "the course exists"],
 )
-def test_a_name_that_cannot_be_taken_is_refused_and_nothing_is_written(course: Path, words: str, said: str) -> None:
+def test_an_invalid_name_of_a_new_chapter_is_refused_and_nothing_is_written(
+    course: Path, words: str, said: str
+) -> None:
     before = {*course.rglob("*")}
     done = on(course, f"new {words}")
     assert done.returncode == 2
@@ -84,7 +86,7 @@ def test_a_name_that_cannot_be_taken_is_refused_and_nothing_is_written(course: P
     assert {*course.rglob("*")} == before
 
 
-def test_every_command_of_the_tutorial_does_what_the_page_says(tmp_path: Path) -> None:
+def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
     blocks = BLOCKS.findall(PAGE.read_text(encoding="utf-8"))
     script = "".join(f"{text}\necho =====\n" for kind, text in blocks if kind == "sh")
     done = shell(script, tmp_path)

@@ -46,7 +46,7 @@ def test_the_reference_passes_every_visible_check_and_leaves_nothing_in_the_work
     assert [path.name for path in right.iterdir()] == ["src"]
 
 
-def test_a_flaw_is_told_with_hints_and_does_not_hide_the_rest(tmp_path: Path) -> None:
+def test_a_failed_check_shows_hints_and_the_other_checks_still_run(tmp_path: Path) -> None:
     report = check("02_nodes", _mutant("drives_blind", tmp_path))
     assert isinstance(report, CheckReport)
     (failed,) = [line for line in report.lines if line.outcome.value == "failed"]
@@ -54,7 +54,7 @@ def test_a_flaw_is_told_with_hints_and_does_not_hide_the_rest(tmp_path: Path) ->
     assert failed.hints
 
 
-def test_a_syntax_error_is_a_calm_sentence(tmp_path: Path) -> None:
+def test_a_syntax_error_is_reported_in_a_sentence_without_a_traceback(tmp_path: Path) -> None:
     _mutant("syntax_error", tmp_path)
     report = check("02_nodes", tmp_path)
     assert isinstance(report, CheckReport)
@@ -90,7 +90,7 @@ def test_a_world_of_thousands_of_walls(right: Path) -> None:
     assert isinstance(report, DriveReport), repr(report)
 
 
-def test_a_dead_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_path: Path) -> None:
+def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_path: Path) -> None:
     good = drive(PACKAGE, "robot_controller", seconds=14, faults="dead", workspace=right)
     bad = drive(
         PACKAGE, "robot_controller", seconds=14, faults=FAULTS["dead"], workspace=_mutant("drives_blind", tmp_path)
@@ -101,7 +101,7 @@ def test_a_dead_lidar_stops_the_reference_and_not_the_mutant(right: Path, tmp_pa
     assert (0.0, 0.0) not in {(v, w) for t, v, w in bad.commands if t > 11}
 
 
-def test_a_package_that_is_not_there_is_a_calm_sentence(right: Path) -> None:
+def test_a_missing_package_is_reported_in_a_sentence_without_a_traceback(right: Path) -> None:
     notice = drive("no_such_package", "robot_controller", seconds=1, workspace=right)
     assert isinstance(notice, Notice)
     assert "The package no_such_package is missing: src holds my_robot_package" in notice.sentence
@@ -132,7 +132,7 @@ def test_a_crash_is_shown_by_the_students_own_files(tmp_path: Path) -> None:
     assert "autograder" not in notice.detail
 
 
-def test_nbgraders_validate_praises_no_unsolved_notebook(tmp_path: Path) -> None:
+def test_nbgraders_validate_fails_on_an_unsolved_notebook(tmp_path: Path) -> None:
     chapter = next(chapter for chapter in chapters() if chapter.assignment == "02_nodes")
     released = in_form(chapter.read(), Form.RELEASED)
     graded = [cell for cell in released.cells if cell.metadata.get("nbgrader", {}).get("grade")]

@@ -50,7 +50,7 @@ def test_a_parameter_moves_the_place_where_the_robot_stops(right: Path) -> None:
     assert "1.5 m: " in picture.alt
 
 
-def test_a_file_serves_a_robot_by_its_name(right: Path) -> None:
+def test_a_parameter_file_gives_a_robot_the_parameters_of_its_name(right: Path) -> None:
     fleet = right / "src/my_robot_package/config/fleet_params.yaml"
     porter = drive(*PROGRAM, seconds=20, name="porter", parameters=fleet, workspace=right)
     assert isinstance(porter, DriveReport)
@@ -58,14 +58,14 @@ def test_a_file_serves_a_robot_by_its_name(right: Path) -> None:
     assert stop(porter) == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_start_that_the_node_refuses_is_a_calm_sentence_even_side_by_side(right: Path) -> None:
+def test_a_start_that_the_node_refuses_is_reported_in_a_sentence_also_side_by_side(right: Path) -> None:
     refused = drive(*PROGRAM, seconds=1, parameters={"safety_distance": 2.0}, workspace=right)
     assert isinstance(refused, Notice)
     assert "safety_distance (2 m) must be below slow_distance (1 m)" in refused.sentence
     assert side_by_side({"refused": refused}) is refused
 
 
-def test_a_parameter_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_parameter_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"there is no parameter file .*nowhere.yaml: give its path"):
         drive(*PROGRAM, parameters=tmp_path / "nowhere.yaml")
 

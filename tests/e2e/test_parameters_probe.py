@@ -58,7 +58,7 @@ def asked(scratch: Path) -> Any:
     return told, said
 
 
-def test_parameters_are_asked_for_in_either_time_and_silence_is_told() -> None:
+def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_response_is_reported() -> None:
     (stepped, real, without, silent), (talk, real_talk, silent_talk) = in_cell(asked)
     assert stepped == real
     names, values, accepted, reason = stepped

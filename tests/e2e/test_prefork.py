@@ -98,7 +98,7 @@ def reports(scratch: Path, network: bool) -> list[Any]:
 
 
 @pytest.mark.parametrize("network", [True, False])
-def test_a_forked_program_finds_itself_where_a_started_one_does(network: bool) -> None:
+def test_a_forked_program_sees_the_same_surroundings_as_a_started_one(network: bool) -> None:
     (started, apart), (forked, too) = in_cell(reports, network)
     assert apart == too
     assert ("net" in too) is network
@@ -226,7 +226,7 @@ def test_a_program_that_lacks_an_import_lacks_it_when_it_is_forked(profile: str,
     assert forked.splitlines()[-1] == started.splitlines()[-1]
 
 
-def test_a_program_that_fails_says_so_as_a_started_one_does() -> None:
+def test_a_failing_forked_program_prints_the_same_as_a_started_one() -> None:
     code = "def drive(speed):\n    raise ValueError('too fast')\ntry:\n    drive(2)\nfinally:\n    print('over')"
     started, forked = in_cell(imports, "lockstep", code)
     assert forked == started
@@ -252,7 +252,7 @@ def shadows(scratch: Path, name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["rclpy", "numpy", "std_msgs", "yaml", "selectors", "mine"])
-def test_a_module_of_the_students_comes_first_as_it_does_for_them(name: str) -> None:
+def test_a_students_module_comes_first_on_the_path_of_a_forked_program(name: str) -> None:
     started, forked = in_cell(shadows, name)
     assert started.startswith(f"my own {name}\n['one'] home")
     assert forked == started
@@ -264,7 +264,7 @@ def draws(scratch: Path) -> list[str]:
     return [imports(scratch, "tests", code)[1] for _ in range(2)]
 
 
-def test_forked_programs_do_not_share_their_chances() -> None:
+def test_forked_programs_draw_different_random_numbers() -> None:
     one, other = in_cell(draws)
     assert not set(one.split()) & set(other.split())
 
@@ -313,7 +313,7 @@ def late(scratch: Path) -> str:
     return process.ending.value
 
 
-def test_the_imports_of_the_server_are_not_of_the_program_s_time() -> None:
+def test_the_imports_of_the_fork_server_do_not_count_as_time_of_the_program() -> None:
     assert in_cell(late) == "wall_time"
 
 
@@ -332,7 +332,7 @@ def without(scratch: Path) -> list[Any]:
     return [ends, said]
 
 
-def test_where_nothing_can_be_forked_programs_are_started() -> None:
+def test_programs_are_started_if_they_cannot_be_forked() -> None:
     ends, said = in_cell(without)
     assert ends == [[0, "here\n"]] * 2
     assert len(said) == 1

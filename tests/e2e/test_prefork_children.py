@@ -90,7 +90,7 @@ def reports(scratch: Path) -> list[dict[str, Any]]:
     )
 
 
-def test_a_program_that_is_forked_for_another_finds_itself_where_a_started_one_does() -> None:
+def test_a_forked_child_program_sees_the_same_surroundings_as_a_started_one() -> None:
     started, forked = in_cell(reports)
     for found in (started, forked):
         for name in ("plain", "environment"):
@@ -135,7 +135,7 @@ _ISOLATED = f"#!{sys.executable} -I"
 _PLAIN = {"PATH": os.defpath, "PYTHONOPTIMIZE": "2"}
 
 
-def test_a_program_that_is_forked_for_another_ends_as_a_started_one_does() -> None:
+def test_a_forked_child_program_ends_as_a_started_one_does() -> None:
     started, forked = in_cell(endings)
     for found in (started, forked):
         found["destroyed"] = in_any_order(found["destroyed"][1:2])
@@ -184,7 +184,7 @@ def launched(scratch: Path) -> list[Any]:
         return [harness.output, running, killed, stop.status, list(stop.left)]
 
 
-def test_what_a_launch_starts_is_forked_and_seen_by_its_name() -> None:
+def test_programs_of_a_launch_are_forked_and_listed_by_name() -> None:
     output, running, killed, status, left = in_cell(launched)
     assert output.count("forked False ['--ros-args']") == 2, output
     assert running == [["pkg", "waits"]] * 2

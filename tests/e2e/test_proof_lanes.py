@@ -70,7 +70,7 @@ def servers() -> Servers:
     return lambda: sorted(_running() - before)
 
 
-def test_one_cell_for_many_gives_the_results_of_a_cell_each(
+def test_a_shared_cell_gives_the_same_results_as_a_cell_for_each_submission(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
@@ -83,7 +83,9 @@ def test_one_cell_for_many_gives_the_results_of_a_cell_each(
     assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
 
 
-def test_a_lane_outlives_the_thread_that_used_it_first(half: Path, servers: Servers, tmp_path: Path) -> None:
+def test_a_lane_can_be_used_after_the_thread_that_used_it_first_has_ended(
+    half: Path, servers: Servers, tmp_path: Path
+) -> None:
     seen = []
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
         for name in ("one", "two"):
@@ -95,7 +97,7 @@ def test_a_lane_outlives_the_thread_that_used_it_first(half: Path, servers: Serv
     assert seen[0] == seen[1]
 
 
-def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
+def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
@@ -107,7 +109,7 @@ def test_a_grading_that_fails_says_why_and_the_next_one_is_none_the_worse(
     assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
 
 
-def test_a_server_that_dies_is_replaced_and_nothing_of_it_stays(
+def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
     half: Path, servers: Servers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))

@@ -90,7 +90,7 @@ def test_colcon_runs_the_tests_of_each_package(workspace: Path) -> None:
 
 
 @pytest.mark.parametrize(("first", "ready", "second", "said"), PAIRS)
-def test_two_programs_talk(
+def test_two_public_programs_exchange_messages(
     workspace: Path, ros_domain: int, first: str, ready: str | None, second: str, said: str
 ) -> None:
     environment = {**os.environ, "ROS_DOMAIN_ID": str(ros_domain), "PYTHONUNBUFFERED": "1"}

@@ -33,7 +33,7 @@ def text_of(folder: Path) -> str:
     return "\n".join(path.read_text(errors="replace") for path in folder.rglob("*") if path.is_file())
 
 
-def test_every_chapter_is_in_it_as_nbgrader_releases_it(bundle: Path) -> None:
+def test_the_release_contains_every_chapter_as_nbgrader_releases_it(bundle: Path) -> None:
     for chapter in chapters():
         released = in_form(chapter.read(), Form.RELEASED)
         text = (bundle / "chapters" / chapter.assignment / chapter.path.name).read_text()
@@ -42,21 +42,21 @@ def test_every_chapter_is_in_it_as_nbgrader_releases_it(bundle: Path) -> None:
         assert "BEGIN MARK SCHEME" not in text
 
 
-def test_what_tools_left_behind_is_not_in_it(bundle: Path) -> None:
+def test_the_release_contains_no_caches_or_build_folders(bundle: Path) -> None:
     left = [path for name in ("__pycache__", ".mypy_cache", ".pytest_cache") for path in bundle.rglob(name)]
     assert left == []
     names = ["src", "build", "__pycache__", ".mypy_cache", ".ruff_cache", ".devcontainer"]
     assert layout.NOT_COPIED(str(bundle), names) == {"build", "__pycache__", ".mypy_cache", ".ruff_cache"}
 
 
-def test_each_make_target_that_it_names_is_in_its_makefile(bundle: Path) -> None:
+def test_each_make_target_that_the_release_names_is_in_its_makefile(bundle: Path) -> None:
     texts = [path for path in bundle.rglob("*") if path.suffix in (".py", ".md", ".ipynb")]
     named = {name for path in texts for name in re.findall(r"`make ([a-z-]+)`", path.read_text())}
     targets = set(re.findall(r"^([a-z-]+):", (bundle / "Makefile").read_text(), re.MULTILINE))
     assert {"setup", "real-launch"} <= named <= targets
 
 
-def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
+def test_the_release_contains_no_line_of_a_hidden_suite(bundle: Path) -> None:
     shown = text_of(bundle)
     hidden = {
         line.strip()
@@ -73,7 +73,7 @@ def test_no_line_of_a_hidden_suite_is_in_it(bundle: Path) -> None:
     assert kept == {"__init__.py", "conftest.py", "support", "visible"}
 
 
-def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
+def test_check_of_the_release_runs_without_the_instructors_modules(bundle: Path) -> None:
     """A copy of Python's environment is not needed for it: the code of the bundle comes first on the path."""
     check = [sys.executable, "-m", "autograder", "check", "00_welcome"]
     environment = {**os.environ, "PYTHONPATH": str(bundle)}
@@ -88,7 +88,7 @@ def test_its_check_runs_without_the_instructors_half(bundle: Path) -> None:
     assert re.findall(r"^  ([a-z]+)  ", listed.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
 
 
-def test_a_release_of_one_chapter_mends_the_bundle_of_all(bundle: Path, tmp_path: Path) -> None:
+def test_a_release_of_one_chapter_updates_a_bundle_of_all_chapters(bundle: Path, tmp_path: Path) -> None:
     mine = shutil.copytree(bundle, tmp_path / "mine")
     later = tmp_path / "later"
     assert run("02_nodes", "--out", str(later), "--newest", str(later)).exit_code == 0

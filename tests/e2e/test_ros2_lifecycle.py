@@ -43,7 +43,7 @@ def run(record: dict[str, object]) -> tuple[int, str]:
 
 
 @pytest.mark.usefixtures("nodes")
-def test_each_verb_says_what_it_says_on_jazzy() -> None:
+def test_each_lifecycle_verb_prints_what_it_prints_on_jazzy() -> None:
     for name in ("live", "left/live"):
         assert lifecycle("get", name, spin_time="60") == (0, "unconfigured [1]\n")  # it is up
     records = yaml.safe_load(RECORDS.read_text())

@@ -93,7 +93,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     return space
 
 
-def test_colcon_tests_and_lints_the_packages_clean(workspace: Workspace) -> None:
+def test_created_packages_pass_colcon_test_and_the_linters(workspace: Workspace) -> None:
     tested = workspace.colcon("test", "--merge-install")
     assert tested.returncode == 0, tested.stdout + tested.stderr
     result = workspace.colcon("test-result", "--all", "--verbose")
@@ -116,7 +116,7 @@ def test_the_copyright_check_passes_once_its_mark_is_gone_and_headers_are_there(
     assert (after.returncode, after.stderr) == (0, "")
 
 
-def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
+def test_the_verbs_of_ros2_pkg_find_a_created_package(workspace: Workspace) -> None:
     assert workspace.ros2("pkg", "executables", "py_pkg").stdout == "py_pkg hello\npy_pkg stubborn\n"
     install = workspace.folder / "install"
     assert workspace.ros2("pkg", "prefix", "py_pkg").stdout == f"{install}\n"
@@ -131,7 +131,7 @@ def test_pkg_verbs_find_what_was_created(workspace: Workspace) -> None:
     assert untagged.stderr == "XML tag not found\n"
 
 
-def test_run_starts_an_executable(workspace: Workspace) -> None:
+def test_ros2_run_starts_an_executable(workspace: Workspace) -> None:
     assert workspace.ros2("run", "py_pkg", "hello").stdout == "Hi from py_pkg.\n"
     assert workspace.ros2("run", "--prefix", "echo would run", "py_pkg", "hello", "-x").stdout.startswith("would run /")
 
@@ -143,12 +143,14 @@ def test_run_starts_an_executable(workspace: Workspace) -> None:
         (("py_pkg", "nothing"), "No executable found\n"),
     ],
 )
-def test_run_says_what_is_missing(workspace: Workspace, words: tuple[str, str], error: str) -> None:
+def test_ros2_run_names_a_missing_package_or_executable(
+    workspace: Workspace, words: tuple[str, str], error: str
+) -> None:
     answer = workspace.ros2("run", *words)
     assert (answer.returncode, answer.stderr) == (1, error)
 
 
-def test_run_passes_arguments_signals_and_the_exit_code(workspace: Workspace) -> None:
+def test_ros2_run_passes_on_arguments_signals_and_the_exit_code(workspace: Workspace) -> None:
     command = [*ROS2, "run", "py_pkg", "stubborn", "--ros-args", "-p", "speed:=1.0"]
     with subprocess.Popen(
         command, env=workspace.env, stdout=subprocess.PIPE, text=True, start_new_session=True
@@ -162,7 +164,7 @@ def test_run_passes_arguments_signals_and_the_exit_code(workspace: Workspace) ->
     assert out == "[ros2run]: Process exited with failure 7\n"
 
 
-def test_terminating_run_does_not_leave_the_executable_behind(workspace: Workspace) -> None:
+def test_terminating_ros2_run_ends_its_executable(workspace: Workspace) -> None:
     command = [*ROS2, "run", "py_pkg", "stubborn"]
     with subprocess.Popen(command, env=workspace.env, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -173,7 +175,7 @@ def test_terminating_run_does_not_leave_the_executable_behind(workspace: Workspa
     assert out == "[ros2run]: Terminated\n"
 
 
-def test_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspace) -> None:
+def test_ros2_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspace) -> None:
     answer = workspace.ros2("launch", "py_pkg", "hello.launch.py", "who:=everyone")
     assert answer.returncode == 0, answer.stdout + answer.stderr
     printed = answer.stdout + answer.stderr
@@ -182,7 +184,7 @@ def test_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspace) ->
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ending_launch_takes_its_nodes_down(workspace: Workspace, tmp_path: Path, number: int) -> None:
+def test_ending_ros2_launch_ends_its_nodes(workspace: Workspace, tmp_path: Path, number: int) -> None:
     file = tmp_path / "stubborn.launch.py"
     file.write_text(LAUNCH.replace("executable='hello'", "executable='stubborn'"))
     command = [*ROS2, "launch", str(file)]
@@ -198,7 +200,7 @@ def test_ending_launch_takes_its_nodes_down(workspace: Workspace, tmp_path: Path
     assert "exit code 7" in rest
 
 
-def test_launch_shows_arguments_and_the_description(workspace: Workspace) -> None:
+def test_ros2_launch_shows_arguments_and_the_description(workspace: Workspace) -> None:
     path = workspace.folder / "src/py_pkg/launch/hello.launch.py"
     shown = workspace.ros2("launch", str(path), "--show-args")
     assert shown.stdout == (
@@ -224,7 +226,7 @@ def test_launch_shows_arguments_and_the_description(workspace: Workspace) -> Non
         (("./gone.launch.py",), "File './gone.launch.py' not found"),
     ],
 )
-def test_launch_says_what_is_wrong(workspace: Workspace, words: tuple[str, ...], error: str) -> None:
+def test_ros2_launch_reports_errors(workspace: Workspace, words: tuple[str, ...], error: str) -> None:
     answer = workspace.ros2("launch", *words)
     assert answer.returncode == 1
     assert answer.stderr.startswith(error)

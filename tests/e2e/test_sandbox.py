@@ -91,7 +91,7 @@ def _out(*names: str) -> list[str]:
         return [out for name in names if (out := in_cell(tries, name, server.getsockname()[1]))]
 
 
-def test_nothing_of_the_grader_or_the_machine_can_be_read() -> None:
+def test_no_file_process_or_memory_of_the_grader_can_be_read() -> None:
     assert _out("files", "processes", "memory") == []
 
 
@@ -137,7 +137,7 @@ WILD = ("unmapped memory", *(e.id for e in ESCAPES if e.endings != (Ending.EXITE
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(name, ())) for name in WILD])
-def test_each_way_to_run_wild_is_ended_and_leaves_nothing(name: str) -> None:
+def test_each_program_that_exceeds_a_limit_is_ended_and_leaves_nothing(name: str) -> None:
     assert _out(name) == []
 
 
@@ -156,7 +156,7 @@ def test_without_a_sandbox_the_same_programs_get_out(name: str, monkeypatch: pyt
     assert done.stdout.startswith("OUT")
 
 
-def test_calls_that_no_node_needs_are_unknown_and_what_programs_live_by_works() -> None:
+def test_system_calls_that_no_node_needs_fail_and_those_that_programs_need_work() -> None:
     code = f"""
 import ctypes, errno, socket, subprocess, sys, threading
 libc = ctypes.CDLL(None, use_errno=True)
@@ -231,7 +231,7 @@ def test_the_processes_of_root_s_sandbox_are_counted_by_the_kernel() -> None:
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has control groups of its own")
 @BOUNDED
 @pytest.mark.parametrize("way", ["started"], indirect=True)  # the weak tier knows no other
-def test_not_even_the_weak_tier_leaves_root_a_fork_bomb() -> None:
+def test_the_weak_tier_ends_a_fork_bomb_of_root() -> None:
     code = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
     before = _bombs(code)
     answer = in_cell(inside, code, {**SMALL, "memory": 4 * GIB}, True, tier=Tier.PROCESS)
@@ -263,7 +263,7 @@ ORDINARY = 4711  # a user of no name
 
 @pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
 @pytest.mark.parametrize("way", ["started"], indirect=True)  # the doctor tries both
-def test_an_ordinary_user_s_sandboxes_hold_as_root_s_do() -> None:
+def test_sandboxes_of_an_ordinary_user_block_what_those_of_root_block() -> None:
     """But for what a control group alone bounds, where an ordinary user can make none."""
     if not all(path.stat().st_mode & 1 for path in (Path(__file__), *Path(__file__).parents) if path.is_dir()):
         pytest.skip("an ordinary user cannot read this folder")

@@ -44,7 +44,9 @@ def autograder(course: Path, tmp_path: Path) -> Run:
     )
 
 
-def test_its_notebooks_keep_the_rules_and_its_tables_name_its_checks(course: Path, autograder: Run) -> None:
+def test_notebooks_of_a_second_course_keep_the_rules_and_its_tables_name_its_checks(
+    course: Path, autograder: Run
+) -> None:
     checked = autograder("course", "check")
     assert (checked.returncode, checked.stdout) == (0, "")
     assert "Write a node that beats | 02_beat" in (course / "chapters" / "README.md").read_text()
@@ -53,7 +55,7 @@ def test_its_notebooks_keep_the_rules_and_its_tables_name_its_checks(course: Pat
 
 
 @pytest.mark.nightly
-def test_its_proof_holds(autograder: Run) -> None:
+def test_the_proof_of_a_second_course_succeeds(autograder: Run) -> None:
     done = autograder("verify", "--quick", "-j", "2", "--json", "proof.json")
     assert done.returncode == 0, done.stdout + done.stderr
     for name in RIGHT:
@@ -62,7 +64,9 @@ def test_its_proof_holds(autograder: Run) -> None:
     assert "02_beat mutant" in done.stdout
 
 
-def test_a_class_is_graded_and_reads_its_own_contract(course: Path, autograder: Run, tmp_path: Path) -> None:
+def test_feedback_of_a_second_course_quotes_the_contract_of_that_course(
+    course: Path, autograder: Run, tmp_path: Path
+) -> None:
     for student in ("ada", "ben"):
         package = tmp_path / "class" / student / "src" / "greeting"
         shutil.copytree(course / "solutions" / "greeting", package)
@@ -75,7 +79,7 @@ def test_a_class_is_graded_and_reads_its_own_contract(course: Path, autograder: 
     assert "without spaces around it" in (tmp_path / "graded" / "ben" / "feedback.html").read_text()
 
 
-def test_a_wrong_place_is_said(tmp_path: Path) -> None:
+def test_a_course_folder_without_course_yaml_is_refused(tmp_path: Path) -> None:
     done = run("autograder", "--course", "nowhere", "course", "check", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (
         2,
@@ -83,13 +87,13 @@ def test_a_wrong_place_is_said(tmp_path: Path) -> None:
     )
 
 
-def test_it_has_its_own_chapters_alone(autograder: Run) -> None:
+def test_a_second_course_has_only_its_own_chapters(autograder: Run) -> None:
     done = autograder("grade", ".", "--assignment", "02_nodes", "--out", "graded")
     assert done.returncode == 2
     assert "there are for: 01_greeting, 02_beat" in done.stderr
 
 
-def test_its_release_holds_no_answer_and_no_hidden_check_of_any_course(
+def test_the_release_of_a_second_course_holds_no_answer_and_no_hidden_check_of_any_course(
     course: Path, autograder: Run, tmp_path: Path
 ) -> None:
     assert autograder("release", "--out", "bundle").returncode == 0
@@ -109,7 +113,7 @@ def test_its_release_holds_no_answer_and_no_hidden_check_of_any_course(
     assert checked.returncode == 1
 
 
-def test_a_sandbox_that_would_show_it_hides_its_checks_its_reference_and_its_notebooks(course: Path) -> None:
+def test_a_sandbox_hides_checks_reference_and_notebooks_of_a_second_course(course: Path) -> None:
     code = (
         "import sys\n"
         "from pathlib import Path\n"
@@ -129,7 +133,9 @@ def test_a_sandbox_that_would_show_it_hides_its_checks_its_reference_and_its_not
     assert seen.isdisjoint({"checks", "solutions", "chapters"})
 
 
-def test_its_solved_notebook_runs_and_is_graded_as_a_submission(course: Path, autograder: Run, tmp_path: Path) -> None:
+def test_a_solved_notebook_of_a_second_course_runs_and_is_graded_as_a_submission(
+    course: Path, autograder: Run, tmp_path: Path
+) -> None:
     done = autograder("notebooks", "--solved", "01_greeting")
     assert done.returncode == 0, done.stdout + done.stderr
     hand_in = tmp_path / "ada" / "01_greeting.ipynb"
@@ -139,7 +145,7 @@ def test_its_solved_notebook_runs_and_is_graded_as_a_submission(course: Path, au
     assert graded.returncode == 0, graded.stdout + graded.stderr
 
 
-def test_nbgrader_books_its_marks(course: Path) -> None:
+def test_nbgrader_records_the_marks_of_a_second_course(course: Path) -> None:
     def nbgrader(verb: str) -> None:
         done = run("nbgrader", verb, "01_greeting", cwd=course, AUTOGRADER_COURSE=str(course))
         assert done.returncode == 0, done.stderr

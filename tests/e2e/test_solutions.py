@@ -103,7 +103,7 @@ def tested(reference: Terminal) -> str:
     return said
 
 
-def test_colcon_has_nothing_to_say_against_a_package(reference: Terminal) -> None:
+def test_colcon_builds_each_reference_package_without_a_warning(reference: Terminal) -> None:
     said = (reference.root / "log/build.txt").read_text()
     assert f"{len(PYTHON)} packages finished" in said
     assert "stderr" not in said
@@ -125,7 +125,7 @@ def test_the_linters_and_the_tests_of_a_package_pass(reference: Terminal, tested
 
 
 @pytest.mark.parametrize("package", MESSAGES)
-def test_the_definitions_of_a_package_of_messages_can_be_used(terminal: Terminal, package: str) -> None:
+def test_the_definitions_of_an_interface_package_can_be_used(terminal: Terminal, package: str) -> None:
     folder = PACKAGES[package]
     names = [
         f"{path.parent.name}/{path.stem}" for kind in ("msg", "srv", "action") for path in folder.glob(f"{kind}/*")
@@ -184,7 +184,7 @@ def test_every_launched_executable_exists(terminal: Terminal) -> None:
         assert os.access(executable(terminal, name), os.X_OK)
 
 
-def test_two_robots_come_up_in_their_namespaces_and_end_together(
+def test_two_robots_start_in_their_namespaces_and_end_together(
     reference: Terminal, ros_domain: int, tmp_path: Path
 ) -> None:
     workspace = Workspace(reference.root, environment.find(), tmp_path, domain=ros_domain)

@@ -26,7 +26,7 @@ def prefix() -> Path:
     return ros.prefixes[0]
 
 
-def test_a_type_has_the_hash_of_the_real_one(prefix: Path) -> None:
+def test_an_interface_type_has_the_hash_of_the_real_package(prefix: Path) -> None:
     described = json.loads((prefix / "share/example_interfaces/srv/AddTwoInts.json").read_text())
     hashes = {entry["type_name"]: entry["hash_string"] for entry in described["type_hashes"]}
     assert hashes["example_interfaces/srv/AddTwoInts"] == ADD_TWO_INTS
@@ -65,7 +65,7 @@ def test_a_server_answers_a_client(prefix: Path, ros_domain: int) -> None:
         context.try_shutdown()
 
 
-def test_what_is_installed_is_not_built_again(prefix: Path) -> None:
+def test_an_installed_interface_package_is_not_built_again(prefix: Path) -> None:
     assert tutorials.install(prefix) == []
 
 
@@ -78,7 +78,7 @@ def test_a_missing_package_is_built(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert (tmp_path / "lib" / python / "site-packages/action_tutorials_interfaces/action/__init__.py").is_file()
 
 
-def test_without_a_compiler_it_says_how_to_install_them_later(
+def test_without_a_compiler_the_set_up_says_how_to_install_interface_packages_later(
     prefix: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     found = activate()

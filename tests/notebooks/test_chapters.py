@@ -29,7 +29,7 @@ MARKS = ("# BEGIN SOLUTION", "# END SOLUTION")
 each_chapter = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.assignment)
 
 
-def test_there_are_chapters() -> None:
+def test_the_course_has_at_least_one_chapter() -> None:
     assert CHAPTERS
 
 
@@ -49,7 +49,7 @@ def test_a_release_holds_no_line_of_its_answers(chapter: Chapter) -> None:
 
 
 @each_chapter
-def test_no_text_speaks_of_a_book_that_the_student_has_not_met(chapter: Chapter) -> None:
+def test_no_text_mentions_the_printed_chapter_or_a_textbook_that_00_does_not_introduce(chapter: Chapter) -> None:
     texts = [cell.source for cell in chapter.read().cells]
     assert [text for text in texts if re.search(r"\b[Tt]he (printed )?chapter\b", text)] == []
     met = "call it *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
@@ -57,7 +57,7 @@ def test_no_text_speaks_of_a_book_that_the_student_has_not_met(chapter: Chapter)
 
 
 @each_chapter
-def test_a_given_package_installs_only_executables_that_the_chapter_has(chapter: Chapter) -> None:
+def test_a_given_package_installs_only_executables_that_exist_in_the_chapter(chapter: Chapter) -> None:
     written = {cell.source.split()[1] for cell in chapter.read().cells if cell.source.startswith("%%writefile")}
     there = {str(path.relative_to(chapter.folder)) for path in chapter.folder.glob("ws/src/**/*.py")} | written
     for setup in chapter.folder.glob("ws/src/*/setup.py"):
@@ -139,7 +139,7 @@ def test_a_chapters_figures_are_what_their_script_draws(script: Path, tmp_path: 
 
 
 @each_chapter
-def test_the_cells_that_write_python_write_something_that_parses(chapter: Chapter) -> None:
+def test_cells_that_write_python_files_write_valid_python(chapter: Chapter) -> None:
     for form in Form:
         for cell in in_form(chapter.read(), form).cells:
             if re.match(r"%%writefile \S+\.py\n", cell.source):

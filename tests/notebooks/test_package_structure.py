@@ -36,7 +36,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "chapter" / "ws" / "src"
 
 
-def test_the_notebooks_repairs_turn_the_broken_package_into_the_reference(
+def test_the_repairs_in_the_notebook_turn_the_broken_package_into_the_reference(
     workspace: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert _texts(workspace / "wall_alarm") != _texts(SOLUTIONS / "wall_alarm")
@@ -48,7 +48,7 @@ def test_the_notebooks_repairs_turn_the_broken_package_into_the_reference(
     assert _texts(workspace / "wall_alarm") == _texts(SOLUTIONS / "wall_alarm")
 
 
-def test_the_notebooks_files_turn_the_given_ones_into_the_reference(workspace: Path) -> None:
+def test_the_files_that_the_notebook_writes_turn_the_given_ones_into_the_reference(workspace: Path) -> None:
     for name in ("manifest", "setup", "cfg"):
         first, _, text = _cell(f"square-dance-{name}").partition("\n")
         Path(first.removeprefix("%%writefile ")).write_text(text + "\n")
@@ -63,7 +63,7 @@ def test_the_broken_package_lacks_every_dependency_that_the_checks_count(workspa
     assert missing["test"] == ()
 
 
-def test_the_printed_package_is_the_chapters_own(workspace: Path) -> None:
+def test_the_printed_package_has_the_setup_py_of_the_textbook_and_no_setup_cfg(workspace: Path) -> None:
     printed = workspace.parents[1] / "printed" / "src" / "my_robot_package"
     setup = (printed / "setup.py").read_text()
     assert "packages=[package_name]," in setup

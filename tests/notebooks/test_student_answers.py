@@ -133,7 +133,7 @@ def passed(cell: NotebookNode) -> tuple[int, int]:
 
 @pytest.mark.nightly  # the tour has shown it in JupyterLab
 @pytest.mark.parametrize("chapter", each_chapter())
-def test_who_answers_everything_right_at_once_passes_every_check(chapter: Chapter, student: Student) -> None:
+def test_right_answers_to_all_exercises_at_once_pass_every_check(chapter: Chapter, student: Student) -> None:
     right = answers(chapter)
     for cell in student.cells:
         cell.source = right.get(cell.id, cell.source)
@@ -143,7 +143,7 @@ def test_who_answers_everything_right_at_once_passes_every_check(chapter: Chapte
 
 
 @pytest.mark.parametrize("chapter", each_chapter(graded=True))
-def test_who_makes_a_typical_mistake_is_told_and_passes_once_it_is_mended(chapter: Chapter, student: Student) -> None:
+def test_a_typical_mistake_fails_with_a_hint_and_its_correction_passes(chapter: Chapter, student: Student) -> None:
     right, wrong = answers(chapter), typical_mistake(chapter)
     written = [cell for exercise in student.exercises for cell in exercise]
     wrongly = [typed(cell, {**right, **wrong}.get(cell.id, cell.source), 1) for cell in written]
@@ -159,7 +159,7 @@ def test_who_makes_a_typical_mistake_is_told_and_passes_once_it_is_mended(chapte
 
 
 @pytest.mark.parametrize("chapter", each_chapter())
-def test_who_writes_an_exercise_after_another_finds_hints_for_the_next_one(chapter: Chapter, student: Student) -> None:
+def test_after_each_exercise_check_shows_hints_for_the_next_exercise(chapter: Chapter, student: Student) -> None:
     right = answers(chapter)
     cells = [*student.first, typed(student.check, student.check.source, 0)]
     for round, exercise in enumerate(filter(None, student.exercises), 1):

@@ -57,7 +57,7 @@ def test_a_missing_or_a_bad_argument_is_an_error(start: Start, arguments: tuple[
         (("sim:=true", "robots:=2"), ["light: simulator", "a fleet"], ["driver", "real hardware", "just one"]),
     ],
 )
-def test_conditions_decide_what_is_started(
+def test_conditions_decide_which_processes_are_started(
     start: Start, arguments: tuple[str, ...], present: list[str], absent: list[str]
 ) -> None:
     launch = start("conditions", *arguments)
@@ -67,7 +67,7 @@ def test_conditions_decide_what_is_started(
     assert not [text for text in absent if text in launch.text]
 
 
-def test_a_condition_that_is_no_truth_value_is_an_error(start: Start) -> None:
+def test_a_condition_that_is_neither_true_nor_false_is_an_error(start: Start) -> None:
     launch = start("conditions", "sim:=maybe")
     assert launch.finish() == 1
     assert "invalid condition expression, expected one of [true, 1, false, 0] but got 'maybe'" in launch.text
@@ -89,7 +89,7 @@ def test_two_robots_in_namespaces_get_their_parameters_and_remappings(start: Sta
     assert len(re.findall(CLEANLY.format("beacon"), launch.text)) == 3
 
 
-def test_events_lead_from_one_thing_to_the_next(start: Start) -> None:
+def test_event_handlers_run_their_actions_in_the_order_of_events(start: Start) -> None:
     launch = start("events")
     assert launch.finish() == 0
     said = re.findall(r"\[launch.user\]: (.*)", launch.text)
@@ -109,14 +109,14 @@ def test_a_process_that_dies_is_started_again_until_its_tries_are_used_up(start:
     assert re.search(CLEANLY.format("crash"), launch.text)
 
 
-def test_the_pause_before_a_new_start_does_not_hold_up_ctrl_c(start: Start) -> None:
+def test_ctrl_c_does_not_wait_for_the_pause_before_a_respawn(start: Start) -> None:
     launch = start("respawn_forever")
     launch.wait_for("process has died")
     assert launch.interrupt() == 0
     assert len(re.findall("process started with pid", launch.text)) == 1
 
 
-def test_a_crash_is_reported_with_command_and_exit_code_and_the_rest_goes_on(start: Start, fleet: Path) -> None:
+def test_a_crash_is_reported_with_command_and_exit_code_and_other_processes_go_on(start: Start, fleet: Path) -> None:
     launch = start("crash")
     launch.wait_for(
         rf"\[ERROR\] \[crash-1\]: process has died \[pid \d+, exit code 3, cmd '{fleet}/lib/fleet/crash --ros-args "
@@ -143,7 +143,7 @@ def test_the_end_of_a_required_node_ends_everything(start: Start) -> None:
         ("broken", "of format [py]:\n - NameError: name 'config' is not defined"),
     ],
 )
-def test_what_is_missing_or_wrong_is_named_and_ends_the_launch(
+def test_a_missing_or_wrong_part_of_a_launch_file_ends_the_launch_with_an_error(
     start: Start, fleet: Path, file: str, message: str
 ) -> None:
     launch = start(file)
@@ -152,7 +152,7 @@ def test_what_is_missing_or_wrong_is_named_and_ends_the_launch(
     assert message.format(fleet=fleet) in launch.text
 
 
-def test_a_command_that_is_not_there_is_named_and_the_rest_goes_on(start: Start) -> None:
+def test_a_missing_command_is_named_and_the_other_processes_go_on(start: Start) -> None:
     launch = start("missing_command")
     assert launch.finish() == 0
     assert (
@@ -161,7 +161,7 @@ def test_a_command_that_is_not_there_is_named_and_the_rest_goes_on(start: Start)
     assert "[launch.user]: goes on" in launch.text
 
 
-def test_who_ignores_sigint_gets_sigterm(start: Start) -> None:
+def test_a_process_that_ignores_sigint_gets_sigterm(start: Start) -> None:
     launch = start("stubborn")
     launch.wait_for(r"\[stubborn-1\] stubborn")
     assert launch.interrupt() == 0
@@ -173,7 +173,7 @@ def test_who_ignores_sigint_gets_sigterm(start: Start) -> None:
     assert "SIGKILL" not in launch.text
 
 
-def test_who_ignores_sigterm_too_gets_sigkill(start: Start) -> None:
+def test_a_process_that_ignores_sigterm_gets_sigkill(start: Start) -> None:
     launch = start("stubborn", "very:=very")
     launch.wait_for(r"\[stubborn-1\] stubborn")
     assert launch.interrupt() == 0
@@ -195,7 +195,7 @@ def test_a_second_ctrl_c_is_ignored(start: Start) -> None:
     "number",
     [signal.SIGTERM, *(pytest.param(one, marks=pytest.mark.nightly) for one in (signal.SIGHUP, signal.SIGQUIT))],
 )
-def test_other_signals_end_everything_in_order_too(start: Start, number: signal.Signals) -> None:
+def test_other_signals_also_end_the_launch_in_order(start: Start, number: signal.Signals) -> None:
     launch = start("opaque")
     launch.wait_for(r"\[light-1\] light:")
     launch.wait_for(r"\[light-2\] light:")
@@ -225,7 +225,7 @@ def test_parameters_come_from_files_with_substitutions_arguments_and_for_all_nod
     assert launch.interrupt() == 0
 
 
-def test_output_goes_where_it_is_asked_to(start: Start, tmp_path: Path) -> None:
+def test_output_goes_to_the_place_that_the_launch_file_names(start: Start, tmp_path: Path) -> None:
     launch = start("output", "word:=hi")
     assert launch.finish() == 0
     lines = launch.text.splitlines()
@@ -254,7 +254,7 @@ def test_a_prefix_goes_before_the_executables_that_its_filter_names(start: Start
     assert "[pwd-9] /" in launch.text
 
 
-def test_all_output_is_shown_if_that_is_asked_for(
+def test_options_and_variables_override_where_output_goes(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     everything = {"[to-log-2] pipe to-log", "[to-log-2] error to-log", "[mixed-3] pipe mixed", "[mixed-3] error mixed"}
@@ -277,7 +277,7 @@ def test_a_function_makes_as_many_processes_as_an_argument_says(start: Start) ->
     assert launch.interrupt() == 0
 
 
-def test_children_of_processes_end_with_them(start: Start) -> None:
+def test_child_processes_end_with_their_parents(start: Start) -> None:
     launch = start("offspring")
     launch.wait_for(r"\[sh-2\]: process has finished cleanly")
     launch.wait_for("waiting")

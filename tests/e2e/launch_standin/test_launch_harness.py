@@ -117,7 +117,7 @@ def test_nodes_parameters_messages_and_programs_are_seen_and_ctrl_c_ends_them(wo
         assert harness.programs() == []
 
 
-def test_a_wrong_node_is_told_with_what_there_is(workspace: Workspace) -> None:
+def test_a_wrong_node_or_parameter_is_reported_with_the_one_found(workspace: Workspace) -> None:
     with LaunchHarness(workspace, "fleet", "single.launch.py", {"name": "lamp"}) as harness:
         with pytest.raises(CheckFailed) as caught:
             launch_probe.expect_nodes(harness, ["/robot1/lamp"])
@@ -128,7 +128,7 @@ def test_a_wrong_node_is_told_with_what_there_is(workspace: Workspace) -> None:
             launch_probe.expect_parameters(harness, "/lamp", {"label": 42})
 
 
-def test_a_killed_program_is_gone_and_an_idle_launch_ends(workspace: Workspace) -> None:
+def test_a_killed_program_disappears_and_an_idle_launch_ends(workspace: Workspace) -> None:
     with LaunchHarness(workspace, "fleet", "single.launch.py") as harness:
         launch_probe.expect_nodes(harness, ["/beacon"])
         assert harness.kill("beacon", signal.SIGKILL) == 1
@@ -137,7 +137,7 @@ def test_a_killed_program_is_gone_and_an_idle_launch_ends(workspace: Workspace) 
         assert harness.kill("beacon") == 0
 
 
-def test_what_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
+def test_a_process_that_a_launch_leaves_running_is_named(workspace: Workspace) -> None:
     there = launch_probe.with_files(workspace, "leaves", "fleet", {"launch/leaves_one.launch.py": LEAVES_ONE})
     with LaunchHarness(there, "fleet", "leaves_one.launch.py") as harness:
         assert harness.wait_for(lambda: "verbosity" in harness.output, PATIENCE)
@@ -203,7 +203,7 @@ def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
     assert found["mode"].choices == ("drive", "park")
 
 
-def test_a_launch_without_end_of_words_is_the_students_to_hear_of(workspace: Workspace) -> None:
+def test_a_launch_that_prints_without_end_raises_a_student_error(workspace: Workspace) -> None:
     there = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
     with LaunchHarness(there, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
         harness.run(PATIENCE)

@@ -59,7 +59,7 @@ def test_tests_of_all_kinds_run_beside_their_launch_and_after_its_end(report: st
     assert set(re.findall(r"^PASSED \S+::(\w+)", report, re.MULTILINE)) == PASSED, report
 
 
-def test_a_test_fails_for_its_own_reasons(report: str) -> None:
+def test_a_test_can_fail_beside_its_launch_and_after_its_end(report: str) -> None:
     failed = set(re.findall(r"^FAILED \S+::(\w+) - ", report, re.MULTILINE))
     assert failed == {"test_that_fails_beside_the_launch", "test_that_fails_after_the_end"}, report
     assert "AssertionError: assert 'something else' in " in report

@@ -23,7 +23,7 @@ def service_with(*entities: Any) -> launch.LaunchService:
     return service
 
 
-def test_output_is_kept_if_it_is_asked_for() -> None:
+def test_output_is_kept_if_the_process_is_set_to_keep_it() -> None:
     kept = ExecuteProcess(cmd=["sh", "-c", "echo out; printf err >&2"], cached_output=True)
     other = ExecuteProcess(cmd=["true"], name="other")
     service_with(kept, other).run()
@@ -46,7 +46,7 @@ def test_much_output_arrives_whole_and_in_order() -> None:
         ({"cmd": ["sleep", 5]}, TypeError, "Failed to normalize given item of type '<class 'int'>'"),
     ],
 )
-def test_arguments_of_the_wrong_type_are_refused_at_once(
+def test_process_arguments_of_the_wrong_type_are_refused_at_once(
     arguments: dict[str, Any], error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):
@@ -61,14 +61,14 @@ def test_arguments_of_the_wrong_type_are_refused_at_once(
         ({"stdout": "scren"}, "['scren'] is not a valid output destination i.e. "),
     ],
 )
-def test_an_output_that_there_is_not_ends_the_launch(
+def test_an_invalid_output_setting_ends_the_launch(
     capsys: pytest.CaptureFixture[str], output: Any, message: str
 ) -> None:
     assert service_with(ExecuteProcess(cmd=["true"], output=output)).run() == 1
     assert message in capsys.readouterr().out
 
 
-def test_a_handler_needs_an_action_and_something_to_do() -> None:
+def test_an_event_handler_refuses_targets_and_handlers_of_other_types() -> None:
     with pytest.raises(TypeError, match="action_matcher must be an 'ExecuteLocal' instance or a callable, got LogInfo"):
         OnProcessExit(target_action=LogInfo(msg=""), on_exit=[])
     with pytest.raises(
@@ -79,7 +79,7 @@ def test_a_handler_needs_an_action_and_something_to_do() -> None:
         OnShutdown(on_shutdown=5)  # type: ignore[arg-type]
 
 
-def test_a_coroutine_and_a_function_must_be_such() -> None:
+def test_opaque_functions_and_coroutines_refuse_values_of_other_types() -> None:
     with pytest.raises(TypeError, match="OpaqueFunction expected a callable for 'function', got '<class 'str'>'"):
         OpaqueFunction(function="f")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="OpaqueCoroutine expected a coroutine function for 'coroutine'"):

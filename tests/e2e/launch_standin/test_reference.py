@@ -38,7 +38,7 @@ def observe_and_interrupt(start: Start, install: Path, package: str, file: str) 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize(("package", "file"), [("my_robot_package", "robot_system"), ("fleet", "chapter")])
-def test_it_runs_unmodified_with_all_nodes_and_their_parameters_until_ctrl_c(
+def test_the_reference_launch_file_runs_all_nodes_with_their_parameters_until_ctrl_c(
     start: Start, install: Path, package: str, file: str
 ) -> None:
     ended = observe_and_interrupt(start, install, package, file)

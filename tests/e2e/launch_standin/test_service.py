@@ -227,14 +227,14 @@ def test_an_action_is_executed_once(capsys: pytest.CaptureFixture[str]) -> None:
 re_executed = "executed more than once: ExecuteProcess(cmd=['true'], cwd=None, env=None, shell=False)"
 
 
-def test_nothing_is_started_once_the_launch_ends() -> None:
+def test_no_process_is_started_once_the_launch_ends() -> None:
     late = ExecuteProcess(cmd=["true"])
     handler = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: late))
     assert service_with(handler, Shutdown()).run() == 0
     assert late.return_code is None
 
 
-def test_a_timer_that_begins_at_the_end_does_not_hold_it_up() -> None:
+def test_a_timer_that_begins_during_shutdown_does_not_delay_it() -> None:
     late = TimerAction(period=3600.0, actions=[LogInfo(msg="never")])
     assert service_with(RegisterEventHandler(OnShutdown(on_shutdown=[late])), Shutdown()).run() == 0
 

@@ -33,7 +33,7 @@ def test_apt_installs_what_is_missing_as_root(installed: Which, commands: Any, t
     assert not any("sudo" in line for line in commands.ran)
 
 
-def test_apt_is_asked_through_sudo_when_that_needs_no_password(installed: Which, commands: Any, tmp_path: Path) -> None:
+def test_apt_is_called_through_sudo_if_sudo_needs_no_password(installed: Which, commands: Any, tmp_path: Path) -> None:
     installed("apt-get", "sudo")
     bootstrap.install_tools(["bubblewrap"], tmp_path / "tried", 1000, commands)
     assert commands.ran[0] == "env sudo -n true"
@@ -41,7 +41,7 @@ def test_apt_is_asked_through_sudo_when_that_needs_no_password(installed: Which,
 
 
 @pytest.mark.parametrize(("commands_there", "failing"), [((), ""), (("apt-get", "sudo"), "sudo -n true")])
-def test_without_a_way_to_install_the_command_is_said(
+def test_without_rights_to_install_the_command_is_printed(
     installed: Which,
     commands: Any,
     tmp_path: Path,
@@ -57,7 +57,7 @@ def test_without_a_way_to_install_the_command_is_said(
     assert not any("install" in line for line in commands.ran)
 
 
-def test_a_vain_installation_is_not_tried_again(
+def test_a_failed_installation_is_not_tried_again(
     installed: Which, commands: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     installed("apt-get")

@@ -30,7 +30,7 @@ def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: tuple[int, i
 
 
 @pytest.mark.parametrize("version", [(2, 7), (3, 9), (3, 14)])
-def test_another_python_is_refused_with_what_serves(version: tuple[int, int]) -> None:
+def test_an_unsupported_python_is_refused_with_the_supported_ones(version: tuple[int, int]) -> None:
     with pytest.raises(
         SetUpError, match=rf"Python {version[0]}\.{version[1]} does not serve: .* 3\.10 to 3\.13\. .*3\.12"
     ):
@@ -38,7 +38,7 @@ def test_another_python_is_refused_with_what_serves(version: tuple[int, int]) ->
 
 
 @pytest.mark.parametrize("machine", [("Darwin", "arm64"), ("Windows", "AMD64"), ("Linux", "aarch64")])
-def test_another_machine_is_refused_with_what_serves(machine: tuple[str, str]) -> None:
+def test_an_unsupported_machine_is_refused_with_the_supported_ones(machine: tuple[str, str]) -> None:
     with pytest.raises(SetUpError, match=f"this is {' '.join(machine)}: use the container"):
         bootstrap.check_machine((3, 12), *machine)
 
@@ -94,7 +94,7 @@ def test_a_ros_of_no_known_distribution_is_refused(ros: Path) -> None:
         bootstrap.sourced_ros({"PYTHONPATH": str(ros)}, VENV, PY312)
 
 
-def test_a_jazzy_for_another_python_is_refused_with_the_one_that_fits(ros: Path) -> None:
+def test_a_jazzy_for_another_python_is_refused_with_the_python_that_fits(ros: Path) -> None:
     py311 = replace(PY312, version=(3, 11), suffix=".cpython-311-x86_64-linux-gnu.so")
     with pytest.raises(SetUpError, match=r"is not for Python 3\.11: run `make PYTHON=python3\.12`"):
         bootstrap.sourced_ros({"ROS_DISTRO": "jazzy", "PYTHONPATH": str(ros)}, VENV, py311)

@@ -52,17 +52,17 @@ def test_a_lock_names_no_address_and_no_index(lock: str) -> None:
     )
 
 
-def test_what_the_tests_run_on_is_what_users_run_on() -> None:
+def test_the_tests_run_with_the_pins_that_users_install() -> None:
     assert pins(BASE) <= pins(DEV)
 
 
 @pytest.mark.parametrize("lock", [BENCH, CLUSTER])
-def test_what_comes_on_top_changes_nothing_that_the_tests_run_on(lock: str) -> None:
+def test_additional_locks_do_not_change_the_pins_of_the_tests(lock: str) -> None:
     assert {pin for pin in pins(lock) if pin.partition("==")[0] in names(DEV)} <= pins(DEV)
     assert not any(name.startswith("ros-") for name in names(lock))
 
 
-def test_the_extra_for_clusters_is_what_its_lock_pins() -> None:
+def test_the_extra_for_clusters_has_the_packages_of_its_lock() -> None:
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())
     assert data["dependency-groups"]["cluster"] == data["project"]["optional-dependencies"]["cluster"]
 

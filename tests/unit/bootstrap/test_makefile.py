@@ -54,39 +54,39 @@ def chosen(folder: Path, **environ: str) -> str:
     return make("-n", "setup", path=str(folder), **{"SYSTEM_PYTHON": "", **environ}).split()[0]
 
 
-def test_a_name_that_does_not_run_is_passed_over(interpreters: Path) -> None:
+def test_a_python_that_does_not_run_is_skipped(interpreters: Path) -> None:
     interpreter(interpreters, "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
     interpreter(interpreters, "python3", "exit 0")
     assert chosen(interpreters) == "python3"
 
 
-def test_an_interpreter_of_the_wrong_version_is_passed_over(interpreters: Path) -> None:
+def test_an_interpreter_of_the_wrong_version_is_skipped(interpreters: Path) -> None:
     interpreter(interpreters, "python3", "exit 1")
     interpreter(interpreters, "python3.11", "exit 0")
     assert chosen(interpreters) == "python3.11"
 
 
-def test_the_systems_own_comes_before_one_that_was_built_by_hand(interpreters: Path) -> None:
+def test_the_python_of_the_system_is_preferred_to_one_built_by_hand(interpreters: Path) -> None:
     for name in ("system", "python3", "python3.13"):
         interpreter(interpreters, name, "exit 0")
     assert chosen(interpreters, SYSTEM_PYTHON="system") == "system"
 
 
-def test_jazzys_own_python_comes_first(interpreters: Path) -> None:
+def test_the_python_of_jazzy_is_preferred(interpreters: Path) -> None:
     for name in ("python3.10", "python3.12", "python3"):
         interpreter(interpreters, name, "exit 0")
     assert chosen(interpreters) == "python3.12"
 
 
-def test_where_none_serves_the_set_up_gets_to_say_so(interpreters: Path) -> None:
+def test_without_a_usable_python_the_makefile_takes_python3_and_the_set_up_reports_it(interpreters: Path) -> None:
     assert chosen(interpreters) == "python3"
 
 
-def test_a_chosen_interpreter_is_taken(interpreters: Path) -> None:
+def test_the_interpreter_that_the_user_chose_is_used(interpreters: Path) -> None:
     assert chosen(interpreters, PYTHON="/opt/python3.13") == "/opt/python3.13"
 
 
-def test_the_real_machines_interpreter_is_one_that_serves() -> None:
+def test_the_interpreter_chosen_on_this_machine_is_supported() -> None:
     name = make("-n", "setup").split()[0]
     code = "import sys; print(*sys.version_info[:2])"
     done = subprocess.run([name, "-c", code], capture_output=True, text=True, timeout=60)

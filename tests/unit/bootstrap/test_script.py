@@ -49,7 +49,7 @@ def script_clone(clone: Path) -> Path:
     return clone
 
 
-def test_the_script_says_in_a_sentence_why_it_cannot(script_clone: Path) -> None:
+def test_the_script_gives_the_reason_for_a_failure_in_a_sentence(script_clone: Path) -> None:
     done = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.startswith("set-up: the ROS that is sourced is iron and the course needs Jazzy")
@@ -57,7 +57,7 @@ def test_the_script_says_in_a_sentence_why_it_cannot(script_clone: Path) -> None
 
 
 @pytest.mark.slow
-def test_the_script_passes_on_pips_own_words_and_leaves_no_stamp(script_clone: Path) -> None:
+def test_the_script_shows_the_output_of_a_failed_pip_and_writes_no_stamp(script_clone: Path) -> None:
     done = script(script_clone)
     assert done.returncode == 1
     assert "set-up: installing the pinned packages of requirements.lock" in done.stdout
@@ -66,7 +66,7 @@ def test_the_script_passes_on_pips_own_words_and_leaves_no_stamp(script_clone: P
     assert not (script_clone / ".venv" / bootstrap.STAMP).exists()
 
 
-def test_the_script_does_nothing_where_the_stamp_holds(script_clone: Path) -> None:
+def test_the_script_does_nothing_if_the_stamp_is_valid(script_clone: Path) -> None:
     program = script_clone / "autograder/bootstrap.py"
     code = f"""
 import runpy, json, pathlib

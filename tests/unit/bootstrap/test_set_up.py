@@ -30,7 +30,7 @@ def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.Capt
     assert capsys.readouterr().out == ""
 
 
-def test_the_tests_packages_are_added_to_what_stands_and_then_stay(set_up: SetUp, commands: Any) -> None:
+def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=False)
     commands.take()
     set_up.make(dev=True)
@@ -40,7 +40,7 @@ def test_the_tests_packages_are_added_to_what_stands_and_then_stay(set_up: SetUp
     assert commands.take() == []
 
 
-def test_the_tests_packages_come_at_once_when_nothing_stands(set_up: SetUp, commands: Any) -> None:
+def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=True)
     assert commands.take() == ["venv", "dev", "project", "mend", "tutorials"]
     assert set_up.lacks(dev=False) == []
@@ -56,7 +56,7 @@ def test_the_tests_packages_come_at_once_when_nothing_stands(set_up: SetUp, comm
         ("requirements-dev.lock", []),
     ],
 )
-def test_a_changed_file_makes_again_what_depends_on_it(
+def test_a_changed_file_repeats_the_steps_that_depend_on_it(
     set_up: SetUp, commands: Any, changed: str, again: list[str]
 ) -> None:
     set_up.make(dev=False)
@@ -67,7 +67,7 @@ def test_a_changed_file_makes_again_what_depends_on_it(
 
 
 @pytest.mark.parametrize("change", [{"sourced": "/opt/ros/jazzy"}, {"interpreter": replace(PY312, build="3.12.2")}])
-def test_another_ros_or_interpreter_makes_everything_again(
+def test_a_different_ros_or_interpreter_repeats_the_whole_set_up(
     set_up: SetUp, commands: Any, change: dict[str, object]
 ) -> None:
     set_up.make(dev=False)
@@ -76,7 +76,7 @@ def test_another_ros_or_interpreter_makes_everything_again(
     assert commands.take()[0] == "venv"
 
 
-def test_a_moved_clone_makes_everything_again(set_up: SetUp, commands: Any, tmp_path: Path) -> None:
+def test_a_moved_clone_repeats_the_whole_set_up(set_up: SetUp, commands: Any, tmp_path: Path) -> None:
     set_up.make(dev=False)
     moved = replace(set_up, root=set_up.root.rename(tmp_path / "moved"))
     assert moved.lacks(dev=False) == ["base"]
@@ -89,7 +89,7 @@ def test_an_environment_whose_interpreter_is_gone_is_made_again(set_up: SetUp) -
 
 
 @pytest.mark.parametrize("stamp", ["", "half a {", "[]"])
-def test_an_unreadable_stamp_counts_as_none(set_up: SetUp, stamp: str) -> None:
+def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str) -> None:
     set_up.make(dev=False)
     (set_up.venv / bootstrap.STAMP).write_text(stamp)
     assert set_up.lacks(dev=False) == ["base", "project"]
@@ -106,7 +106,7 @@ def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, comma
     assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
 
 
-def test_an_interrupted_addition_is_made_again_from_the_start(set_up: SetUp, commands: Any) -> None:
+def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=False)
     commands.interrupting = "requirements-dev.lock"
     with pytest.raises(KeyboardInterrupt):
@@ -142,7 +142,7 @@ def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp,
     assert f"--target {set_up.venv}/lib/python3.12/site-packages pip" in commands.ran[2]
 
 
-def test_a_python_without_any_pip_is_told_what_to_install(set_up: SetUp, commands: Any) -> None:
+def test_a_python_without_pip_is_reported_with_the_package_to_install(set_up: SetUp, commands: Any) -> None:
 
     def run(*command: str, quiet: bool = False) -> int:
         return 1 if "import ensurepip; ensurepip.version()" in command or "--target" in command else commands(*command)
@@ -161,7 +161,7 @@ def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, c
     assert (set_up.venv / "requirements.lock").read_text() == lock
 
 
-def test_two_set_ups_of_one_clone_take_turns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_set_ups_of_one_clone_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     lock = tmp_path / ".build" / "lock"
     waiting, entered = threading.Event(), threading.Event()
     monkeypatch.setattr(bootstrap, "say", lambda line: waiting.set())

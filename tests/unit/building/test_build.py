@@ -55,24 +55,24 @@ def test_a_folder_without_a_manifest_is_no_package(tmp_path: Path) -> None:
     assert "src/my_robot_package has no package.xml with <name>my_robot_package</name>" in sentence
 
 
-def test_no_src_at_all_and_an_empty_one_are_told_apart(tmp_path: Path) -> None:
+def test_a_missing_src_and_an_empty_src_have_different_messages(tmp_path: Path) -> None:
     assert "There is no ws/src folder" in _fault(tmp_path / "src")[1]
     assert "src holds no package at all" in _fault(tmp_path)[1]
 
 
 @pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
-def test_a_half_written_package_is_told_what_it_lacks(tmp_path: Path, part: str) -> None:
+def test_a_half_written_package_is_reported_with_the_missing_files(tmp_path: Path, part: str) -> None:
     kind, sentence = _fault(_package(tmp_path, without=part))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
     assert f"src/my_robot_package has no {part}: the package is only half written" in sentence
 
 
 @pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
-def test_where_colcon_judges_a_package_may_lack_any_file_but_its_manifest(tmp_path: Path, part: str) -> None:
+def test_a_package_that_colcon_checks_may_lack_any_file_but_its_manifest(tmp_path: Path, part: str) -> None:
     build.require_packages(_package(tmp_path, without=part), (NAME,), whole=False)
 
 
-def test_a_malformed_manifest_of_another_package_is_not_this_ones_fault(tmp_path: Path) -> None:
+def test_a_malformed_manifest_of_another_package_does_not_stop_the_build(tmp_path: Path) -> None:
     _package(tmp_path)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "package.xml").write_text("<package><name>")

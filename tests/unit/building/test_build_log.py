@@ -111,13 +111,13 @@ Call Stack (most recent call first):
         ("Traceback (most recent call last):", "", ""),
     ],
 )
-def test_only_what_the_student_wrote_is_shown(log: str, shown: str, error: str) -> None:
+def test_only_files_and_lines_of_the_student_are_shown(log: str, shown: str, error: str) -> None:
     assert readable(log) == shown
     assert first_error(log) == error
 
 
 @pytest.mark.parametrize("part", ["a/", "Error processing '", "\n", "--- stderr: x\n\n", f"{SETUP}{SYNTAX}"])
-def test_of_a_long_log_both_ends_are_read(part: str) -> None:
+def test_the_start_and_the_end_of_a_long_log_are_read(part: str) -> None:
     """Each part, a million characters of it, would take minutes where a pattern looks back."""
     log = f"{SETUP}{SYNTAX}{part * (1_000_000 // len(part))}\nthe end"
     assert first_error(log) == "setup.py, line 8: SyntaxError: invalid syntax"
@@ -125,7 +125,7 @@ def test_of_a_long_log_both_ends_are_read(part: str) -> None:
     assert len(readable(log)) <= 2 * END + 2
 
 
-def test_a_package_that_cmakelists_does_not_name_is_told_in_a_sentence() -> None:
+def test_a_package_that_cmakelists_does_not_name_is_reported_in_a_sentence() -> None:
     folder = "/opt/ros/jazzy/lib/python3.12/site-packages/rosidl_generator_type_description"
     log = (
         "--- stderr: my_interfaces\nTraceback (most recent call last):\n"

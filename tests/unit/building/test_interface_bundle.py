@@ -27,7 +27,7 @@ def bundled(source: Path, *wanted: str) -> set[str]:
     return set(interface_bundle(find_packages(source)[0], wanted))
 
 
-def test_the_bundle_is_what_the_wanted_packages_need_of_interfaces(tmp_path: Path) -> None:
+def test_the_bundle_contains_the_interfaces_that_the_wanted_packages_need(tmp_path: Path) -> None:
     package(tmp_path, "robot", "robot_msgs", "rclpy")
     package(tmp_path, "robot_msgs", "base_msgs", interface=True)
     package(tmp_path, "base_msgs", interface=True)
@@ -37,7 +37,7 @@ def test_the_bundle_is_what_the_wanted_packages_need_of_interfaces(tmp_path: Pat
     assert bundled(tmp_path, "missing") == set()
 
 
-def test_interfaces_that_need_another_package_of_the_submission_are_no_bundle(tmp_path: Path) -> None:
+def test_interfaces_that_need_a_code_package_of_the_submission_are_not_bundled(tmp_path: Path) -> None:
     package(tmp_path, "robot_msgs", "tool", interface=True)
     package(tmp_path, "tool")
     assert bundled(tmp_path, "robot_msgs") == set()
@@ -50,7 +50,7 @@ def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "package.xml", "extra.txt"])
-def test_any_change_of_content_is_another_key(tmp_path: Path, name: str) -> None:
+def test_any_change_of_content_changes_the_key(tmp_path: Path, name: str) -> None:
     package(tmp_path / "src", "robot_msgs", interface=True)
     workspace = Workspace(tmp_path, activate(), tmp_path / "home")
     folders = {"robot_msgs": tmp_path / "src" / "robot_msgs"}
@@ -61,7 +61,7 @@ def test_any_change_of_content_is_another_key(tmp_path: Path, name: str) -> None
     assert _key(folders, workspace) != before
 
 
-def test_scripts_name_the_new_place_and_nothing_else_is_touched(tmp_path: Path) -> None:
+def test_scripts_name_the_new_folder_and_other_files_are_unchanged(tmp_path: Path) -> None:
     share = tmp_path / "install" / "robot_msgs" / "share" / "robot_msgs"
     share.mkdir(parents=True)
     (share / "package.sh").write_text("COLCON=/old/install/robot_msgs\n")

@@ -62,7 +62,7 @@ def write(bundle: Path, answer: str) -> None:
     (bundle / "chapters/02_nodes/ws/src/robot/more.py").write_text("a student's")
 
 
-def test_what_nobody_has_changed_is_that_of_the_later_release(bundle: Path, newer: Path) -> None:
+def test_unchanged_files_become_those_of_the_later_release(bundle: Path, newer: Path) -> None:
     update_bundle(bundle, newer)
     for name in read_manifest(newer).files:
         assert (bundle / name).read_bytes() == (newer / name).read_bytes(), name
@@ -70,7 +70,7 @@ def test_what_nobody_has_changed_is_that_of_the_later_release(bundle: Path, newe
     assert read_manifest(bundle).version == "2"
 
 
-def test_what_a_student_wrote_is_not_touched(bundle: Path, newer: Path) -> None:
+def test_files_and_cells_that_a_student_wrote_are_kept(bundle: Path, newer: Path) -> None:
     write(bundle, "my answer")
     done = update_bundle(bundle, newer)
     assert (done.kept, done.set_aside) == ([GIVEN], {})
@@ -86,7 +86,7 @@ def test_what_a_student_wrote_is_not_touched(bundle: Path, newer: Path) -> None:
     assert (bundle / "chapters/02_nodes/ws/src/robot/node.py").read_text() == "to do, mended"
 
 
-def test_what_was_kept_once_is_kept_the_next_time(bundle: Path, newer: Path) -> None:
+def test_kept_files_and_cells_are_kept_at_the_next_update(bundle: Path, newer: Path) -> None:
     write(bundle, "my answer")
     update_bundle(bundle, newer)
     before = [cell.source for cell in read(bundle).cells]
@@ -106,14 +106,16 @@ def test_a_changed_file_of_the_course_is_set_aside(bundle: Path, newer: Path) ->
     assert not update_bundle(bundle, newer).written
 
 
-def test_a_chapter_that_the_later_release_does_not_hold_stays(bundle: Path, newer: Path) -> None:
+def test_a_chapter_that_is_missing_in_the_later_release_stays(bundle: Path, newer: Path) -> None:
     update_bundle(bundle, newer)
     other = "chapters/03_interfaces/notes.md"
     assert (bundle / other).is_file()
     assert other in read_manifest(bundle).files  # a release after that can still update it
 
 
-def test_an_older_release_and_what_is_none_are_refused(bundle: Path, newer: Path, tmp_path: Path) -> None:
+def test_an_older_release_and_a_folder_that_is_no_release_are_refused(
+    bundle: Path, newer: Path, tmp_path: Path
+) -> None:
     with pytest.raises(UsageError, match="is of 1, and what is here is newer, of 2"):
         update_bundle(newer, bundle)
     with pytest.raises(UsageError, match="no release of the course"):

@@ -52,7 +52,7 @@ def test_the_reference_holds_the_key_and_the_release_does_not() -> None:
     assert parse(cell.source).keys().isdisjoint(QUESTIONS)
 
 
-def test_no_letter_is_right_too_often() -> None:
+def test_no_letter_is_the_right_answer_too_often() -> None:
     letters = [question.right for question in QUESTIONS.values()]
     assert all(letters.count(letter) == 3 for letter in contract.LETTERS)
 
@@ -81,7 +81,7 @@ def test_a_sheet_is_read_line_by_line(text: str, given: dict[str, str]) -> None:
     ("given", "message"),
     [({}, "There is no answer to q1: write a line `q1: LETTER`."), ({"q1": "e"}, "The answer to q1 is 'e', instead")],
 )
-def test_what_is_no_letter_is_named(given: dict[str, str], message: str) -> None:
+def test_an_answer_that_is_no_letter_is_named(given: dict[str, str], message: str) -> None:
     with pytest.raises(CheckFailed) as failed:
         expect_letter(given, "q1")
     assert failed.value.message.startswith(message)
@@ -105,10 +105,10 @@ def test_a_sheet_that_cannot_be_read_is_explained(text: str | None, message: str
     assert failed.value.message.startswith(message)
 
 
-def test_a_fan_with_two_thresholds_does_not_flutter() -> None:
+def test_a_fan_with_two_thresholds_keeps_its_state_between_them() -> None:
     temperatures = [55.0, 60.0, 55.0, 50.0, 55.0, float("nan"), 55.0]
     assert contract.decisions(temperatures) == [False, True, True, False, False, True, True]
 
 
-def test_the_contract_averages_what_there_is() -> None:
+def test_a_fan_averages_the_temperatures_that_it_has() -> None:
     assert contract.averages([1.0, 2.0, 6.0], window=2) == [1.0, 1.5, 4.0]

@@ -11,7 +11,7 @@ from autograder.checks import suites
 
 
 @pytest.mark.parametrize(("line", "expected"), [("", False), ("BUILD_MAY_FAIL = True\n", True)])
-def test_a_build_may_fail_only_where_the_suite_says_so(
+def test_a_build_may_fail_only_if_the_suite_allows_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str, expected: bool
 ) -> None:
     home = f"home_{expected}".lower()

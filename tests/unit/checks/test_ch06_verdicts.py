@@ -61,23 +61,23 @@ ENOUGH = report(*[GOOD] * LEAST[LIMITS])
     ],
     ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "stopped", "few"],
 )
-def test_what_does_not_pass_on_the_package_as_it_is_is_named(run: Report | None, sentence: str) -> None:
+def test_tests_that_do_not_pass_on_the_given_package_are_named(run: Report | None, sentence: str) -> None:
     assert not is_usable(LIMITS, run)
     with pytest.raises(CheckFailed) as failed:
         expect_passed(LIMITS, run)
     assert failed.value.message == sentence
 
 
-def test_enough_tests_that_pass_are_fit() -> None:
+def test_enough_passing_tests_are_usable() -> None:
     expect_passed(LIMITS, ENOUGH)
     assert is_usable(LIMITS, ENOUGH)
 
 
-def test_what_a_test_says_of_a_version_that_is_not_public_is_kept() -> None:
+def test_messages_of_tests_about_a_hidden_version_are_not_shown() -> None:
     assert "secret" not in describe_failure(LIMITS, report(BAD, message="secret"), "here")
 
 
-def test_colcon_test_that_had_to_be_stopped_is_not_said_to_have_run_no_test() -> None:
+def test_a_stopped_colcon_test_is_not_reported_as_without_tests() -> None:
     with pytest.raises(CheckFailed, match=r"`colcon test` did not end within 150 s and was stopped"):
         expect_ended(report(status=None, ending=Ending.WALL_TIME))
     expect_ended(report(status=1))
@@ -100,13 +100,13 @@ def examination(tmp_path: Path) -> Examination:
     return made
 
 
-def test_objecting_to_all_faults_of_a_line_earns_it(examination: Examination) -> None:
+def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Examination) -> None:
     examination.expect_objection("unknown", "the promise.")
     examination.expect_right(LIMITS)
     assert examination.endless() == []
 
 
-def test_objecting_to_some_faults_earns_a_part_and_names_the_line(examination: Examination) -> None:
+def test_tests_that_fail_on_some_faults_of_a_line_earn_a_part_and_the_line_is_named(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = ENOUGH
     with pytest.raises(CheckFailed) as failed:
         examination.expect_objection("unknown", "the promise.")
@@ -116,19 +116,19 @@ def test_objecting_to_some_faults_earns_a_part_and_names_the_line(examination: E
     )
 
 
-def test_a_test_that_fails_on_right_versions_too_objects_to_nothing(examination: Examination) -> None:
+def test_a_test_that_also_fails_on_right_versions_earns_nothing(examination: Examination) -> None:
     examination.__dict__["trial"] = {LIMITS: report(BAD)}
     with pytest.raises(CheckFailed):
         examination.expect_objection("unknown", "the promise.")
 
 
-def test_a_run_that_has_to_be_stopped_objects_and_is_endless(examination: Examination) -> None:
+def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(ending=Ending.WALL_TIME)
     examination.expect_objection("unknown", "the promise.")
     assert examination.endless() == [LIMITS]
 
 
-def test_a_difficulty_that_a_file_does_not_bear_is_named(examination: Examination) -> None:
+def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret")
     examination.expect_right(LIMITS)
     with pytest.raises(CheckFailed, match=r"test_limits\.py fail when they run in the opposite") as failed:

@@ -35,7 +35,7 @@ def test_a_function_that_declares_nothing_is_no_check() -> None:
     assert declared(lambda: None) is None
 
 
-def test_the_checks_of_a_group_have_its_page_and_what_it_depends_on_unless_they_say_otherwise() -> None:
+def test_checks_of_a_group_inherit_its_page_and_dependencies_unless_they_declare_their_own() -> None:
     check = group("reaction", doc="https://docs.ros.org", depends=("starts",))
 
     @check(points=1)
@@ -63,7 +63,9 @@ def test_hints_above_the_declaration_are_an_error() -> None:
 
 
 @pytest.mark.parametrize(("folder", "seen"), [("visible", Visibility.VISIBLE), ("hidden", Visibility.HIDDEN)])
-def test_the_folder_says_who_sees_a_check_also_one_of_a_table(tmp_path: Path, folder: str, seen: Visibility) -> None:
+def test_the_folder_decides_the_visibility_of_a_check_also_in_a_table(
+    tmp_path: Path, folder: str, seen: Visibility
+) -> None:
     module = ModuleType("a_suite")
     text = """
 from autograder.checks import Row, check, each, group
@@ -121,7 +123,7 @@ def test_a_check_must_be_a_pytest_function() -> None:
             """A title."""
 
 
-def test_a_check_must_say_what_it_checks() -> None:
+def test_a_check_must_have_a_docstring() -> None:
     with pytest.raises(GraderError, match="'test_turns': it needs a docstring"):
 
         @check(points=1, group="g")

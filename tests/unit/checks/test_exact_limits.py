@@ -22,16 +22,16 @@ STYLES: dict[str, Callable[[float], float]] = {
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_in_each_style_a_beam_at_half_angle_belongs_to_its_sector(style: str) -> None:
+def test_a_beam_at_the_half_angle_belongs_to_its_sector_in_each_style(style: str) -> None:
     assert any(abs(STYLES[style](side * half)) <= half for half in EXACT_HALVES for side in (-1.0, 1.0))
 
 
-def test_the_edges_are_exact_in_the_numbers_of_a_message() -> None:
+def test_the_exact_limits_can_be_written_as_32_bit_floats() -> None:
     for number in (*EXACT_HALVES, EXACT_LIMIT, EXACT_CLEAR):
         assert float(np.float32(number)) == number
 
 
-def test_the_end_of_a_turn_is_the_same_however_it_is_worked_out() -> None:
+def test_the_end_of_a_turn_is_the_same_for_each_way_to_compute_it() -> None:
     assert LIMIT_BELOW_EXACT + MARGIN == EXACT_CLEAR
     assert EXACT_CLEAR - LIMIT_BELOW_EXACT >= MARGIN
     assert EXACT_CLEAR - MARGIN >= LIMIT_BELOW_EXACT

@@ -40,7 +40,7 @@ def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
     return wanted
 
 
-def test_one_check_is_worth_the_runs_that_it_and_its_dependencies_ask_for(
+def test_only_the_runs_that_one_check_and_its_dependencies_need_are_made(
     workspace: Workspace, ordered: list[TestRun]
 ) -> None:
     examination = Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow")))
@@ -49,7 +49,7 @@ def test_one_check_is_worth_the_runs_that_it_and_its_dependencies_ask_for(
     assert len(ordered) == 6
 
 
-def test_all_checks_of_runs_meet_every_fault(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered: list[TestRun]) -> None:
     examination = Examination(workspace, 1, frozenset(FILES))
     assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {
         "second",
@@ -60,7 +60,7 @@ def test_all_checks_of_runs_meet_every_fault(workspace: Workspace, ordered: list
     assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
 
 
-def test_a_run_is_the_same_whatever_else_is_run(workspace: Workspace, ordered: list[TestRun]) -> None:
+def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace, ordered: list[TestRun]) -> None:
     def versions(*checks: str) -> list[TestRun]:
         ordered.clear()
         assert Examination(workspace, 1, frozenset(checks)).runs

@@ -16,7 +16,7 @@ other:
 """
 
 
-def test_numbers_are_replaced_where_they_stand_and_nothing_else_is_touched() -> None:
+def test_numbers_are_replaced_in_place_and_all_else_is_unchanged() -> None:
     assert with_values(FILE, {"speed": 0.7, "turn_rate": -0.5, "absent": 9.0}) == FILE.replace(
         "speed: 0.2", "speed: 0.7"
     ).replace("-1e-1", "-0.5")

@@ -39,13 +39,13 @@ def test_a_part_covers_its_bearings_whatever_the_first_beam_is() -> None:
                 assert reading == pytest.approx(0.5 if abs(bearing) < 10.0 else 3.0)
 
 
-def test_a_later_part_goes_over_an_earlier_one() -> None:
+def test_a_later_part_of_a_scan_replaces_an_earlier_one() -> None:
     message = scan(Part(-10.0, 10.0, 0.5), Part(0.0, 0.0, math.nan))
     assert math.isnan(message.ranges[0])
     assert message.ranges[5] == pytest.approx(0.5)
 
 
-def test_the_three_behaviours_are_told_apart() -> None:
+def test_the_three_behaviours_are_distinguished() -> None:
     expect_forward(_commands((0.3, 0.0), (0.31, 0.01)), "Now")
     expect_turn(_commands((0.0, 0.5)), "Now")
     expect_stop(_commands((0.0, 0.0)), "Now")
@@ -53,19 +53,19 @@ def test_the_three_behaviours_are_told_apart() -> None:
 
 @pytest.mark.parametrize("expected", [expect_forward, expect_turn, expect_stop])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])
-def test_a_command_that_is_no_sane_number_is_never_right(expected: object, value: float) -> None:
+def test_a_command_that_is_not_finite_is_never_right(expected: object, value: float) -> None:
     assert callable(expected)
     for pair in ((value, value), (value, 0.0), (0.3, value)):
         with pytest.raises(CheckFailed, match=r"Now, the robot .*: it should"):
             expected(_commands(pair), "Now")
 
 
-def test_one_wrong_command_among_many_is_enough() -> None:
+def test_one_wrong_command_among_many_fails_the_check() -> None:
     with pytest.raises(CheckFailed, match=r"drove backward at 0.30 m/s: it should drive straight on at 0.3 m/s"):
         expect_forward(_commands((0.3, 0.0), (-0.3, 0.0), (0.3, 0.0)), "Now")
 
 
-def test_no_command_at_all_is_never_right() -> None:
+def test_missing_commands_are_never_right() -> None:
     with pytest.raises(CheckFailed, match="Now, no command came on /cmd_vel: the robot should publish zero velocity"):
         expect_stop([], "Now")
 
@@ -80,5 +80,5 @@ def test_no_command_at_all_is_never_right() -> None:
         ((math.nan, 0.0), "was told to move at nan m/s and 0.0 rad/s"),
     ],
 )
-def test_a_command_is_put_into_words(pair: tuple[float, float], words: str) -> None:
+def test_a_command_is_described_in_a_sentence(pair: tuple[float, float], words: str) -> None:
     assert describe_command(_commands(pair)[0].message) == words

@@ -47,7 +47,7 @@ def test_{name}():
 """
 
 
-def test_checks_stand_in_the_order_of_modules_and_of_lines(home: Home) -> None:
+def test_checks_have_the_order_of_modules_and_of_lines(home: Home) -> None:
     name = home(first=_check("b", points=2) + _check("a", group="h"), second=_check("c", '("b",)', 0.5))
     read = suites.read(name, "01_tiny", KIND)
     assert [check.id for check in read.checks] == ["b", "a", "c"]
@@ -56,7 +56,7 @@ def test_checks_stand_in_the_order_of_modules_and_of_lines(home: Home) -> None:
     assert suites.names(name, KIND) == ["01_tiny"]
 
 
-def test_an_unknown_assignment_is_a_wrong_call_that_names_the_known_ones(home: Home) -> None:
+def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: Home) -> None:
     with pytest.raises(UsageError, match="no hidden checks for '09_none'; there are for: 01_tiny"):
         suites.read(home(modules="()"), "09_none", KIND)
 
@@ -76,7 +76,7 @@ def test_a_suite_that_breaks_the_contract_is_refused(home: Home, first: str, sec
         suites.read(home(first=first, second=second), "01_tiny", KIND)
 
 
-def test_an_import_that_fails_inside_a_suite_is_not_taken_for_a_missing_suite(home: Home) -> None:
+def test_a_failed_import_inside_a_suite_is_not_reported_as_a_missing_suite(home: Home) -> None:
     with pytest.raises(ModuleNotFoundError, match="no_such_module"):
         suites.read(home(first="import no_such_module", second=""), "01_tiny", KIND)
 

@@ -11,7 +11,7 @@ from autograder.checks.temporal import always, rtamt
 TIMES = [0.0, 0.5, 1.0, 1.5]
 
 
-def test_a_condition_that_holds_has_a_distance_to_the_border_and_no_instant() -> None:
+def test_a_fulfilled_condition_has_a_robustness_and_no_instant() -> None:
     verdict = always("gap > 0.1", TIMES, {"gap": [1.0, 0.4, 0.3, 0.6]})
     assert verdict.robustness == pytest.approx(0.2)
     assert verdict.violated_at is None
@@ -37,7 +37,7 @@ def test_a_malformed_formula_is_an_error() -> None:
 
 @settings(deadline=None, max_examples=25)
 @given(st.lists(st.floats(-10, 10), min_size=2, max_size=20))
-def test_it_agrees_with_the_definition(gaps: list[float]) -> None:
+def test_always_agrees_with_the_definition_of_robustness(gaps: list[float]) -> None:
     verdict = always("gap > 1.0", list(range(len(gaps))), {"gap": gaps})
     first = next((index for index, gap in enumerate(gaps) if gap - 1.0 <= 0.0), None)
     assert verdict.robustness == pytest.approx(min(gaps) - 1.0)

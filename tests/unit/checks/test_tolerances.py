@@ -88,7 +88,7 @@ COMPARISONS = {
 @pytest.mark.parametrize("comparison", COMPARISONS.values(), ids=COMPARISONS)
 @settings(max_examples=25, deadline=None)
 @given(share=st.floats(0.0, 1.0), far=st.floats(2.0, 1000.0), up=st.booleans())
-def test_what_is_within_the_tolerance_is_right_and_twice_as_far_is_wrong(
+def test_a_value_within_the_tolerance_is_right_and_one_twice_as_far_is_wrong(
     comparison: Comparison, share: float, far: float, up: bool
 ) -> None:
     wanted = comparison.lowest + share * (comparison.highest - comparison.lowest)

@@ -62,7 +62,7 @@ def test_every_verb_has_help() -> None:
         assert "Usage:" in shown.output
 
 
-def test_grading_prints_a_line_and_a_row_a_submission_and_exits_0(
+def test_grading_prints_a_line_and_a_row_for_each_submission_and_exits_0(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
 ) -> None:
     asked = graded(make_result("alice"))
@@ -79,7 +79,7 @@ def test_grading_prints_a_line_and_a_row_a_submission_and_exits_0(
     assert (out / "index.html").is_file()
 
 
-def test_regrading_with_resume_says_whose_mark_is_another_one(
+def test_regrading_with_resume_lists_the_students_whose_mark_changed(
     tmp_path: Path, make_result: MakeResult, graded: Callable[..., dict[str, Any]]
 ) -> None:
     for name in ("alice", "bob", "carol"):
@@ -140,7 +140,7 @@ def _main(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
         (("check", "02_nodes", "/no/where"), "there is no folder /no/where/src"),
     ],
 )
-def test_a_name_that_is_not_there_is_one_sentence_and_exits_2(
+def test_an_unknown_name_is_reported_in_one_sentence_and_exits_2(
     arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert _main(monkeypatch, *arguments) == 2
@@ -150,7 +150,7 @@ def test_a_name_that_is_not_there_is_one_sentence_and_exits_2(
 
 
 @pytest.mark.parametrize(("error", "status"), [(UsageError("wrong"), 2), (GraderError("broken"), 1)])
-def test_an_error_that_is_known_becomes_a_sentence(
+def test_a_known_error_is_reported_in_a_sentence(
     error: Exception, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     def fail(*arguments: object, **options: object) -> None:

@@ -49,21 +49,21 @@ def run(verb: str, *names: str) -> Result:
     return CliRunner().invoke(command.course, [verb, *names])
 
 
-def test_check_names_everything_that_is_wrong_and_ends_with_1(course: Path) -> None:
+def test_course_check_names_all_findings_and_exits_with_1(course: Path) -> None:
     result = run("check")
     assert result.exit_code == 1
     assert "cell 'node': differs from solutions/node.py" in result.output
     assert "cell 'g': has 1 points, but the checks of 'graph' have 2" in result.output
 
 
-def test_after_sync_nothing_is_wrong(course: Path) -> None:
+def test_course_check_finds_nothing_after_sync(course: Path) -> None:
     assert run("sync").output == "01_small: 2 brought up to date\n"
     checked = run("check")
     assert (checked.exit_code, checked.output) == (0, "")
     assert run("sync").output == "01_small: as it was\n"
 
 
-def test_what_sync_cannot_mend_is_an_error(course: Path) -> None:
+def test_an_error_that_sync_cannot_correct_is_raised(course: Path) -> None:
     (course / "solutions/node.py").write_text("def mian():\n    return 0\n")
     result = run("sync")
     assert isinstance(result.exception, CourseError)
@@ -77,14 +77,14 @@ def test_a_chapter_that_does_not_exist_is_named_with_those_that_do(course: Path)
     assert run("check", "01_small").exit_code == 1
 
 
-def test_the_lists_of_what_is_judged_later_are_up_to_date() -> None:
+def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
     stale = [path for path, text in titles().items() if path.read_text(encoding="utf-8") != text]
     assert stale == [], "run `autograder course tables`"
     assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
 
 
 @pytest.mark.parametrize("assignment", suites.graded())
-def test_a_student_whose_checks_have_all_passed_reads_what_is_judged_after_handing_in(
+def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     assignment: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shown = {check.title for check in suites.visible(assignment).checks}

@@ -40,7 +40,7 @@ def test_the_kept_run_of_one_check_is_shown_alone(stored: Path, monkeypatch: pyt
     assert 'id="run-starts-track"' not in text
 
 
-def test_a_browser_opens_when_it_is_asked_for(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_option_to_open_a_browser_opens_the_page(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     for option in ("--open", "--no-open"):
@@ -48,7 +48,7 @@ def test_a_browser_opens_when_it_is_asked_for(stored: Path, monkeypatch: pytest.
     assert opened == [(stored / "replay" / "turns" / "feedback.html").as_uri()]
 
 
-def test_a_wrong_call_says_what_would_be_right(stored: Path) -> None:
+def test_a_wrong_call_of_replay_is_reported_with_the_right_one(stored: Path) -> None:
     for options, sentence in (
         (["--check", "flies"], "the result has no check 'flies'; it has: starts, listens, turns"),
         (["--check", "turns", "--mcap"], "--mcap needs --submission PATH"),

@@ -59,7 +59,7 @@ def with_run(result: Result, name: str) -> Result:
     return replace(result, artifacts=(Artifact("turns.png", "track", SHA256, "turns", run=name),))
 
 
-def test_a_parcel_comes_out_as_it_went_in_whatever_its_names_are() -> None:
+def test_a_parcel_is_unpacked_as_it_was_packed_for_any_file_names() -> None:
     names = ("src/a b/ü.py", "src/\udcff.txt", "run")
     files = tuple(SubmittedFile(PurePosixPath(name), name.encode("utf-8", "replace"), name == "run") for name in names)
     parcel = Parcel(CHAPTER, 7, Tier.PROCESS, files)
@@ -71,13 +71,13 @@ def test_a_parcel_comes_out_as_it_went_in_whatever_its_names_are() -> None:
     "data",
     [b"", b"\xc1", msgpack.packb(["02_nodes", 7, "no tier", []]), msgpack.packb(["02_nodes", 7, "process", [[]]])],
 )
-def test_what_is_no_parcel_is_refused(data: bytes) -> None:
+def test_bytes_that_are_no_parcel_are_refused(data: bytes) -> None:
     with pytest.raises(ClusterError, match="the parcel of a submission cannot be read"):
         Parcel.unpack(data)
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "src/../../x"])
-def test_a_parcel_leaves_its_folder_for_no_file(name: str) -> None:
+def test_a_parcel_writes_no_file_outside_its_folder(name: str) -> None:
     data = Parcel(CHAPTER, 7, Tier.PROCESS, (SubmittedFile(PurePosixPath(name), b""),)).pack()
     with pytest.raises(ClusterError, match="names a file outside of it"):
         Parcel.unpack(data)
@@ -152,14 +152,14 @@ def test_a_hostile_answer_is_refused_and_writes_nothing(request_: Request, resul
         assert not request_.out.exists(), name
 
 
-def test_a_submission_that_is_given_up_is_not_graded_and_no_zero(request_: Request) -> None:
+def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(request_: Request) -> None:
     given_up = give_up(request_, "The 2 workers that had this submission died.", "KilledWorker\n")
     assert given_up.status is Status.NOT_GRADED
     assert given_up.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
     assert (request_.out / "grader.log").read_text() == "KilledWorker\n"
 
 
-def test_what_intake_refuses_has_a_result_without_any_worker(tmp_path: Path) -> None:
+def test_a_submission_that_intake_refuses_gets_its_result_without_a_worker(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"none")
     with pytest.raises(StudentError) as caught:
         read_submission(tmp_path / "bob.zip", CHAPTER)

@@ -20,14 +20,14 @@ from autograder.sandbox import Tier
     "address",
     ["tls://grader.example.edu:8786", "tcp://127.0.0.1:8786", "tcp://localhost:8786", "tcp://[::1]:1", "tls://[::1]:1"],
 )
-def test_tls_goes_anywhere_and_clear_text_stays_on_this_machine(address: str) -> None:
+def test_tls_is_allowed_to_any_address_and_clear_text_only_to_this_machine(address: str) -> None:
     require_address(address)
 
 
 @pytest.mark.parametrize(
     "address", ["", "grader", "grader:8786", "http://grader:80", "tls://:8786", "tls://grader:port"]
 )
-def test_what_is_no_address_is_a_wrong_call(address: str) -> None:
+def test_a_text_that_is_no_address_is_a_usage_error(address: str) -> None:
     with pytest.raises(UsageError, match="is no address of a scheduler: give tls://HOST:PORT, or `local`"):
         require_address(address)
 
@@ -43,7 +43,7 @@ def test_a_missing_certificate_is_named(tmp_path: Path) -> None:
         pytest.fail("connected")
 
 
-def test_a_certificate_serves_both_ends_and_is_its_owner_s_alone(tmp_path: Path) -> None:
+def test_a_certificate_works_for_server_and_client_and_only_its_owner_can_read_it(tmp_path: Path) -> None:
     make = ["make", "-f", layout.ROOT / "Makefile", "cluster-certificates"]
     subprocess.run(make, cwd=tmp_path, check=True)
     certificate, key = (tmp_path / "cluster-certificates" / name for name in (CERTIFICATE, KEY))
@@ -72,10 +72,10 @@ HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 bubblewrap"
         (["GPU"], "it does not say what it grades with: start it with `--preload autograder.cluster`"),
     ],
 )
-def test_a_worker_that_differs_is_refused_with_a_sentence(offered: list[str], why: str) -> None:
+def test_a_worker_that_differs_is_refused_with_the_reason(offered: list[str], why: str) -> None:
     assert difference(HERE, offered).startswith(why)
     assert (difference(HERE, offered) == "") is (HERE in offered)
 
 
-def test_a_machine_offers_what_it_asks_for() -> None:
+def test_a_machine_fits_its_own_requirements() -> None:
     assert difference(resource("02_nodes", Tier.PROCESS), resources()) == ""

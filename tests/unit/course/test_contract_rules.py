@@ -39,13 +39,13 @@ def messages(book: NotebookNode, *checks: Check) -> list[str]:
     return [finding.message for finding in broken_contract("small.ipynb", book, checks)]
 
 
-def test_a_row_is_quoted_with_the_head_of_its_table_and_a_bullet_without_its_dash() -> None:
+def test_a_table_row_is_quoted_with_its_heading_and_a_bullet_without_its_dash() -> None:
     found = sentences(made().cells)
     assert found["waits"].text == "no scan yet: speed 0, turn 0"
     assert found["ends"].text == "It ends with exit status 0."
 
 
-def test_a_whole_contract_has_no_findings() -> None:
+def test_a_complete_contract_has_no_findings() -> None:
     assert messages(made(), check("stops", "waits", "ends")) == []
 
 
@@ -99,7 +99,7 @@ def test_an_unchecked_sentence_has_no_check() -> None:
 
 
 @pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
-def test_the_contract_of_each_chapter_has_no_hole(chapter: Any) -> None:
+def test_the_contract_of_each_chapter_has_no_findings(chapter: Any) -> None:
     name = chapter.assignment
     hidden = suites.hidden(name).checks if name in suites.graded() else ()
     assert [
@@ -107,6 +107,6 @@ def test_the_contract_of_each_chapter_has_no_hole(chapter: Any) -> None:
     ] == []
 
 
-def test_few_sentences_of_the_course_are_unchecked() -> None:
+def test_the_course_has_no_more_unchecked_sentences_than_allowed() -> None:
     found = [s.id for name in suites.checked() for s in contract(name).values() if s.unchecked]
     assert len(found) <= MAX_UNCHECKED, found

@@ -53,7 +53,7 @@ def test_empty_lines_name_the_start_and_the_end_of_the_file() -> None:
         ("# BEGIN SOLUTION\na\n", [("", "")], "holds solution markers"),
     ],
 )
-def test_a_cut_that_does_not_fit_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:
+def test_a_cut_whose_lines_are_not_found_is_an_error(text: str, cuts: list[tuple[str, str]], words: str) -> None:
     with pytest.raises(CourseError, match=words):
         mark_lines(text, cuts)
 
@@ -90,6 +90,6 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
         ({"cut": [["a", "b"]], "hide": ["main"]}, "should not be valid under .*'hide', 'cut'"),
     ],
 )
-def test_metadata_that_cuts_nonsense_is_an_error(course: dict[str, object], words: str) -> None:
+def test_invalid_metadata_for_cuts_are_an_error(course: dict[str, object], words: str) -> None:
     with pytest.raises(CourseError, match=words):
         origin(_cell(**course))

@@ -33,11 +33,11 @@ def test_the_longest_time_without_anything_to_write_is_counted() -> None:
 
 
 @pytest.mark.parametrize("chapter", chapters(), ids=lambda chapter: chapter.assignment)
-def test_nobody_reads_and_runs_for_half_an_hour_before_there_is_something_to_write(chapter: Chapter) -> None:
+def test_a_student_reads_and_runs_for_at_most_30_minutes_before_something_is_to_be_written(chapter: Chapter) -> None:
     assert effort(chapter.read()).at_one_go <= 30.0
 
 
-def test_the_promise_has_a_time_to_read_and_a_time_to_write() -> None:
+def test_the_stated_time_has_a_part_to_read_and_a_part_to_write() -> None:
     assert promise(Effort(words=2400, cells=20, lines=50)) == (
         "40 minutes to read and run, 60 minutes for the exercises"
     )
@@ -47,11 +47,11 @@ def test_the_promise_has_a_time_to_read_and_a_time_to_write() -> None:
     ("minutes", "words"),
     [(1.0, "5 minutes"), (43.0, "45 minutes"), (90.0, "90 minutes"), (110.0, "2 hours"), (148.0, "2½ hours")],
 )
-def test_a_time_is_told_in_steps(minutes: float, words: str) -> None:
+def test_a_duration_is_rounded_to_steps(minutes: float, words: str) -> None:
     assert told(minutes) == words
 
 
-def test_a_chapter_that_promises_another_time_is_found() -> None:
+def test_a_chapter_that_states_a_wrong_time_is_reported() -> None:
     (finding,) = wrong_promise("turn.ipynb", BOOK)
     assert "5 minutes to read and run, 5 minutes for the exercises" in str(finding)
     honest = new_markdown_cell("# Turn around\n\n*5 minutes to read\nand run, 5 minutes for the exercises.*")

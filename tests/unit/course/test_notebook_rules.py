@@ -30,7 +30,7 @@ ANSWER = "# BEGIN SOLUTION\nSo.\n# END SOLUTION"
 SCHEME = "### BEGIN MARK SCHEME\n1 point.\n### END MARK SCHEME"
 
 
-def test_marks_for_a_person_are_no_headings_and_need_no_group() -> None:
+def test_cells_that_a_person_grades_need_no_group_and_their_markers_are_no_headings() -> None:
     made = notebook(
         prose("# Title", "title"),
         prose(f"Why?\n\n{SCHEME}", "why", nbgrader={**solution("why"), "solution": False, "locked": True}),
@@ -125,7 +125,7 @@ def old_format() -> NotebookNode:
         ),
     ],
 )
-def test_what_is_wrong_is_named(made: NotebookNode, message: str) -> None:
+def test_each_error_of_a_notebook_is_named(made: NotebookNode, message: str) -> None:
     assert message in messages(made)
 
 

@@ -29,7 +29,7 @@ def _run(*arguments: str) -> Result:
     return CliRunner().invoke(cli.group, ["notebooks", *arguments])
 
 
-def test_the_forms_that_are_named_run_and_the_failed_one_is_told_by_its_cell(course: Path) -> None:
+def test_the_named_forms_run_and_a_failed_form_is_reported_with_its_cell(course: Path) -> None:
     said = _run("--solved", "--released", "-j", "2", "--json", str(course / "runs.json"))
     assert said.exit_code == 1
     assert "01_small (solved): ok in " in said.output
@@ -44,9 +44,7 @@ def test_the_forms_that_are_named_run_and_the_failed_one_is_told_by_its_cell(cou
     assert reports == {"01_small-solved.ipynb", "01_small-released.ipynb"}
 
 
-def test_several_notebooks_run_at_once_each_in_a_domain_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_several_notebooks_run_at_once_each_in_its_own_domain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     place = tmp_path / "place"
     place.mkdir()
     # Each waits until the other one has come: one after the other, both would fail.
@@ -74,5 +72,5 @@ def test_without_a_form_the_source_runs(course: Path) -> None:
     assert said.output.startswith("01_small (source): ok in ")
 
 
-def test_a_name_that_is_no_assignment_is_told_which_there_are(course: Path) -> None:
+def test_an_unknown_assignment_is_refused_with_the_known_ones(course: Path) -> None:
     assert "there are: 01_small" in str(_run("1_small").exception)

@@ -35,7 +35,7 @@ def test_each_cell_gets_the_points_of_its_group() -> None:
     assert found(made) == []
 
 
-def test_points_that_a_person_gives_are_no_business_of_the_suites() -> None:
+def test_points_that_a_person_gives_are_not_counted_by_the_suite() -> None:
     made = graded(reaction=0, graph=1)
     made.cells.append(prose("Why?", "why", nbgrader=manual("why", 6)))
     correct(made)
@@ -64,6 +64,6 @@ def test_wrong_points_are_named() -> None:
         ),
     ],
 )
-def test_a_suite_and_a_notebook_that_do_not_fit_are_the_authors_to_mend(made: NotebookNode, message: str) -> None:
+def test_a_suite_and_a_notebook_that_do_not_fit_are_an_error_of_the_author(made: NotebookNode, message: str) -> None:
     ((finding, correction),) = (pair for pair in point_differences("n.ipynb", made, POINTS) if message in str(pair[0]))
     assert correction is None, finding

@@ -61,11 +61,11 @@ def test_taking_the_marks_away_gives_the_source_back() -> None:
     assert strip_markers(mark_functions(MODULE, ["half", "Robot.__init__", "Robot.move"])) == MODULE
 
 
-def test_the_marked_source_means_the_same() -> None:
+def test_the_marked_source_has_the_same_syntax_tree() -> None:
     assert ast.dump(ast.parse(mark_functions(MODULE, ["half", "Robot.look"]))) == ast.dump(ast.parse(MODULE))
 
 
-def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
+def test_the_stub_raises_an_error_that_tells_the_student_to_write_it() -> None:
     with pytest.raises(NotImplementedError, match="still to be written"):
         exec(CODE_STUB)
 
@@ -87,12 +87,12 @@ def test_the_stub_is_a_statement_that_says_who_has_to_act() -> None:
         ),
     ],
 )
-def test_what_cannot_be_hidden_is_named(text: str, hide: list[str], message: str) -> None:
+def test_a_function_that_cannot_be_hidden_is_named(text: str, hide: list[str], message: str) -> None:
     with pytest.raises(CourseError, match=message):
         mark_functions(text, hide)
 
 
-def test_the_licence_stays_in_the_repository() -> None:
+def test_the_licence_comment_is_not_released() -> None:
     licence = "# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
     assert strip_licence(licence + MODULE) == MODULE
 

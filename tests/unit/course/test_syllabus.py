@@ -36,7 +36,7 @@ def test_places_are_found_by_the_heading_above_them() -> None:
     assert [(row.exercise, row.checks) for row in covered.rows] == [("Write it", (CHECK,))]
 
 
-def test_what_no_notebook_holds_is_named() -> None:
+def test_a_syllabus_item_that_no_notebook_covers_is_named() -> None:
     assert messages(("02_nodes", made(objectives=[OBJECTIVE]), [CHECK])) == [
         "no notebook covers 'Q1': What is setup.py?"
     ]
@@ -52,7 +52,7 @@ def test_what_no_notebook_holds_is_named() -> None:
         ({"groups": []}, "no objective names the groups graph"),
     ],
 )
-def test_an_objective_that_points_nowhere_is_named(change: dict[str, object], message: str) -> None:
+def test_an_objective_with_an_unknown_or_missing_target_is_named(change: dict[str, object], message: str) -> None:
     assert message in messages(("02_nodes", made(objectives=[{**OBJECTIVE, **change}]), [CHECK]))
 
 
@@ -69,14 +69,14 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
     assert "| 7 | no | yes | 02_nodes: Write it |" in text
 
 
-def test_the_course_holds_everything_and_its_pages_are_up_to_date() -> None:
+def test_the_course_covers_the_syllabus_and_its_pages_are_up_to_date() -> None:
     written, findings = course_page()
     assert [str(finding) for finding in findings] == []
     for path, text in ((PAGE, written), (guide.PAGE, guide.guide())):
         assert path.read_text(encoding="utf-8") == text, f"{path.name} is out of date: run `autograder course tables`"
 
 
-def test_the_syllabus_names_all_that_the_chapter_has() -> None:
+def test_the_syllabus_names_all_items_of_the_textbook_chapter() -> None:
     syllabus = Syllabus.read()
     assert len(syllabus.objectives) == 6
     assert set(syllabus.errata) == set(range(1, 49))

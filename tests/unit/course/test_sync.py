@@ -68,7 +68,7 @@ def test_a_cell_that_hides_nothing_shows_the_file(tmp_path: Path, solutions: Pat
     assert made.read().cells[1].source == f"%%writefile ws/src/pkg/node.py\n{NODE}".rstrip()
 
 
-def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> None:
+def test_a_given_file_is_copied_and_compared(tmp_path: Path, solutions: Path) -> None:
     made = chapter(tmp_path, notebook(prose("# A title", "title"), given={"ws/src/pkg/setup.cfg": "pkg/setup.cfg"}))
     (missing,) = find_outdated(made)
     assert "the given file ws/src/pkg/setup.cfg is missing" in str(missing)
@@ -93,7 +93,7 @@ def test_a_given_file_is_copied_and_held(tmp_path: Path, solutions: Path) -> Non
         ({"hide": ["mian"]}, "pkg/node.py: function 'mian' occurs 0 times"),
     ],
 )
-def test_metadata_that_copying_cannot_mend_is_an_error_and_writes_nothing(
+def test_metadata_that_sync_cannot_correct_are_an_error_and_nothing_is_written(
     tmp_path: Path, solutions: Path, course: dict[str, Any], message: str
 ) -> None:
     made = small(tmp_path, **course)
@@ -137,7 +137,7 @@ def test_two_cells_with_one_id_are_named_before_nbformat_repairs_them(tmp_path: 
         made.read()
 
 
-def test_chapters_come_in_their_order_and_scratch_notebooks_do_not(tmp_path: Path) -> None:
+def test_chapters_are_sorted_and_other_notebooks_are_left_out(tmp_path: Path) -> None:
     for name in ("02_b", "01_a"):
         chapter(tmp_path, notebook(), name)
     (tmp_path / "chapters/01_a/Untitled.ipynb").write_text("{}")

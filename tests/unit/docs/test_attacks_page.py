@@ -17,12 +17,12 @@ def test_the_page_is_current() -> None:
     assert MADE["PAGE"].read_text(encoding="utf-8") == MADE["current"](), "run `python docs/attacks_page.py`"
 
 
-def test_each_of_the_attacks_is_held_by_a_test() -> None:
+def test_each_attack_has_a_test() -> None:
     assert len(ROWS) == 33
     assert all(row["tests"] for row in ROWS)
 
 
-def test_each_test_that_the_table_names_is_there() -> None:
+def test_each_test_that_the_table_names_exists() -> None:
     for row in ROWS:
         for file, names in row["tests"].items():
             defined = set(re.findall(r"^def (test_\w+)", (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE))

@@ -17,7 +17,7 @@ MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))
 
 
 @pytest.mark.parametrize(("executed", "shown"), [("1 + 1", 1), ("1 + 2", 0)])
-def test_outputs_are_those_of_the_same_cells(
+def test_each_cell_gets_the_outputs_of_the_same_executed_cell(
     executed: str, shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(layout, "BUILD", tmp_path)
@@ -34,7 +34,7 @@ def test_outputs_are_those_of_the_same_cells(
     assert len(cell.outputs) == shown
 
 
-def test_the_glossary_is_one_of_sphinx(tmp_path: Path) -> None:
+def test_the_glossary_becomes_a_sphinx_glossary(tmp_path: Path) -> None:
     page = tmp_path / "glossary.md"
     page.write_text(
         "# Glossary\n\nQoS, quality of service\n: Whether messages may be lost.\n  Or not.\n\nNode\n: A name.\n"
@@ -44,7 +44,7 @@ def test_the_glossary_is_one_of_sphinx(tmp_path: Path) -> None:
     assert page.read_text() == f"# Glossary\n\n{first}\n\n```{{glossary}}\nNode\n  A name.\n```\n"
 
 
-def test_the_first_use_of_a_word_in_prose_leads_to_the_glossary() -> None:
+def test_the_first_use_of_a_term_in_prose_is_linked_to_the_glossary() -> None:
     texts = ["# A node\n\n`node`, [a node](x.md)\n\n| node |", "Two **nodes** and a quality\nof service.", "One node."]
     assert MADE["link_first_uses"](texts, {"Node", "Service", "quality of service"}) == [
         texts[0],
@@ -53,7 +53,7 @@ def test_the_first_use_of_a_word_in_prose_leads_to_the_glossary() -> None:
     ]
 
 
-def test_each_exception_names_a_word_of_the_glossary() -> None:
+def test_each_exception_from_linking_names_a_term_of_the_glossary() -> None:
     words = {word for entry in MADE["ENTRY"].finditer(GLOSSARY.read_text()) for word in entry["words"].split(", ")}
     assert MADE["EVERYWHERE"].union(*MADE["MEANT_OTHERWISE"].values()) <= words
     assert {name for name in MADE["MEANT_OTHERWISE"] if name[0].isdigit()} <= set(layout.assignments())

@@ -27,13 +27,13 @@ def test_a_lock_is_read_for_each_python() -> None:
     assert locked(LOCKED, "3.13") == {"numpy": "2.1.3", "pytest": "7.4.4"}
 
 
-def test_the_page_tells_what_the_lock_installs_and_which_tutorials_run() -> None:
+def test_the_platform_page_lists_what_the_lock_installs_and_which_tutorials_run() -> None:
     page = MADE["PAGE"].read_text(encoding="utf-8")
     assert page == MADE["current"](), "it is out of date: run `python docs/platform_page.py`"
 
 
 @pytest.mark.parametrize("python", MADE["PYTHONS"])
-def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not(python: str) -> None:
+def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(python: str) -> None:
     versions = locked(LOCK.read_text(encoding="utf-8"), python)
     unexplained = {
         package.name: versions[package.name]
@@ -44,7 +44,7 @@ def test_the_lock_installs_the_versions_of_the_platform_or_the_page_says_why_not
 
 
 @pytest.mark.parametrize("name", MADE["LAUNCH"])
-def test_what_the_page_calls_not_covered_says_so(name: str) -> None:
+def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(name: str) -> None:
     module, _, last = name.rpartition(".")
     program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {last}"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)

@@ -87,14 +87,14 @@ def finding(name: str, **lack: Any) -> Finding:
     return next(found for found in examine(good(**lack)) if found.name == name)
 
 
-def test_a_machine_with_everything_is_healthy_and_nothing_has_to_be_mended() -> None:
+def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     findings = examine(good())
     assert {found.status for found in findings} == {Status.OK}, findings
     assert [found.mend for found in findings if found.mend] == []
     assert healthy(findings)
 
 
-def test_a_version_that_is_the_nearest_for_this_python_is_nothing_to_mend() -> None:
+def test_the_nearest_version_for_this_python_needs_no_fix() -> None:
     found = finding("versions", package={**VERSIONS, "numpy": "2.1.3"}.get)
     assert found.status is Status.OK
     assert found.found == "those of Ubuntu 24.04, but numpy 2.1.3 for 1.26.4: the nearest for this Python"
@@ -342,7 +342,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
 
 
 @pytest.mark.parametrize(("name", "lack", "status", "found", "mend"), LACKS.values(), ids=LACKS.keys())
-def test_a_lack_is_named_with_what_mends_it(
+def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
     name: str, lack: dict[str, Any], status: Status, found: str, mend: str
 ) -> None:
     seen = finding(name, **lack)
@@ -352,18 +352,18 @@ def test_a_lack_is_named_with_what_mends_it(
     assert not seen.found.endswith(".")
 
 
-def test_what_is_weak_does_not_make_a_machine_unfit_and_what_is_missing_does() -> None:
+def test_a_weak_finding_leaves_a_machine_healthy_and_a_missing_thing_does_not() -> None:
     assert healthy(examine(good(in_venv=False)))
     assert not healthy(examine(good(which=without("bwrap"))))
 
 
-def test_a_bundle_that_is_the_newest_is_fine_and_so_is_one_that_knows_of_no_other() -> None:
+def test_a_newest_bundle_and_a_bundle_without_a_newest_folder_are_fine() -> None:
     for told in ('"course": ""', '"course": "/srv/none"'):
         read = {**FILES, ROOT / "release.json": f'{{"version": "2026-05-04", {told}}}'}.get
         assert finding("release", read=read) == Finding("release", Status.OK, "of 2026-05-04")
 
 
-def test_a_sourced_jazzy_alone_is_fine_and_has_no_wheels_to_mend() -> None:
+def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
     alone = good(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(alone)
     assert {found.status for found in findings} == {Status.OK}
@@ -418,7 +418,7 @@ def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeyp
     assert System().tmp == Path("/proc")
 
 
-def test_a_command_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_command_that_does_not_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("autograder.doctor.system.PATIENCE_SECONDS", 0.2)
     ran = System().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
     assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
@@ -426,13 +426,13 @@ def test_a_command_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.fixture
 def forgets_tries() -> Iterator[None]:
-    """Whether namespaces can be made is tried anew, and after the test, too."""
+    """Namespaces are tried anew in the test, and again after it."""
     namespaces_failure.cache_clear()
     yield
     namespaces_failure.cache_clear()
 
 
-def test_a_bubblewrap_that_is_denied_namespaces_is_found_out_for_real(
+def test_a_bubblewrap_that_is_denied_namespaces_is_detected_on_this_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgets_tries: None
 ) -> None:
     denied = tmp_path / "bwrap"
@@ -443,7 +443,7 @@ def test_a_bubblewrap_that_is_denied_namespaces_is_found_out_for_real(
     assert (seen.status, DENIED in seen.found, bool(seen.mend)) == (Status.WEAK, True, True)
 
 
-def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> None:
+def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path) -> None:
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").write_text("raise ImportError('half an installation')\n")
     code = "from autograder.doctor import *; f = examine(System()); print(render(f)); raise SystemExit(not healthy(f))"
@@ -467,7 +467,7 @@ def test_a_broken_python_environment_is_found_out_for_real(tmp_path: Path) -> No
         ({"pids"}, "buffers of sockets and inodes are not", "systemd-run --user --scope autograder doctor"),
     ],
 )
-def test_what_no_control_group_bounds_is_told(bounds: set[str], told: str, mend: str) -> None:
+def test_a_limit_without_a_control_group_is_reported(bounds: set[str], told: str, mend: str) -> None:
     found = finding("isolation", bounds=lambda: frozenset(bounds))
     assert (found.status, found.mend) == (Status.WEAK, mend)
     assert told in found.found

@@ -29,18 +29,18 @@ def regraded(result: Result, points: float) -> Result:
     return replace(result, checks=tuple(checks))
 
 
-def test_who_has_the_same_points_is_not_named(make_result: MakeResult) -> None:
+def test_a_student_with_the_same_points_is_not_listed(make_result: MakeResult) -> None:
     assert changes(stored(make_result("alice")), stored(make_result("alice"))) == ()
 
 
-def test_a_mended_check_is_named_with_its_points(make_result: MakeResult) -> None:
+def test_a_corrected_check_is_listed_with_its_points(make_result: MakeResult) -> None:
     alice = make_result("alice")
     (change,) = changes(stored(alice, make_result("bob")), stored(regraded(alice, 4.0), make_result("bob")))
     assert (change.student, change.before, change.after, change.same_submission) == ("alice", 4.0, 7.0, True)
     assert change.checks == (CheckChange("turns", 1.0, 4.0),)
 
 
-def test_checks_that_move_points_between_them_are_named_though_the_mark_is_the_same(make_result: MakeResult) -> None:
+def test_checks_whose_points_changed_are_listed_even_if_the_mark_is_the_same(make_result: MakeResult) -> None:
     alice = make_result("alice")
     moved = replace(alice, checks=(replace(alice.checks[0], points=0.0), *regraded(alice, 2.0).checks[1:]))
     (change,) = changes(stored(alice), stored(moved))
@@ -48,7 +48,7 @@ def test_checks_that_move_points_between_them_are_named_though_the_mark_is_the_s
     assert [check.id for check in change.checks] == ["starts", "turns"]
 
 
-def test_a_check_that_is_new_or_gone_and_a_student_who_is(make_result: MakeResult, ungraded_result: Result) -> None:
+def test_new_and_removed_checks_and_new_students_are_listed(make_result: MakeResult, ungraded_result: Result) -> None:
     alice = make_result("alice")
     fewer = replace(alice, checks=alice.checks[1:])
     found = changes(stored(fewer), stored(alice, make_result("dora"), ungraded_result))

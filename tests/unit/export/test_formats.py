@@ -41,7 +41,7 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_csv_holds_a_row_a_submission_and_a_column_a_check(a_class: Class, tmp_path: Path) -> None:
+def test_csv_has_a_row_for_each_submission_and_a_column_for_each_check(a_class: Class, tmp_path: Path) -> None:
     alice, bob, carol = rows(write(a_class, "csv", tmp_path / "new" / "marks.csv"))
     assert (alice["student"], alice["score"], alice["max_score"], alice["percent"]) == ("alice", "4.0", "10.0", "40.0")
     assert (alice["check turns"], alice["check starts"]) == ("1.0", "1.0")
@@ -55,7 +55,7 @@ def test_csv_holds_no_formula(hostile: Class, tmp_path: Path) -> None:
     assert row["reason"] == "'=1+1|<script>`x`[a](b)\ufffd\ufffd # head"
 
 
-def test_junit_counts_and_names_what_happened(a_class: Class, tmp_path: Path) -> None:
+def test_junit_counts_and_names_each_outcome(a_class: Class, tmp_path: Path) -> None:
     root = ET.parse(write(a_class, "junit", tmp_path / "junit.xml")).getroot()
     assert dict(root.attrib) == {"tests": "8", "failures": "2", "errors": "1", "skipped": "3"}
     alice, _, carol = root.findall("testsuite")
@@ -72,7 +72,7 @@ def test_junit_counts_and_names_what_happened(a_class: Class, tmp_path: Path) ->
     assert NOT_GRADED in error.get("message", "")
 
 
-def test_junit_stays_well_formed_whatever_a_student_wrote(hostile: Class, tmp_path: Path) -> None:
+def test_junit_is_well_formed_for_any_text_of_a_student(hostile: Class, tmp_path: Path) -> None:
     root = ET.parse(write(hostile, "junit", tmp_path / "junit.xml")).getroot()
     failure = root.find("testsuite/testcase/failure")
     assert failure is not None
@@ -84,7 +84,7 @@ def gradescope(stored: Class, out: Path) -> list[dict[str, Any]]:
     return [json.loads((out / item.result.student / "results.json").read_text(encoding="utf-8")) for item in stored]
 
 
-def test_gradescope_gets_the_score_and_a_test_a_check(a_class: Class, tmp_path: Path) -> None:
+def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp_path: Path) -> None:
     alice, bob, _ = gradescope(a_class, tmp_path / "out")
     assert (alice["score"], alice["execution_time"], alice["output"]) == (4.0, 12, "")
     assert sum(test["score"] for test in alice["tests"]) == alice["score"]
@@ -105,13 +105,13 @@ def test_gradescope_shows_hidden_checks_with_the_marks(a_class: Class, tmp_path:
     assert {test["visibility"] for test in tests} == {"after_published"}
 
 
-def test_gradescope_is_not_told_a_zero_for_what_was_not_graded(a_class: Class, tmp_path: Path) -> None:
+def test_gradescope_gets_no_zero_for_an_ungraded_submission(a_class: Class, tmp_path: Path) -> None:
     carol = gradescope(a_class, tmp_path / "out")[2]
     assert set(carol) == {"output"}
     assert NOT_GRADED in carol["output"]
 
 
-def test_html_is_a_page_each_and_a_table_with_the_pictures_inside(
+def test_html_has_a_page_for_each_student_with_its_pictures_and_a_table(
     make_result: MakeResult, track: Callable[..., Artifact], tmp_path: Path
 ) -> None:
     stored = [Stored(make_result(artifacts=(track(tmp_path / "in"),)), tmp_path / "in")]
@@ -121,7 +121,7 @@ def test_html_is_a_page_each_and_a_table_with_the_pictures_inside(
     assert "data:image/png;base64," in (tmp_path / "out" / "alice" / "feedback.html").read_text(encoding="utf-8")
 
 
-def test_markdown_is_a_table_and_a_section_each(a_class: Class, tmp_path: Path) -> None:
+def test_markdown_has_a_table_and_a_section_for_each_student(a_class: Class, tmp_path: Path) -> None:
     text = write(a_class, "markdown", tmp_path / "report.md").read_text(encoding="utf-8")
     for line in (
         "| alice | 02\\_nodes | 4 / 10 |  |",

@@ -28,7 +28,7 @@ def test_a_single_result_is_read(make_result: MakeResult, tmp_path: Path) -> Non
     assert load(tmp_path / "result.json") == load(tmp_path)
 
 
-def test_a_list_of_results_finds_each_ones_folder(make_result: MakeResult, tmp_path: Path) -> None:
+def test_each_result_of_a_list_has_its_folder(make_result: MakeResult, tmp_path: Path) -> None:
     write_json(tmp_path / "results.json", [make_result("alice").to_json(), make_result("bob").to_json()])
     (tmp_path / "bob").mkdir()
     assert [item.folder for item in load(tmp_path)] == [tmp_path, tmp_path / "bob"]

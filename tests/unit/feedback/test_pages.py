@@ -46,7 +46,7 @@ class Page(HTMLParser):
         return [value for name, value in self.attributes if name == attribute]
 
 
-def test_the_page_says_the_score_each_check_and_the_reason(make_result: MakeResult, tmp_path: Path) -> None:
+def test_the_page_shows_the_score_each_check_and_the_reason(make_result: MakeResult, tmp_path: Path) -> None:
     page = Page(feedback.write(make_result(), tmp_path))
     assert "4 of 10 points, 40 %" in page.text
     for words in ("Graph 3 / 3", "Reaction 1 / 4", "it kept driving: 0.08 m from the north wall", "1 / 4"):
@@ -54,7 +54,7 @@ def test_the_page_says_the_score_each_check_and_the_reason(make_result: MakeResu
     assert page.all("aria-label") == ["passed", "passed", "failed", "not checked", "failed"]
 
 
-def test_a_program_that_was_met_in_real_time_is_named_and_no_word_is_lost_on_others(
+def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
     note = "robot_controller was met in real time: it uses rclpy in threads of its own."
@@ -66,7 +66,7 @@ def test_a_program_that_was_met_in_real_time_is_named_and_no_word_is_lost_on_oth
     assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
 
 
-def test_the_first_failed_check_is_where_to_start(make_result: MakeResult, tmp_path: Path) -> None:
+def test_the_page_tells_to_start_with_the_first_failed_check(make_result: MakeResult, tmp_path: Path) -> None:
     page = Page(feedback.write(make_result(), tmp_path))
     assert "Start here The robot turns when something" in page.text
     assert "#check-turns" in page.all("href")
@@ -83,7 +83,7 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
 
 
-def test_a_check_that_failed_quotes_the_sentence_of_the_contract_that_it_holds(
+def test_a_failed_check_quotes_its_sentence_of_the_contract(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     stops = make_check("stops", "It stops.", 1, "graph", holds=("stale", "no-such-sentence"))
@@ -118,7 +118,7 @@ def test_a_picture_that_belongs_to_no_check_is_shown_too(
     assert page.tags.count("img") == 1
 
 
-def test_a_picture_that_is_gone_is_said_to_be_gone(make_result: MakeResult, tmp_path: Path) -> None:
+def test_a_missing_picture_is_reported_as_missing(make_result: MakeResult, tmp_path: Path) -> None:
     lost = Artifact("lost.png", "track", "0" * 64, "turns", "The robot's track.")
     page = Page(feedback.write(make_result(artifacts=(lost,)), tmp_path))
     assert "img" not in page.tags
@@ -137,7 +137,7 @@ def test_an_artifact_outside_the_folder_is_refused(make_result: MakeResult, tmp_
         feedback.write(make_result(artifacts=(secret,)), tmp_path)
 
 
-def test_the_same_reason_for_several_checks_is_said_once(
+def test_the_same_reason_for_several_checks_is_shown_once(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     reasons = ("first A has to pass", "first A has to pass", "first B has to pass")
@@ -158,7 +158,7 @@ def test_a_failed_build_shows_its_log_and_the_diagnosis_on_top(broken_result: Re
     assert "Start here" not in page.text
 
 
-def test_not_graded_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: Result, tmp_path: Path) -> None:
+def test_an_ungraded_result_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: Result, tmp_path: Path) -> None:
     page = Page(feedback.write(ungraded_result, tmp_path))
     assert "Not graded" in page.text
     assert NOT_GRADED in page.text
@@ -166,7 +166,7 @@ def test_not_graded_shows_no_score_and_says_that_it_is_no_zero(ungraded_result: 
     assert "works" not in page.text
 
 
-def test_full_marks_are_said_in_words(
+def test_full_marks_are_stated_in_a_sentence(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("a", "It works.", 10, "graph")
@@ -179,7 +179,7 @@ def test_full_marks_are_said_in_words(
 ATTACK = "</pre><script>alert(1)</script><img src=x onerror=alert(1)>\"'{{7*7}}"
 
 
-def test_nothing_from_the_student_becomes_markup(
+def test_no_text_of_a_student_becomes_markup(
     make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
 ) -> None:
     check = make_check("c", ATTACK, 1, ATTACK, hints=(ATTACK, ATTACK))
@@ -244,7 +244,7 @@ def test_a_student_whose_name_is_a_path_gets_no_link(make_result: MakeResult, tm
     assert [link for link in page.all("href") if "feedback" in link] == []
 
 
-def test_what_a_node_was_asked_and_what_came_back_stands_in_a_table_as_text(
+def test_requests_to_a_node_and_its_responses_are_shown_as_text_in_a_table(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
     attack = "message: '</td><script>alert(1)</script>\u202e'"

@@ -29,7 +29,7 @@ def test_marks_are_counted_in_bands_and_full_marks_lie_in_the_last(make_result: 
     assert class_statistics(results).bands == (1, 0, 1, 0, 0, 1, 0, 0, 0, 1)
 
 
-def test_a_check_that_good_answers_pass_discriminates_and_its_opposite_does_not(make_result: MakeResult) -> None:
+def test_a_check_that_only_good_submissions_pass_has_a_high_discrimination(make_result: MakeResult) -> None:
     rows = [(True, True, False), (True, True, False), (False, False, True), (False, False, True)]
     by_id = {c.id: c for c in class_statistics([with_passes(make_result(), *row) for row in rows]).checks}
     assert by_id["starts"].difficulty == 0.5
@@ -38,14 +38,14 @@ def test_a_check_that_good_answers_pass_discriminates_and_its_opposite_does_not(
     assert first is None or first > by_id["turns"].discrimination  # type: ignore[operator]
 
 
-def test_a_check_that_all_did_alike_has_no_discrimination_and_one_that_all_passed_is_left_out(
+def test_a_check_with_equal_results_has_no_discrimination_and_one_that_all_passed_is_left_out(
     make_result: MakeResult,
 ) -> None:
     (missed,) = class_statistics([with_passes(make_result(), True, False) for _ in range(3)]).checks
     assert (missed.id, missed.passed, missed.total, missed.discrimination) == ("listens", 0, 3, None)
 
 
-def test_what_several_were_told_is_counted_once_for_each(make_result: MakeResult) -> None:
+def test_a_reason_is_counted_once_for_each_student_who_got_it(make_result: MakeResult) -> None:
     found = class_statistics([make_result("alice"), make_result("bob")]).reasons
     assert ("it starts after 3 s", 2) in found
     assert class_statistics([make_result("alice")]).reasons == ()

@@ -7,7 +7,7 @@ import pytest
 from autograder.feedback.text import number, one_line
 
 
-def test_one_line_folds_white_space() -> None:
+def test_one_line_replaces_white_space_by_single_spaces() -> None:
     assert one_line(" a\n\tb \x07") == "a b \ufffd"
 
 

@@ -74,7 +74,7 @@ def test_a_file_that_a_grading_reads_changes_the_version(name: str, course: Path
     assert version(course) != before
 
 
-def test_the_checks_of_the_autograders_own_course_are_no_part_of_another(course: Path, tmp_path: Path) -> None:
+def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(course: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     _write(other / layout.FILE, "name: other\ntitle: Another\n")
     _write(other / "checks/ch02_nodes/hidden/graph.py", "")
@@ -91,13 +91,13 @@ def test_a_new_file_of_the_suite_changes_the_version(course: Path) -> None:
 
 
 @pytest.mark.parametrize("name", NOT_READ)
-def test_a_file_that_no_grading_reads_does_not(name: str, course: Path) -> None:
+def test_a_file_that_no_grading_reads_does_not_change_the_version(name: str, course: Path) -> None:
     before = version(course)
     _write(course / name, "x")
     assert version(course) == before
 
 
-def test_a_suites_version_is_the_digest_of_all_that_it_reads() -> None:
+def test_the_version_of_a_suite_is_the_digest_of_all_files_that_it_reads() -> None:
     suite = suites.hidden("06_testing")
     assert suite.version == digest("06_testing", ["solutions/speed_guard"]) != digest("06_testing")
     assert len(suite.version) == 12
@@ -122,7 +122,7 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     assert imported - known == set()
 
 
-def test_what_a_suite_reads_besides_is_there() -> None:
+def test_each_path_in_reads_of_a_suite_exists() -> None:
     reads = [layout.ROOT / path for name in suites.graded() for path in suites.hidden(name).reads]
     assert layout.SOLUTIONS / "speed_guard" in reads
     assert all(path.exists() for path in reads)

@@ -32,12 +32,12 @@ def _found(*paths: Path) -> list[tuple[str, str]]:
     return [(entry.student, entry.path.name) for entry in discover(paths, CHAPTER)]
 
 
-def test_one_submission_is_named_by_its_folder_or_file(tmp_path: Path) -> None:
+def test_a_single_submission_has_the_name_of_its_folder_or_file(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"")
     assert _found(_submission(tmp_path / "alice"), tmp_path / "bob.zip") == [("alice", "alice"), ("bob", "bob.zip")]
 
 
-def test_a_folder_of_submissions_holds_one_a_student(tmp_path: Path) -> None:
+def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: Path) -> None:
     _submission(tmp_path / "class" / "bob")
     (tmp_path / "class" / "alice.zip").write_bytes(b"")
     (tmp_path / "class" / "carol.ipynb").write_bytes(b"{}")
@@ -57,7 +57,7 @@ def test_an_empty_submission_in_a_class_is_still_a_submission(tmp_path: Path) ->
     assert _found(tmp_path / "class") == [("dave", "dave")]
 
 
-def test_a_folder_that_holds_nothing_is_a_wrong_call(tmp_path: Path) -> None:
+def test_an_empty_folder_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="neither a submission of 02_nodes nor a folder of submissions"):
         discover((tmp_path,), CHAPTER)
 
@@ -127,7 +127,7 @@ def grade(
     return run
 
 
-def test_of_equal_submissions_one_is_graded_and_the_others_get_the_same(
+def test_equal_submissions_are_graded_once_and_get_the_same_result(
     grade: Callable[..., list[str]], tmp_path: Path
 ) -> None:
     (tmp_path / "bob" / "src" / "pkg" / "README").write_text("alice's")
@@ -141,7 +141,7 @@ def test_of_equal_submissions_one_is_graded_and_the_others_get_the_same(
     assert grade(resume=True) == ["bob"]
 
 
-def test_what_wraps_equal_answers_makes_them_no_other_ones(tmp_path: Path) -> None:
+def test_equal_submissions_are_equal_in_any_archive_or_folder(tmp_path: Path) -> None:
     folder = _submission(tmp_path / "alice")
     with zipfile.ZipFile(tmp_path / "bob.zip", "w") as archive:
         archive.write(folder / "src" / "pkg" / "package.xml", "my answer/src/pkg/package.xml")
@@ -150,7 +150,7 @@ def test_what_wraps_equal_answers_makes_them_no_other_ones(tmp_path: Path) -> No
     assert alice.sha256 != bob.sha256
 
 
-def test_as_many_are_graded_at_once_as_asked_for(grade: Callable[..., list[str]]) -> None:
+def test_as_many_submissions_are_graded_at_once_as_requested(grade: Callable[..., list[str]]) -> None:
     assert grade(together=2, jobs=2) == ["alice", "bob"]
 
 
@@ -164,7 +164,7 @@ def test_a_resumed_run_grades_only_what_has_changed(grade: Callable[..., list[st
 
 
 @pytest.mark.parametrize("stored", ["", "{}", "[1]", '{"schema": "other"}'])
-def test_a_stored_result_that_is_none_is_graded_again(
+def test_a_submission_with_an_invalid_stored_result_is_graded_again(
     grade: Callable[..., list[str]], tmp_path: Path, stored: str
 ) -> None:
     grade()
@@ -172,7 +172,7 @@ def test_a_stored_result_that_is_none_is_graded_again(
     assert grade(resume=True) == ["alice"]
 
 
-def test_what_was_not_graded_is_graded_again(grade: Callable[..., list[str]], tmp_path: Path) -> None:
+def test_a_submission_that_was_not_graded_is_graded_again(grade: Callable[..., list[str]], tmp_path: Path) -> None:
     grade()
     path = tmp_path / "out" / "alice" / "result.json"
     path.write_text(json.dumps({**json.loads(path.read_text()), "status": Status.NOT_GRADED.value}))

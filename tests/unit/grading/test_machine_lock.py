@@ -13,7 +13,7 @@ from autograder.grading.machine_lock import MachineLock
 SECONDS = 60.0  # for what must happen
 
 
-def test_many_use_the_machine_beside_each_other() -> None:
+def test_several_gradings_share_the_machine() -> None:
     machine, all_in = MachineLock(), threading.Barrier(3)
 
     def use() -> int:
@@ -24,7 +24,7 @@ def test_many_use_the_machine_beside_each_other() -> None:
         assert sorted(future.result() for future in [pool.submit(use) for _ in range(3)]) == [0, 1, 2]
 
 
-def test_one_alone_waits_for_the_others_and_the_next_wait_for_it() -> None:
+def test_an_exclusive_grading_waits_for_the_others_and_later_ones_wait_for_it() -> None:
     machine, order = MachineLock(), list[str]()
     begun, ended = threading.Event(), threading.Event()
 
@@ -56,7 +56,7 @@ def test_one_alone_waits_for_the_others_and_the_next_wait_for_it() -> None:
 
 
 @pytest.mark.parametrize("way", ["shared", "exclusive"])
-def test_an_error_gives_the_machine_back(way: str) -> None:
+def test_an_error_releases_the_machine(way: str) -> None:
     machine = MachineLock()
     with pytest.raises(ValueError, match="mine"), getattr(machine, way)():
         raise ValueError("mine")

@@ -13,7 +13,7 @@ from autograder.grading.parallel import map_parallel
 MANY = tuple(range(50))
 
 
-def test_results_come_in_the_order_of_the_items_whoever_is_done_first() -> None:
+def test_results_have_the_order_of_the_items() -> None:
     second_done = threading.Event()
 
     def do(item: int) -> int:
@@ -32,7 +32,7 @@ def test_results_come_in_the_order_of_the_items_whoever_is_done_first() -> None:
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
-def test_once_broken_off_nothing_more_is_begun(error: type[BaseException]) -> None:
+def test_no_item_is_started_after_an_error(error: type[BaseException]) -> None:
     begun: list[int] = []
     told = threading.Event()
 
@@ -50,7 +50,7 @@ def test_once_broken_off_nothing_more_is_begun(error: type[BaseException]) -> No
     assert 1 <= len(begun) <= 3
 
 
-def test_a_failure_of_what_is_done_comes_out() -> None:
+def test_an_exception_of_an_item_is_raised() -> None:
     begun: list[int] = []
 
     def do(item: int) -> int:
@@ -62,7 +62,7 @@ def test_a_failure_of_what_is_done_comes_out() -> None:
     assert begun[0] == 0
 
 
-def test_threads_that_check_the_first_results_at_the_same_time_do_not_meet_a_module_half_imported() -> None:
+def test_threads_that_validate_their_first_results_at_once_find_jsonschema_imported() -> None:
     """Unless jsonschema is imported before, this fails in two of three runs: its modules import each other."""
     program = """
 import importlib, sys, threading

@@ -50,7 +50,7 @@ def grade(folder: Path, worker: Worker) -> Result:
     )
 
 
-def test_it_is_met_again_alone_and_that_counts(tmp_path: Path, lost: Result) -> None:
+def test_a_result_in_doubt_is_graded_again_alone_and_replaced(tmp_path: Path, lost: Result) -> None:
     worker = Worker(lost, dataclasses.replace(lost, checks=(CheckResult.of(TURNS, Outcome.PASSED),)))
     result = grade(tmp_path, worker)
     assert result.checks[0].outcome is Outcome.PASSED
@@ -58,7 +58,7 @@ def test_it_is_met_again_alone_and_that_counts(tmp_path: Path, lost: Result) -> 
     assert worker.alone == [False, True]
 
 
-def test_twice_is_enough_and_the_result_says_so(tmp_path: Path, lost: Result) -> None:
+def test_a_result_in_doubt_is_graded_again_only_once_and_stays_in_doubt(tmp_path: Path, lost: Result) -> None:
     worker = Worker(lost, dataclasses.replace(lost, held_up=0.7))
     result = grade(tmp_path, worker)
     assert result.in_doubt
@@ -67,13 +67,17 @@ def test_twice_is_enough_and_the_result_says_so(tmp_path: Path, lost: Result) ->
 
 
 @pytest.mark.parametrize("change", [{"held_up": 0.05}, {"time": "lockstep"}], ids=["a quiet machine", "lockstep"])
-def test_a_point_that_is_lost_for_sure_is_lost_at_once(tmp_path: Path, lost: Result, change: dict[str, object]) -> None:
+def test_a_point_that_is_lost_without_doubt_is_not_graded_again(
+    tmp_path: Path, lost: Result, change: dict[str, object]
+) -> None:
     worker = Worker(dataclasses.replace(lost, **change))  # type: ignore[arg-type]
     assert grade(tmp_path, worker).score == lost.score
     assert worker.alone == [False]
 
 
-def test_a_grader_that_fails_then_gives_no_mark_and_keeps_its_log(tmp_path: Path, lost: Result) -> None:
+def test_a_grader_that_fails_in_the_second_grading_gives_no_mark_and_keeps_its_log(
+    tmp_path: Path, lost: Result
+) -> None:
     result = grade(tmp_path, Worker(lost, None, None))
     assert result.status is Status.NOT_GRADED
     assert "Traceback: of the grader" in (tmp_path / "out" / "grader.log").read_text()

@@ -51,7 +51,7 @@ def _outcomes(plugin: GradingPlugin) -> dict[str, tuple[Outcome, float]]:
     return {name: (result.outcome, result.points) for name, result in plugin.results.items()}
 
 
-def test_where_the_first_loss_is_enough_no_check_runs_after_it(grade: Grade) -> None:
+def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
     text = """
         @check(points=2, group="g")
         def test_right():
@@ -101,7 +101,7 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
     assert plugin.diagnosis is OK
 
 
-def test_what_depends_on_a_failed_check_is_not_checked_nor_what_depends_on_that(grade: Grade) -> None:
+def test_checks_that_depend_on_a_failed_check_directly_or_not_are_not_run(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
         def test_first():
@@ -193,7 +193,7 @@ def test_a_check_gets_the_workspace_the_seed_and_a_gallery_of_its_own(grade: Gra
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
 
-def test_what_lies_around_the_suite_is_not_collected(grade: Grade, tmp_path: Path) -> None:
+def test_files_around_the_suite_are_not_collected(grade: Grade, tmp_path: Path) -> None:
     (tmp_path / "conftest.py").write_text("raise SystemExit('collected')")
     (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --collect-only\n")
     plugin = grade("""
@@ -204,7 +204,7 @@ def test_what_lies_around_the_suite_is_not_collected(grade: Grade, tmp_path: Pat
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
 
-def test_a_plug_in_of_the_machines_installation_is_not_loaded(
+def test_a_pytest_plug_in_installed_on_the_machine_is_not_loaded(
     grade: Grade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     about = tmp_path / "site" / "launch_testing-9.9.dist-info"
@@ -221,7 +221,7 @@ def test_a_plug_in_of_the_machines_installation_is_not_loaded(
     assert _outcomes(plugin) == {"it": (Outcome.PASSED, 1.0)}
 
 
-def test_checks_see_what_became_of_each_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_get_the_build_result_of_each_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "")
     path = tmp_path / f"checks_{next(_NUMBERS)}.py"
     path.write_text(
@@ -246,7 +246,7 @@ def test_checks_see_what_became_of_each_package(tmp_path: Path, monkeypatch: pyt
     assert plugin.diagnosis == broken
 
 
-def test_a_check_gets_what_was_said_in_it_and_its_set_up_alone(grade: Grade) -> None:
+def test_a_check_gets_only_the_messages_of_its_own_set_up_and_call(grade: Grade) -> None:
     text = """
         @pytest.fixture
         def prepared(workspace):

@@ -76,7 +76,7 @@ def test_deleted_cells_are_added_again() -> None:
     assert [cell.source for cell in restored.cells] == ["mine", "Read this.", "grade('02_nodes', 'graph')"]
 
 
-def test_a_copy_of_a_graded_cell_loses_its_claim() -> None:
+def test_a_copy_of_a_graded_cell_loses_its_grade_id() -> None:
     submitted = _source()
     submitted.cells += [_grade_cell("copy"), _grade_cell("another")]
     restored = submitted_notebook.restore(submitted, _source())
@@ -120,13 +120,13 @@ def test_neither_notebook_is_changed_in_place() -> None:
 
 
 @pytest.mark.parametrize("claim", [None, 7, ["grade-graph"], {"a": 1}, ""])
-def test_a_claim_of_another_type_is_none(claim: object) -> None:
+def test_a_grade_id_of_another_type_is_ignored(claim: object) -> None:
     cell = new_code_cell("x", metadata={"nbgrader": {"grade_id": claim}})
     assert submitted_notebook.grade_id(cell) == ""
     assert _is_as_released(submitted_notebook.restore(new_notebook(cells=[cell]), _source()))
 
 
-def test_a_notebook_is_read_whatever_its_line_ends() -> None:
+def test_a_notebook_is_read_with_any_line_ends() -> None:
     text = nbformat.writes(_source()).replace("\n", "\r\n").encode()
     assert len(submitted_notebook.read(text, "a.ipynb").cells) == 3
 
@@ -146,7 +146,7 @@ def test_a_notebook_is_read_whatever_its_line_ends() -> None:
         b"[" * 100_000,
     ],
 )
-def test_what_is_no_notebook_is_named_with_what_to_do(data: bytes) -> None:
+def test_a_file_that_is_no_notebook_is_named_with_the_remedy(data: bytes) -> None:
     with pytest.raises(StudentError, match=r"02_nodes.ipynb cannot be read as a notebook") as caught:
         submitted_notebook.read(data, "02_nodes.ipynb")
     assert caught.value.diagnosis.kind is Kind.UNREADABLE

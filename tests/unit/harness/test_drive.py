@@ -52,7 +52,7 @@ def heard(harness: Talking) -> tuple[tuple[float, str], ...]:
     return drive(cast("Harness", harness), WORLD, 0.5).recording.said
 
 
-def test_each_line_has_the_instant_at_which_it_was_ended() -> None:
+def test_each_line_has_the_instant_of_its_line_end() -> None:
     pieces = [b"hello\nhalf", b"", b" a line\n\xff\n", b"no end"]
     assert heard(Talking(0.0, pieces, b"started\n")) == (
         (0.1, "started"),
@@ -62,7 +62,7 @@ def test_each_line_has_the_instant_at_which_it_was_ended() -> None:
     )
 
 
-def test_what_was_written_before_the_drive_belongs_to_another_check() -> None:
+def test_output_written_before_the_drive_is_left_out() -> None:
     assert heard(Talking(7.0, [b"mine\n"], b"of another check\n")) == ((0.1, "mine"),)
 
 

@@ -13,7 +13,7 @@ def _peer(reliability: ReliabilityPolicy, durability: DurabilityPolicy) -> Simpl
     return SimpleNamespace(qos_profile=QoSProfile(depth=1, reliability=reliability, durability=durability))
 
 
-def test_the_grader_offers_enough_for_every_subscription() -> None:
+def test_the_grader_offers_a_quality_of_service_that_fits_every_subscription() -> None:
     weak = _peer(ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
     strong = _peer(ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
     assert grader_node.offered_qos([weak]).durability == DurabilityPolicy.VOLATILE
@@ -21,7 +21,7 @@ def test_the_grader_offers_enough_for_every_subscription() -> None:
     assert (offered.reliability, offered.durability) == (strong.qos_profile.reliability, strong.qos_profile.durability)
 
 
-def test_the_grader_asks_for_no_more_than_every_publisher_gives() -> None:
+def test_the_grader_requests_a_quality_of_service_that_every_publisher_offers() -> None:
     weak = _peer(ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
     strong = _peer(ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
     assert grader_node.requested_qos([strong]).reliability == ReliabilityPolicy.RELIABLE

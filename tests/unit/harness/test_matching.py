@@ -44,7 +44,7 @@ def _program(writers: int | None = None, readers: int | None = None, ready: bool
         ([_program(ready=True), _program(serves=True)], True),
     ],
 )
-def test_programs_have_met_when_each_sees_all_that_it_is_joined_to(
+def test_programs_are_connected_when_each_has_discovered_all_its_endpoints(
     programs: list[Description], matched: bool, grader_node: GraderNode
 ) -> None:
     assert connected(programs, grader_node) is matched

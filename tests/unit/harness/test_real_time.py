@@ -24,5 +24,5 @@ def test_the_usual_rate_is_that_of_the_median_interval(instants: list[float], ra
     assert usual_rate(instants, 2.0) == pytest.approx(rate)
 
 
-def test_what_comes_twice_each_time_is_no_steady_rate() -> None:
+def test_messages_sent_twice_in_each_period_have_a_higher_usual_rate() -> None:
     assert usual_rate(sorted([*STEADY, *(instant + 0.001 for instant in STEADY)]), 2.0) > 11.0

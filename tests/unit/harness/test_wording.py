@@ -29,7 +29,7 @@ REFUSAL = SetParametersAtomically.Response(result=SetParametersResult(successful
         (CancelGoal.Request(), "goal_info: {stamp: {sec: 0, nanosec: 0}}"),
     ],
 )
-def test_a_message_is_said_in_a_line(message: Any, said: str) -> None:
+def test_a_message_is_formatted_as_one_line(message: Any, said: str) -> None:
     assert words(message) == said
 
 

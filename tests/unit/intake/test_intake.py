@@ -86,7 +86,7 @@ def test_ws_src_is_preferred_to_a_folder_called_src_beside_it(tmp_path: Path) ->
     assert [(str(entry.path), entry.data) for entry in taken.source] == [("pkg/a", b"1")]
 
 
-def test_what_colcon_and_python_leave_is_never_looked_at(tmp_path: Path) -> None:
+def test_files_that_colcon_and_python_generate_are_ignored(tmp_path: Path) -> None:
     left = ["ws/build/x", "ws/install/lib/x", "ws/log/x", "ws/src/my_robot_package/__pycache__/x.pyc", ".git/config"]
     plain, full = _write(tmp_path / "plain", TREE), _write(tmp_path / "full", {**TREE, **dict.fromkeys(left, b"x")})
     (full / "ws" / "install" / "link").symlink_to("/etc/passwd")
@@ -96,7 +96,7 @@ def test_what_colcon_and_python_leave_is_never_looked_at(tmp_path: Path) -> None
     )
 
 
-def test_what_macos_puts_into_archives_is_ignored(tmp_path: Path) -> None:
+def test_files_that_macos_adds_to_archives_are_ignored(tmp_path: Path) -> None:
     files = {**TREE, "__MACOSX/ws/src/my_robot_package/._setup.py": b"\0\0"}
     assert _names(read_submission(_zip(tmp_path / "a.zip", files), CHAPTER).extra) == {"notes.txt"}
 
@@ -223,7 +223,7 @@ def test_a_zip_bomb_is_refused_by_the_size_that_it_states(tmp_path: Path) -> Non
     assert "ws/src/bomb is larger than 16 MiB" in _refused(bomb)[1]
 
 
-def test_a_zip_that_lies_about_a_size_is_unreadable(tmp_path: Path) -> None:
+def test_a_zip_with_a_wrong_size_is_unreadable(tmp_path: Path) -> None:
     data = bytearray(_zip(tmp_path / "a.zip", {"src/x": b"\0" * 100_000}).read_bytes())
     at = data.rindex(b"PK\x01\x02") + 24
     assert struct.unpack("<I", data[at : at + 4]) == (100_000,)
@@ -266,7 +266,7 @@ def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: 
 
 @pytest.mark.fuzz
 @given(st.binary(max_size=400))
-def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, noise: bytes) -> None:
+def test_any_bytes_are_read_or_refused(tmp_path_factory: pytest.TempPathFactory, noise: bytes) -> None:
     path = tmp_path_factory.getbasetemp() / "noise.zip"
     path.write_bytes(noise)
     assert _refused(path)[0] in (Kind.UNREADABLE, Kind.NOTHING_SUBMITTED)
@@ -274,7 +274,7 @@ def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, noi
 
 @pytest.mark.fuzz
 @given(st.lists(st.tuples(st.text("abws/rc.", min_size=1, max_size=12), st.binary(max_size=3)), max_size=6))
-def test_whatever_the_names_files_land_below_the_folder_or_nothing_is_opened(
+def test_files_of_any_names_are_written_below_the_folder_or_the_archive_is_refused(
     tmp_path_factory: pytest.TempPathFactory, files: list[tuple[str, bytes]]
 ) -> None:
     root = tmp_path_factory.mktemp("names")
@@ -314,6 +314,6 @@ def test_a_link_that_a_notebook_left_is_never_followed(tmp_path: Path, link: str
     assert caught.value.diagnosis.kind in (Kind.UNSAFE_ARCHIVE, Kind.NOTHING_SUBMITTED)
 
 
-def test_a_notebook_that_leaves_no_workspace_is_told_so(tmp_path: Path) -> None:
+def test_a_notebook_that_writes_no_workspace_is_reported(tmp_path: Path) -> None:
     with pytest.raises(StudentError, match="After the notebook has run there is no folder ws/src"):
         read_packages(tmp_path / "ws")

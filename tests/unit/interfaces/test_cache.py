@@ -62,7 +62,7 @@ def fill(folder: Path) -> None:
     (folder / "file").write_bytes(b"x" * 1000)
 
 
-def test_two_processes_that_want_the_same_build_it_once(tmp_path: Path) -> None:
+def test_two_processes_that_need_the_same_entry_build_it_once(tmp_path: Path) -> None:
     log = tmp_path / "log"
     with start(tmp_path / "cache", log, "wait") as first:
         assert hear(first) == "making"
@@ -84,7 +84,7 @@ def test_a_killed_build_leaves_no_entry_and_the_next_one_makes_it(tmp_path: Path
     assert [path.name for path in entry.iterdir()] == ["whole"]
 
 
-def test_what_a_killed_build_left_is_removed_later(tmp_path: Path) -> None:
+def test_files_that_a_killed_build_left_are_removed_later(tmp_path: Path) -> None:
     left = tmp_path / ".aaaa-left"
     left.mkdir()
     os.utime(left, (0, 0))
@@ -110,7 +110,7 @@ def test_the_entry_unused_for_longest_goes_first(tmp_path: Path) -> None:
     assert [(tmp_path / key).is_dir() for key in (A, B, C)] == [True, False, True]
 
 
-def test_an_entry_that_was_asked_for_lately_is_not_evicted(tmp_path: Path) -> None:
+def test_a_recently_used_entry_is_not_evicted(tmp_path: Path) -> None:
     cache = Cache(tmp_path, limit=1)
     os.utime(cache.get(A, fill), (1, 1))
     cache.get(A, fill)  # asked for again

@@ -20,7 +20,7 @@ def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
     assert definition.uses == (("std_msgs", "Header", "std_msgs/Header header"),)
 
 
-def test_services_and_actions_bring_the_packages_that_they_stand_on() -> None:
+def test_services_and_actions_use_the_packages_of_their_generated_messages() -> None:
     definitions = read("my_msgs", {"action/Go.action": "A x\n---\n---\n", "msg/A.msg": "bool b\n"})
     assert set(packages_used(definitions)) == {
         *("service_msgs", "builtin_interfaces", "action_msgs", "unique_identifier_msgs")

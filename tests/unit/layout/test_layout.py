@@ -18,13 +18,13 @@ def course(folder: Path, lines: str) -> Course:
     return Course.read(folder)
 
 
-def test_a_course_needs_a_name_and_a_title_and_the_rest_has_a_usual_place(tmp_path: Path) -> None:
+def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: Path) -> None:
     small = course(tmp_path, LINES)
     assert (small.name, small.title, small.chapters, small.checks) == ("small", "A small course", "chapters", "checks")
     assert small.released == ()
 
 
-def test_it_says_where_its_parts_lie_and_what_students_get(tmp_path: Path) -> None:
+def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_path: Path) -> None:
     small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
     assert small.checks == "suites"
     assert {"suites", "chapters/commands.md", layout.FILE} <= set(small.parts)
@@ -46,7 +46,7 @@ def test_it_says_where_its_parts_lie_and_what_students_get(tmp_path: Path) -> No
         ("name: [\n", "course.yaml"),
     ],
 )
-def test_a_wrong_line_is_named(tmp_path: Path, lines: str, said: str) -> None:
+def test_a_wrong_line_of_a_course_file_is_named(tmp_path: Path, lines: str, said: str) -> None:
     with pytest.raises(UsageError, match=r"course\.yaml") as raised:
         course(tmp_path, lines)
     assert said in str(raised.value)
@@ -57,7 +57,7 @@ def test_a_folder_without_the_file_is_no_course(tmp_path: Path) -> None:
         Course.read(tmp_path)
 
 
-def test_an_autograder_that_was_installed_alone_takes_the_course_around_the_working_folder(
+def test_an_installed_autograder_uses_the_course_that_contains_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     course(tmp_path, LINES)
@@ -72,7 +72,7 @@ def test_an_autograder_that_was_installed_alone_takes_the_course_around_the_work
     assert layout._chosen() == inside
 
 
-def test_the_course_has_what_its_file_names() -> None:
+def test_each_path_that_the_course_file_names_exists() -> None:
     assert [part for part in layout.COURSE.parts if not (layout.COURSE.root / part).exists()] == []
     assert layout.COURSE.demo in layout.assignments()
 

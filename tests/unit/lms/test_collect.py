@@ -44,7 +44,7 @@ def found(folder: Path, table: str) -> tuple[Collected, dict[str, str]]:
     return collected, {entry.student: str(entry.path.relative_to(folder)) for entry in collected.entries}
 
 
-def test_moodle_with_folders(tmp_path: Path) -> None:
+def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "moodle",
         "Zoë Müller-Żak_101_assignsubmission_file_/my answer.zip",
@@ -66,7 +66,7 @@ def test_moodle_with_folders(tmp_path: Path) -> None:
     )
 
 
-def test_moodle_without_folders_and_two_files_of_which_none_is_newer(tmp_path: Path) -> None:
+def test_a_moodle_download_without_folders_takes_the_first_of_two_equally_new_files(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "moodle",
         "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip",
@@ -79,7 +79,7 @@ def test_moodle_without_folders_and_two_files_of_which_none_is_newer(tmp_path: P
     assert collected.unmatched == (("jane doe_102_assignsubmission_file_2.zip", why),)
 
 
-def test_canvas_names_attempts_and_late_ones(tmp_path: Path) -> None:
+def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "canvas",
         "doejane_7001_9001_answer.zip",
@@ -93,7 +93,7 @@ def test_canvas_names_attempts_and_late_ones(tmp_path: Path) -> None:
     assert [name for name, _ in collected.unmatched] == ["testsome_7003_9003_x.zip"]
 
 
-def test_gradescope_s_list_says_whose_each_folder_is_and_when_it_came(tmp_path: Path) -> None:
+def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "export", *(f"assignment_1_export/submission_{n}/ws/src/p/package.xml" for n in (1, 2, 3, 4))
     )
@@ -112,7 +112,7 @@ def test_gradescope_s_list_says_whose_each_folder_is_and_when_it_came(tmp_path: 
     assert [name for name, _ in collected.unmatched] == ["submission_4"]
 
 
-def test_github_classroom_names_a_clone_after_the_account(tmp_path: Path) -> None:
+def test_a_github_classroom_clone_is_assigned_by_the_account_in_its_name(tmp_path: Path) -> None:
     names = ("02-nodes-jane-doe/ws/src/p/x", "02-nodes-Zoe/ws/src/p/x", "02-nodes-doe/ws/src/p/x", "02-nodes-eve/x")
     folder = download(tmp_path / "02-nodes-submissions", *names)
     table = "identifier,github_username,github_id,name\njane,jane-doe,1,\nzoë,zoe,2,\ndoe,doe,3,\n"
@@ -121,13 +121,13 @@ def test_github_classroom_names_a_clone_after_the_account(tmp_path: Path) -> Non
     assert [name for name, _ in collected.unmatched] == ["02-nodes-eve"]
 
 
-def test_nbgrader_s_layout_and_plain_names(tmp_path: Path) -> None:
+def test_the_layout_of_nbgrader_and_plain_names_are_assigned_to_students(tmp_path: Path) -> None:
     folder = download(tmp_path / "submitted", f"jane/{CHAPTER}/{CHAPTER}.ipynb", "Jo Bloggs.zip")
     _, entries = found(folder, "id,first_name,last_name,email\njane,,,\nJo Bloggs,,,\n")
     assert entries == {"jane": f"jane/{CHAPTER}", "Jo Bloggs": "Jo Bloggs.zip"}
 
 
-def test_a_zip_is_unpacked_and_one_that_leaves_its_folder_is_refused(tmp_path: Path) -> None:
+def test_a_zip_is_unpacked_and_a_zip_with_paths_outside_its_folder_is_refused(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "good.zip", "w") as archive:
         archive.writestr("Zoë Müller-Żak_101_assignsubmission_file_/a.zip", "x")
     with unpacked(tmp_path / "good.zip") as folder:

@@ -34,7 +34,7 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_moodle_gets_marks_of_its_own_maximum(
+def test_moodle_gets_marks_scaled_to_its_own_maximum(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     stored = [
@@ -49,7 +49,7 @@ def test_moodle_gets_marks_of_its_own_maximum(
     assert after == [{key: value for key, value in row.items() if key != "Grade"} for row in before]
 
 
-def test_canvas_gets_the_assignment_s_column_and_late_ones_lose(
+def test_canvas_gets_the_column_of_the_assignment_and_late_submissions_lose_points(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     stored = [Stored(make_result(name), tmp_path) for name in ("jdoe", "zoe")]
@@ -63,7 +63,7 @@ def test_canvas_gets_the_assignment_s_column_and_late_ones_lose(
     ]
 
 
-def test_canvas_gets_a_new_column_where_none_is_the_assignment_s(
+def test_canvas_gets_a_new_column_if_no_column_is_that_of_the_assignment(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
 ) -> None:
     roster = read_roster(table(CANVAS.replace("02 Nodes (55)", "Essay (9)")))
@@ -88,7 +88,7 @@ def test_canvas_gets_a_new_column_where_none_is_the_assignment_s(
         ("canvas", CANVAS.replace("    Points Possible", "x"), "the row `Points Possible` is missing"),
     ],
 )
-def test_a_table_of_another_shape_is_a_wrong_call(
+def test_a_table_of_another_shape_is_a_usage_error(
     tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult, system: str, text: str, why: str
 ) -> None:
     roster = read_roster(table(text))
@@ -97,7 +97,9 @@ def test_a_table_of_another_shape_is_a_wrong_call(
         write_marks(stored, system, roster, tmp_path / "out.csv")
 
 
-def test_the_verb_knows_who_was_late(tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult) -> None:
+def test_export_applies_the_late_penalty_to_late_students(
+    tmp_path: Path, table: Callable[[str], Path], make_result: MakeResult
+) -> None:
     write_json(tmp_path / "results" / "zoe" / "result.json", make_result("zoe").to_json())
     write_json(tmp_path / "results" / "handed_in.json", {"late": ["zoe"]})
     command = ["export", str(tmp_path / "results"), "--format", "canvas", "--out", str(tmp_path / "out.csv")]

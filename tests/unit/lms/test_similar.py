@@ -32,7 +32,7 @@ class Finder:
 """
 
 
-def test_a_renamed_copy_is_found_and_what_the_course_gives_is_taken_out() -> None:
+def test_a_renamed_copy_is_found_and_given_code_is_ignored() -> None:
     codes = {name: GIVEN + text for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items()}
     (found,) = pairs(codes, GIVEN, 0.5)
     assert found.names == ("alice", "bob")
@@ -41,11 +41,11 @@ def test_a_renamed_copy_is_found_and_what_the_course_gives_is_taken_out() -> Non
     assert len(pairs(codes, "", 0.5)) == 3
 
 
-def test_who_changed_nothing_is_like_nobody() -> None:
+def test_unchanged_releases_are_not_similar() -> None:
     assert pairs({"alice": GIVEN, "bob": GIVEN, "carol": ""}, GIVEN, 0.0) == []
 
 
-def test_the_page_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
+def test_the_page_of_a_pair_shows_both_texts_escaped_and_says_that_it_is_no_verdict(tmp_path: Path) -> None:
     text = "# <script>\n" + OWN
     page = write_pairs(pairs({"alice": text, "<bob>": text}, "", 0.5), tmp_path).read_text()
     assert page.count("<mark>") == page.count("</mark>") >= 2
@@ -67,7 +67,7 @@ def test_the_code_of_a_submission_is_its_modules_and_its_notebooks_cells() -> No
     assert "z = 2" in code(detect_layout(submitted, "02_nodes"))
 
 
-def test_the_verb_compares_a_class_and_names_whom_it_cannot_read(
+def test_similar_compares_a_class_and_names_unreadable_submissions(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name, text in {"alice": OWN, "bob": RENAMED, "carol": OTHER}.items():

@@ -47,7 +47,7 @@ def test_a_callback_that_does_not_wait_is_done_at_once() -> None:
     assert not threads.resume()
 
 
-def test_who_waits_goes_on_when_it_is_ready_in_the_order_of_coming() -> None:
+def test_waiting_callbacks_go_on_when_ready_in_the_order_in_which_they_began() -> None:
     threads, log, gates = CallbackThreads(None), [], {"a": False, "b": False}
 
     def work(name: str) -> None:
@@ -79,7 +79,7 @@ def test_no_more_callbacks_wait_than_there_are_threads() -> None:
     assert not threads.full
 
 
-def test_what_a_callback_raises_comes_out_even_after_it_has_waited() -> None:
+def test_an_exception_of_a_callback_is_raised_even_after_it_has_waited() -> None:
     def fail() -> None:
         raise ValueError("no lidar")
 

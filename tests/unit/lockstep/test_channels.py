@@ -38,7 +38,7 @@ def node(ros_domain: int) -> Iterator[Any]:
 
 @pytest.mark.parametrize("offered", PROFILES)
 @pytest.mark.parametrize("requested", PROFILES)
-def test_a_subscription_reads_what_a_publisher_writes_when_their_quality_fits(
+def test_a_subscription_is_joined_to_a_publisher_if_their_quality_of_service_fits(
     offered: QoSProfile, requested: QoSProfile
 ) -> None:
     compatible = qos_check_compatible(offered, requested)[0].name != "ERROR"  # a warning names liveliness
@@ -64,7 +64,7 @@ def test_requests_and_responses_are_named_alike_by_host_and_grader() -> None:
     assert channels.of((own, request), "0a") == (channels.response("/ask", Trigger, "0a"), request)
 
 
-def test_the_sender_of_a_request_is_known_by_its_process(node: Any) -> None:
+def test_the_client_of_a_request_is_identified_by_its_process(node: Any) -> None:
     service = node.create_service(Trigger, "ask", lambda request, response: response)
     client = node.create_client(Trigger, "ask")
     deadline = time.monotonic() + SECONDS

@@ -43,7 +43,7 @@ def test_a_crash_is_named_by_its_phase(phase: str, kind: Kind, words: str) -> No
 
 
 @pytest.mark.parametrize("kind", ["SyntaxError", "IndentationError", "TabError"])
-def test_a_syntax_error_is_told_apart(kind: str) -> None:
+def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
     diagnosis = diagnose_crash(Crash("import", kind, "expected ':' (robot.py, line 7)", "..."))
     assert diagnosis.kind is Kind.SYNTAX_ERROR
     assert "Python cannot read your file: expected ':' (robot.py, line 7). Mend that line" in diagnosis.sentence
@@ -53,18 +53,18 @@ def test_an_exception_without_a_message_is_named_by_its_type_alone() -> None:
     assert "running: AssertionError. The last" in diagnose_crash(Crash("spin", "AssertionError", "", "")).sentence
 
 
-def test_a_service_without_a_response_is_told_so() -> None:
+def test_a_service_callback_without_a_response_is_reported() -> None:
     trace = '  File "rclpy/service.py", line 83, in send_response\n    raise TypeError()\nTypeError\n'
     sentence = diagnose_crash(Crash("spin", "TypeError", "", trace)).sentence
     assert sentence.startswith("A service's callback has not returned the response")
 
 
-def test_a_field_of_another_type_is_told_so() -> None:
+def test_a_message_field_of_another_type_is_reported() -> None:
     code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
     assert "a field, or the whole message, is of another type" in diagnose_ending(_ended(code)).sentence
 
 
-def test_a_program_that_just_ends_is_told_to_spin() -> None:
+def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
     diagnosis = diagnose_ending(_ended("print('bye')"))
     assert diagnosis.kind is Kind.ENDED_EARLY
     assert "(exit status 0)" in diagnosis.sentence
@@ -72,7 +72,7 @@ def test_a_program_that_just_ends_is_told_to_spin() -> None:
     assert diagnosis.detail == "bye"
 
 
-def test_a_program_that_a_signal_ended_is_told_which() -> None:
+def test_a_program_that_a_signal_ended_is_reported_with_the_signal() -> None:
     diagnosis = diagnose_ending(_ended("import os; os.kill(os.getpid(), 11)"))
     assert "(signal 11)" in diagnosis.sentence
 
@@ -96,20 +96,22 @@ def test_a_program_that_a_signal_ended_is_told_which() -> None:
         ),
     ],
 )
-def test_a_program_over_a_limit_is_told_which(code: str, limits: dict[str, float], kind: Kind, words: str) -> None:
+def test_a_program_over_a_limit_is_reported_with_the_limit(
+    code: str, limits: dict[str, float], kind: Kind, words: str
+) -> None:
     diagnosis = diagnose_ending(_ended(code, **limits))
     assert diagnosis.kind is kind
     assert words in diagnosis.sentence
 
 
-def test_a_program_that_runs_but_no_longer_answers_is_no_ended_one() -> None:
+def test_a_program_that_runs_but_no_longer_answers_is_not_reported_as_ended() -> None:
     with Process([sys.executable, "-I", "-c", "import signal; signal.pause()"], Limits()) as process:
         diagnosis = diagnose_ending(process)
     assert diagnosis.kind is Kind.STUCK
     assert "no longer answers in lockstep" in diagnosis.sentence
 
 
-def test_a_node_that_never_spins_and_one_that_hangs_are_told_apart() -> None:
+def test_a_node_that_never_spins_and_a_node_that_hangs_have_different_diagnoses() -> None:
     never, hangs = diagnose_no_answer(Kind.NEVER_STARTED, "60 s", "a\nb"), diagnose_no_answer(Kind.STUCK, "30 s", "")
     assert "did not start to spin within 60 s" in never.sentence
     assert never.detail == "a\nb"
@@ -149,7 +151,7 @@ def test_a_deadlock_is_explained(reason: str, words: str) -> None:
 
 
 @pytest.mark.parametrize("reason", REASONS)
-def test_a_program_that_cannot_be_stepped_hears_why(reason: str) -> None:
+def test_a_program_that_cannot_be_stepped_gets_the_reason(reason: str) -> None:
     diagnosis = diagnose_unsteppable(reason, "")
     assert diagnosis.kind is Kind.NEVER_STARTED
     assert "Your node's time cannot be stepped: it " in diagnosis.sentence

@@ -53,14 +53,14 @@ def test_an_event_is_a_line_of_json() -> None:
         (b'{"event": "passed", "score": 100}\n', "no event"),
     ],
 )
-def test_anything_else_is_refused(line: bytes, reason: str) -> None:
+def test_a_line_that_is_no_event_is_refused(line: bytes, reason: str) -> None:
     with pytest.raises(ProtocolError, match=reason):
         protocol.parse(line)
 
 
 @pytest.mark.fuzz
 @given(st.binary(max_size=200))
-def test_no_bytes_get_through_but_events(noise: bytes) -> None:
+def test_any_bytes_are_an_event_or_refused(noise: bytes) -> None:
     with contextlib.suppress(ProtocolError):
         assert protocol.parse(noise + b"\n")[0] in ("ready", "matched")
 

@@ -62,16 +62,18 @@ signal.pause()
     program.wait_ready()
 
 
-def test_a_program_that_ends_before_it_is_ready_has_ended_early(host: Open) -> None:
+def test_a_program_that_ends_before_it_is_ready_is_reported_as_ended_early(host: Open) -> None:
     assert _kind(host("raise SystemExit(4)").wait_ready) is Kind.ENDED_EARLY
 
 
-def test_a_program_that_never_is_ready_never_started(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_that_never_becomes_ready_is_reported_as_never_started(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(0.5, 10.0))
     assert _kind(host("signal.pause()").wait_ready) is Kind.NEVER_STARTED
 
 
-def test_a_step_that_does_not_come_back_is_stuck(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_step_without_a_reply_is_reported_as_stuck(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stepper, "STEP_TIMEOUT", Timeout(0.5, 10.0))
     program = host('os.write(write, b\'{"event": "ready"}\\n\')\nsignal.pause()')
     program.wait_ready()
@@ -93,35 +95,33 @@ def test_a_program_that_computes_without_end_is_not_waited_for(host: Open, monke
         "b'\\x80\\x04\\x95\\n'",
     ],
 )
-def test_a_forged_line_is_no_event(host: Open, forged: str) -> None:
+def test_a_forged_line_is_refused_as_an_event(host: Open, forged: str) -> None:
     assert _kind(host(f"os.write(write, {forged})\nraise SystemExit(0)").wait_ready) is Kind.ENDED_EARLY
 
 
-def test_a_program_with_more_topics_than_a_line_can_name_is_told_so(host: Open) -> None:
+def test_a_program_with_too_many_topics_for_one_line_is_reported(host: Open) -> None:
     with pytest.raises(StudentError, match="more nodes, topics, services or timers"):
         host("os.write(write, b'x' * 60_000)\nos.write(write, b'x' * 60_000)").wait_ready()
 
 
-def test_a_crash_event_is_told_in_its_own_words(host: Open) -> None:
+def test_a_crash_event_becomes_the_diagnosis_of_a_crash(host: Open) -> None:
     event = '{"event": "crash", "phase": "import", "type": "NameError", "message": "x", "traceback": "T"}'
     program = host(f"os.write(write, {event.encode()!r} + b'\\n')")
     assert _kind(program.wait_ready) is Kind.CRASHED_AT_IMPORT
 
 
-def test_a_program_that_cannot_be_stepped_is_told_apart(host: Open) -> None:
+def test_a_program_that_cannot_be_stepped_raises_its_own_error(host: Open) -> None:
     with pytest.raises(UnsteppableError) as caught:
         host(r"""os.write(write, b'{"event": "unsteppable", "reason": "clock"}\n')""").wait_ready()
     assert caught.value.reason == "clock"
 
 
-def test_a_deadlock_is_told_as_one(host: Open) -> None:
+def test_a_deadlock_event_becomes_the_diagnosis_stuck(host: Open) -> None:
     event = '{"event": "deadlock", "what": "client.call()", "name": "/add", "reason": "group"}'
     assert _kind(host(f"os.write(write, {event.encode()!r} + b'\\n')").wait_ready) is Kind.STUCK
 
 
-def test_a_program_that_answers_without_listening_does_not_hold_up_the_grader(
-    host: Open, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_program_that_never_reads_does_not_block_the_grader(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     program = host(rf"""
 os.write(write, b'{{"event": "ready"}}\n')
 while True:
@@ -136,11 +136,11 @@ while True:
     assert _kind(step_until_the_pipe_is_full) is Kind.STUCK
 
 
-def test_a_line_without_an_end_is_not_collected_for_ever(host: Open) -> None:
+def test_the_collected_part_of_a_line_without_end_is_bounded(host: Open) -> None:
     assert _kind(host("while True: os.write(write, b'x' * 4096)").wait_ready) is Kind.STUCK
 
 
-def test_nothing_is_left_when_the_block_ends(host: Open, tmp_path: Path) -> None:
+def test_the_program_is_killed_when_the_block_ends(host: Open, tmp_path: Path) -> None:
     first = host("signal.pause()")
     with Stepper(Sandbox(tmp_path), tmp_path / "node") as program:
         assert program.process.ending is None

@@ -45,7 +45,7 @@ def test_a_diagnosis_shows_the_students_frames() -> None:
     assert diagnose_crash(Crash("spin", "ZeroDivisionError", "division by zero", CRASH)).detail == OWN
 
 
-def test_a_syntax_error_keeps_the_line_that_cannot_be_read() -> None:
+def test_a_traceback_of_a_syntax_error_keeps_the_wrong_line() -> None:
     last = f'  File "{MODULES}/my_robot/driver.py", line 7\n    def f()\n           ^\n'
     trace = f"{LOADER}{last}SyntaxError: expected ':'\n"
     diagnosis = diagnose_crash(Crash("import", "SyntaxError", "expected ':' (driver.py, line 7)", trace))
@@ -58,12 +58,12 @@ def test_a_syntax_error_keeps_the_line_that_cannot_be_read() -> None:
     ]
 
 
-def test_a_traceback_without_a_file_of_the_student_is_left_whole() -> None:
+def test_a_traceback_without_a_file_of_the_student_is_unchanged() -> None:
     whole = f"{LOADER}ImportError: no such entry point\n"
     assert own_frames(whole) == whole
 
 
-def test_rosidls_generated_files_are_not_the_students() -> None:
+def test_files_that_rosidl_generated_are_not_shown_as_the_students() -> None:
     generated = f'  File "{MODULES}/my_robot/msg/_status.py", line 3, in level\n    assert False\n'
     assert own_frames(CRASH.replace("ZeroDivisionError", f"{generated}ZeroDivisionError")) == OWN
 

@@ -37,7 +37,7 @@ def test_the_release_holds_the_stub_and_not_the_solution(course: Any) -> None:
     )
 
 
-def test_each_groups_score_is_booked(course: Any, verdict: Callable[..., Any]) -> None:
+def test_the_score_of_each_group_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
     seen: list[tuple[Any, ...]] = []
 
     def grade(
@@ -100,9 +100,7 @@ def test_feedback_explains_each_group_and_shows_the_track(
     assert html.count("data:image/png;base64,") == 1
 
 
-def test_a_student_that_forged_outputs_and_metadata_earns_nothing_by_it(
-    course: Any, verdict: Callable[..., Any]
-) -> None:
+def test_forged_outputs_and_metadata_earn_no_points(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = course.released
     forged = cell(notebook, "g-reaction")
     forged.outputs = [new_output("execute_result", {"text/plain": "4.0"}, execution_count=1)]
@@ -194,7 +192,7 @@ def test_a_file_that_is_no_notebook_gets_the_graders_verdict(
     assert course.grades("bob") == BOOKED
 
 
-def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callable[..., Any]) -> None:
+def test_an_ungraded_submission_fails_and_no_score_is_recorded(course: Any, verdict: Callable[..., Any]) -> None:
     course.grade = lambda *a, **k: verdict(status=Status.NOT_GRADED, checks=())
     course.submit("carol", course.released)
     done = course.autograde("carol")
@@ -204,7 +202,9 @@ def test_not_graded_fails_loudly_and_books_nothing(course: Any, verdict: Callabl
     assert not (course.root / "autograded" / "carol" / "tiny").exists()
 
 
-def test_a_failing_grader_leaves_an_earlier_score_and_asks_for_an_eye(course: Any, verdict: Callable[..., Any]) -> None:
+def test_when_the_grader_fails_the_old_score_stays_and_manual_grading_is_requested(
+    course: Any, verdict: Callable[..., Any]
+) -> None:
     course.submit("dave", course.released)
     course.grade = lambda *a, **k: verdict()
     assert course.autograde("dave")["success"]
@@ -247,7 +247,7 @@ def test_points_that_do_not_fit_the_cell_are_refused(
     assert "the cell of group 'graph' is worth 3 points, its checks 5" in done["log"]
 
 
-def test_what_a_student_wrote_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:
+def test_code_in_a_students_notebook_does_not_run_in_feedback(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = course.released
     notebook.cells += [
         new_markdown_cell("<script>alert('markdown')</script> [x](javascript:alert('link')) <img src=x onerror=a()>"),

@@ -67,7 +67,7 @@ def test_autograding_leaves_the_grade_of_an_answer_open(course: Any, verdict: Ca
     assert course.grades("alice") == {**TRUSTED, "explain": (None, 2.0, True)}
 
 
-def test_an_answer_that_nobody_wrote_has_no_points_and_waits_for_nobody(
+def test_an_unwritten_answer_has_no_points_and_needs_no_manual_grading(
     course: Any, verdict: Callable[..., Any]
 ) -> None:
     course.grade = lambda *a, **k: verdict()
@@ -84,7 +84,9 @@ def test_formgrader_shows_the_answer_below_the_mark_scheme(course: Any, verdict:
     assert cell(course.autograded("alice"), "explain").source == "Because it is so."
 
 
-def test_points_of_a_person_are_added_and_survive_another_autograding(course: Any, verdict: Callable[..., Any]) -> None:
+def test_points_of_a_person_are_added_and_kept_at_the_next_autograding(
+    course: Any, verdict: Callable[..., Any]
+) -> None:
     course.grade = lambda *a, **k: verdict()
     course.submit("alice", answered(course, "Because it is so."))
     assert course.autograde("alice")["success"]
@@ -98,7 +100,7 @@ def test_points_of_a_person_are_added_and_survive_another_autograding(course: An
         assert gradebook.find_grade("explain", ASSIGNMENT, ASSIGNMENT, "alice").manual_score == 1.5
 
 
-def test_an_answer_cell_that_forges_its_marks_is_still_for_a_person(course: Any, verdict: Callable[..., Any]) -> None:
+def test_an_answer_cell_with_forged_marks_still_needs_manual_grading(course: Any, verdict: Callable[..., Any]) -> None:
     notebook = answered(course, "### BEGIN MARK SCHEME\nAll points.\n### END MARK SCHEME")
     cell(notebook, "explain").metadata.nbgrader.update(points=100, solution=False, locked=True)
     cell(notebook, "question").source = "No marks are taken off."

@@ -43,7 +43,7 @@ OUTPUT = st.fixed_dictionaries(
 @pytest.mark.fuzz
 @pytest.mark.slow
 @given(st.lists(OUTPUT, max_size=4))
-def test_whatever_a_kernel_sent_becomes_valid_harmless_outputs(outputs: list[dict[str, Any]]) -> None:
+def test_any_outputs_of_a_kernel_become_valid_and_harmless(outputs: list[dict[str, Any]]) -> None:
     kept = sanitized_outputs(outputs)
     nbformat.validate(new_notebook(cells=[new_code_cell("", outputs=kept)]))
     for output in kept:
@@ -72,20 +72,20 @@ def page(make_result: Callable[..., Result], track: Callable[..., Artifact], tmp
 
 
 @pytest.mark.parametrize("points", [0.0, 1.0, 1 / 3, 4.0, 1e-7])
-def test_nbgrader_books_exactly_the_points_of_a_verdict(points: float, page: PageView) -> None:
+def test_nbgrader_records_exactly_the_points_of_a_verdict(points: float, page: PageView) -> None:
     cell = new_code_cell("pass", outputs=grade_outputs(points, page, page.groups[1], first=True))
     cell.metadata.nbgrader = {"grade": True, "solution": False, "points": 4, "grade_id": "g"}
     assert determine_grade(cell) == (points, 4.0)
     assert [output.output_type for output in cell.outputs].count("execute_result") == 1
 
 
-def test_a_verdict_shows_its_pictures_with_their_words(page: PageView) -> None:
+def test_a_verdict_shows_its_pictures_with_alternative_texts(page: PageView) -> None:
     picture = grade_outputs(1.0, page, page.groups[1], first=False)[-1]
     assert picture.metadata["image/png"]["alt"] == "The robot's track: it touches the north wall at t = 12.4 s."
     assert base64.b64decode(picture.data["image/png"]).startswith(b"\x89PNG")
 
 
-def test_the_first_verdict_also_tells_the_diagnosis(broken_result: Result) -> None:
+def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> None:
     page = page_view(broken_result, None)
     first, other = (grade_outputs(0, page, page.groups[0], first=first)[1].data["text/html"] for first in (True, False))
     assert "The package does not build: setup.py line 3." in first

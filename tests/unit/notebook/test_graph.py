@@ -17,7 +17,7 @@ from autograder.notebook.notices import Notice
 
 
 @pytest.mark.slow
-def test_it_shows_the_nodes_and_topics_that_are_there() -> None:
+def test_the_graph_shows_the_running_nodes_and_topics() -> None:
     context = Context()
     rclpy.init(context=context)
     driver = Node("driver", namespace="robot1", context=context)
@@ -37,7 +37,7 @@ def test_it_shows_the_nodes_and_topics_that_are_there() -> None:
     assert repr(seen).splitlines()[0] == "2 nodes: /reporter, /robot1/driver"
 
 
-def test_the_drawing_has_a_box_for_each_end_and_an_arrow_for_each_pair() -> None:
+def test_the_drawing_has_a_box_for_each_node_and_topic_and_an_arrow_for_each_pair() -> None:
     drawn = Graph(
         ("/a", "/alone", "/b"),
         {"/t": "std_msgs/msg/String"},
@@ -52,6 +52,6 @@ def test_the_drawing_has_a_box_for_each_end_and_an_arrow_for_each_pair() -> None
     assert len([path for path in root.iter(f"{svg}path") if path.get("class") == "head"]) == 3
 
 
-def test_nothing_is_looked_at_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_graph_is_not_read_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AUTOGRADER_GRADING", "1")
     assert isinstance(graph(), Notice)

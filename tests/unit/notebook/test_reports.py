@@ -40,7 +40,7 @@ def test_a_report_counts_and_explains_on_a_terminal() -> None:
     assert text.count("https://docs.ros.org") == 1
 
 
-def test_what_a_program_said_is_escaped_in_a_notebook() -> None:
+def test_output_of_a_program_is_escaped_in_a_notebook() -> None:
     shown = CheckReport("02_nodes", LINES, Notice("<script>", "a < b"))._repr_html_()
     assert "&lt;script&gt;" in shown
     assert "<script>" not in shown
@@ -58,7 +58,7 @@ def test_a_notice_is_a_sentence_and_its_detail() -> None:
     assert repr(Notice("Nothing moves.")) == "Nothing moves."
 
 
-def test_while_a_notebook_is_graded_nothing_is_driven_or_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_drive_and_no_check_runs_while_a_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")
     for report in (check("02_nodes", "/no/where"), drive("a", "b", workspace="/no/where")):
         assert isinstance(report, Notice)
@@ -68,7 +68,7 @@ def test_the_locked_cell_gives_no_marks_in_the_kernel() -> None:
     assert "after you have handed in" in grade("02_nodes", "graph").sentence
 
 
-def test_what_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_folder_world_fault_or_assignment_is_named(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"there is no folder .*/src: run this from the assignment's folder"):
         drive("a", "b", workspace=tmp_path)
     with pytest.raises(UsageError, match=r"there is no world 'moon'; there are: .*empty_room"):
@@ -88,7 +88,7 @@ def test_a_grade_cell_outside_of_grading_is_worth_nothing_to_nbgrader() -> None:
 LATER = ("It turns <left>.", "It stops.")
 
 
-def test_when_all_have_passed_it_says_what_is_judged_after_handing_in() -> None:
+def test_a_report_lists_the_hidden_checks_if_all_visible_checks_passed() -> None:
     report = CheckReport("02_nodes", LINES[:1], later=LATER)
     assert repr(report).endswith(
         "After you hand in, 2 more checks judge, with inputs of their own:\n- It turns <left>.\n- It stops."
@@ -96,6 +96,6 @@ def test_when_all_have_passed_it_says_what_is_judged_after_handing_in() -> None:
     assert "<li>It turns &lt;left&gt;.</li><li>It stops.</li>" in report._repr_html_()
 
 
-def test_before_that_it_does_not() -> None:
+def test_a_report_lists_no_hidden_checks_if_a_visible_check_failed() -> None:
     report = CheckReport("02_nodes", LINES, later=LATER)
     assert "hand in" not in repr(report) + report._repr_html_()

@@ -38,7 +38,7 @@ def test_the_first_instant_in_the_goal_counts_and_the_way_until_then() -> None:
     assert (slow.arrived, slow.left) == (None, pytest.approx(2.5 - slow.metres, abs=0.02))
 
 
-def test_of_several_robots_the_one_counts_that_did_best() -> None:
+def test_the_best_of_several_robots_counts_for_the_score() -> None:
     hall = World.from_segments(
         box(6.0, 4.0).tolist(),
         name="a hall",
@@ -63,7 +63,7 @@ def test_the_table_of_a_world_is_kept_and_the_best_run_comes_first() -> None:
     assert "<td>fast</td>" in table._repr_html_()
 
 
-def test_arriving_counts_more_than_touching_nothing_and_that_more_than_the_time() -> None:
+def test_arrival_counts_more_than_no_collision_and_no_collision_more_than_time() -> None:
     def rank(arrived: float | None, margin: float, left: float = 0.0) -> tuple[bool, bool, float]:
         return Score("maze", "", arrived, left, 1.0, margin).rank
 
@@ -71,7 +71,7 @@ def test_arriving_counts_more_than_touching_nothing_and_that_more_than_the_time(
     assert ranks == sorted(ranks)
 
 
-def test_what_is_no_drive_or_has_no_goal_or_no_scores_is_told() -> None:
+def test_scoring_without_a_drive_a_goal_or_a_valid_table_is_reported() -> None:
     notice = Notice("It did not start.")
     assert score(notice) is notice
     with pytest.raises(UsageError, match="the world 'an empty hall' has no goal: drive in another one, such as 'maze'"):

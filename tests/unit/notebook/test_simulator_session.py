@@ -26,7 +26,7 @@ def test_a_world_that_is_not_there_is_named() -> None:
         pass
 
 
-def test_nothing_is_simulated_while_the_notebook_is_graded(
+def test_no_simulation_runs_while_the_notebook_is_graded(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")
@@ -36,7 +36,7 @@ def test_nothing_is_simulated_while_the_notebook_is_graded(
     assert capfd.readouterr().out == ""
 
 
-def test_before_its_end_there_is_no_track() -> None:
+def test_a_simulation_has_no_track_before_its_end() -> None:
     assert repr(SimulatorSession().track) == "The robot has not been simulated yet."
 
 
@@ -72,7 +72,7 @@ def test_each_robots_run_is_recorded_with_its_events(capsys: pytest.CaptureFixtu
     assert said.count("right had no new command for 0.5 s and stops") == 1
 
 
-def test_settings_that_make_no_sense_are_told_in_the_cell(capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_settings_are_reported_in_the_cell(capsys: pytest.CaptureFixture[str]) -> None:
     with simulator(
         "empty_room", robots=["one", "two", "three", "four", "five", "six", "seven", "eight", "nine"]
     ) as robots:

@@ -47,13 +47,13 @@ def test_a_workspace_that_is_not_there_or_not_built_is_named(tmp_path: Path) -> 
         source(tmp_path)
 
 
-def test_nothing_is_sourced_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_workspace_is_sourced_while_the_notebook_is_graded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")
     assert isinstance(source("/no/where"), Notice)
 
 
 @pytest.mark.slow
-def test_interfaces_built_beside_a_kernel_are_imported_and_sent_and_old_ones_are_noticed(tmp_path: Path) -> None:
+def test_interfaces_built_beside_a_kernel_can_be_imported_and_sent_and_old_ones_are_reported(tmp_path: Path) -> None:
     prefix = tmp_path / "install" / "course_words"
     prefix.parent.mkdir()
     # As colcon lays it out: the generated libraries are in lib, which no loader of a running process knows.

@@ -36,12 +36,12 @@ def test_a_command_runs_to_its_end_and_prints_both_its_streams(ws: Path, capsys:
     assert capsys.readouterr().out == "out\nerror\n"
 
 
-def test_a_command_that_fails_says_how(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_failed_command_shows_its_exit_status(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shell("exit 3", workspace=ws)
     assert capsys.readouterr().out == "[exit status 3]\n"
 
 
-def test_a_command_that_goes_on_is_interrupted_when_the_time_is_up(
+def test_a_command_that_does_not_end_is_interrupted_after_its_time(
     ws: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shell("trap 'echo interrupted; exit 0' INT; echo up; while true; do sleep 0.1; done", seconds=1.0, workspace=ws)
@@ -55,7 +55,7 @@ def test_a_built_workspace_is_sourced(ws: Path, capsys: pytest.CaptureFixture[st
     assert capsys.readouterr().out == "sourced\n"
 
 
-def test_a_build_of_files_that_are_still_to_be_written_is_not_run(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_build_of_unwritten_files_is_not_run(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("mine", "given"):
         (ws / "src" / name).mkdir(parents=True)
     (ws / "src" / "mine" / "setup.py").write_text(f"raise NotImplementedError('{STILL_TO_BE_WRITTEN}')\n")
@@ -68,7 +68,7 @@ def test_a_build_of_files_that_are_still_to_be_written_is_not_run(ws: Path, caps
         assert capsys.readouterr().out == command.removeprefix("echo ") + "\n"
 
 
-def test_a_build_writes_byte_code_and_so_warns_of_nothing(
+def test_a_command_runs_without_pythondontwritebytecode(
     ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
@@ -81,7 +81,7 @@ def test_the_courses_own_commands_are_found(ws: Path, capsys: pytest.CaptureFixt
     assert "usage: ros2" in capsys.readouterr().out
 
 
-def test_the_block_begins_when_the_text_has_come_and_ctrl_c_ends_the_command(
+def test_the_block_begins_after_the_awaited_text_and_ctrl_c_ends_the_command(
     ws: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with running("echo $$; echo ready; sleep 600", until="ready", workspace=ws):
@@ -90,7 +90,7 @@ def test_the_block_begins_when_the_text_has_come_and_ctrl_c_ends_the_command(
     assert not alive(pid)
 
 
-def test_a_block_that_begins_without_the_text_says_so(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_block_that_begins_without_the_awaited_text_reports_it(ws: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running("echo up; sleep 600", until=["up", "ready", "set"], seconds=0.5, workspace=ws):
         assert capsys.readouterr().out == "up\n[not printed within 0.5 s: 'ready', 'set']\n"
     with running("echo up; exit 3", until="ready", workspace=ws):
@@ -108,7 +108,7 @@ def test_a_block_that_raises_leaves_nothing_running(ws: Path, capsys: pytest.Cap
     assert not alive(int(capsys.readouterr().out))
 
 
-def test_what_does_not_listen_is_killed_and_said_to_be(
+def test_a_command_that_ignores_ctrl_c_is_killed_and_reported(
     ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(terminal, "STOP_SECONDS", 0.5)
@@ -117,7 +117,7 @@ def test_what_does_not_listen_is_killed_and_said_to_be(
     assert "after Ctrl-C: killed]" in capsys.readouterr().out
 
 
-def test_nothing_is_run_while_the_notebook_is_graded(
+def test_no_command_runs_while_the_notebook_is_graded(
     ws: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(GRADING_VARIABLE, "1")

@@ -20,7 +20,7 @@ Run = Callable[[str, str], str]
 FILE = "ws/src/pkg/node.py"
 
 
-def test_the_stub_is_the_one_that_releases_hold() -> None:
+def test_a_stub_of_releases_contains_the_text_that_writefile_looks_for() -> None:
     assert STUB in CODE_STUB
 
 
@@ -125,5 +125,5 @@ def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
     assert Path("ws/a file.py").read_text() == SOLVED
 
 
-def test_without_a_shell_there_is_nothing_to_register() -> None:
+def test_registering_the_magic_without_a_shell_does_nothing() -> None:
     register(None)

@@ -19,7 +19,7 @@ def test_a_plain_file_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["missing", "folder", "link", "pipe"])
-def test_anything_else_is_not_read(kind: str, tmp_path: Path) -> None:
+def test_folders_links_pipes_and_missing_files_are_not_read(kind: str, tmp_path: Path) -> None:
     path, target = tmp_path / "path", tmp_path / "target"
     target.write_text("secret")
     if kind == "folder":

@@ -36,7 +36,7 @@ def _names(found: tuple[imports.Import, ...]) -> list[str]:
     return [each.module for each in found]
 
 
-def test_only_what_comes_from_outside_counts(package: Path) -> None:
+def test_only_imports_from_outside_the_package_count(package: Path) -> None:
     assert _names(imports.imported(package)) == ["launch", "numpy", "pytest", "rclpy", "yaml"]
 
 
@@ -45,7 +45,7 @@ def test_a_folder_called_launch_is_not_the_module_launch(package: Path) -> None:
     assert _names(imports.imported(package, without=("launch", "test"))) == ["numpy", "rclpy", "yaml"]
 
 
-def test_an_import_knows_where_it_stands_and_what_would_declare_it(package: Path) -> None:
+def test_an_import_has_its_place_and_the_dependency_that_declares_it(package: Path) -> None:
     numpy = imports.imported(package)[1]
     assert numpy.files == ("lamp/nodes/lamp_node.py", "test/test_lamp.py")
     assert numpy.keys[0] == "python3-numpy"
@@ -62,12 +62,12 @@ def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str,
     assert not imports.undeclared([imports.Import(module, ())], {declared})
 
 
-def test_the_name_that_pip_knows_is_no_rosdep_key(package: Path) -> None:
+def test_the_pip_name_of_a_module_is_no_rosdep_key(package: Path) -> None:
     found = imports.undeclared(imports.imported(package), {"numpy", "rclpy", "launch", "python3-yaml"})
     assert _names(found) == ["numpy", "pytest"]
 
 
-def test_what_runs_is_declared_for_the_run_and_what_tests_need_for_the_tests(package: Path) -> None:
+def test_run_imports_need_a_run_dependency_and_test_imports_a_test_dependency(package: Path) -> None:
     text = """<package format="3"><name>lamp</name><version>0.1.0</version><description>x</description>
       <maintainer email="a@example.com">A</maintainer><license>MIT</license>
       <depend>rclpy</depend><build_depend>launch</build_depend><test_depend>python3-numpy</test_depend></package>"""

@@ -42,7 +42,7 @@ def install(tmp_path: Path) -> Path:
     return tmp_path / "install"
 
 
-def test_everything_that_a_package_has_is_seen(install: Path) -> None:
+def test_all_installed_parts_of_a_package_are_listed(install: Path) -> None:
     found = installed.look(install, "lamp")
     assert found.executables == ("lamp",)
     assert found.misplaced == ("stray",)

@@ -87,7 +87,9 @@ def test_comments_more_constants_and_empty_defaults_are_no_difference() -> None:
         ),
     ],
 )
-def test_one_difference_is_one_sentence(old: str, new: str, aspect: Aspect, sentence: str) -> None:
+def test_each_difference_of_a_definition_is_reported_in_one_sentence(
+    old: str, new: str, aspect: Aspect, sentence: str
+) -> None:
     assert said(TEXT.replace(old, new)) == [(aspect, f"{PATH}, {sentence}")]
 
 
@@ -97,7 +99,7 @@ def test_another_order_is_named_once() -> None:
     assert said(text) == [(Aspect.FIELDS, order)]
 
 
-def test_what_stands_in_the_wrong_part_is_named_once() -> None:
+def test_a_field_or_constant_in_the_wrong_part_is_named_once() -> None:
     field = f"{REQUEST}bool possible\n---\nstring<=80 reason\n"
     assert said(field) == [(Aspect.FIELDS, f"{PATH}, response: possible stands in the request, it belongs here.")]
     constant = "float64[<=8] legs\nint32 reserve 20\n---\nfloat64 MOST = 5.0\n" + RESPONSE
@@ -124,7 +126,7 @@ def test_the_share_that_is_right_counts_fields_and_constants() -> None:
         ("#" * (MAX_BYTES + 1), "far larger than a definition"),
     ],
 )
-def test_what_the_build_would_refuse_is_refused_with_a_reason(text: str, why: str) -> None:
+def test_a_definition_that_the_build_would_refuse_is_refused_with_the_reason(text: str, why: str) -> None:
     with pytest.raises(Unreadable) as caught:
         parse("pkg", PATH, text)
     assert PATH in str(caught.value)
@@ -142,6 +144,6 @@ def test_a_path_of_no_definition_is_refused(path: str) -> None:
         parse("pkg", path, TEXT)
 
 
-def test_the_file_that_was_probably_meant_is_found() -> None:
+def test_a_file_with_a_similar_name_is_found_instead_of_a_missing_one() -> None:
     assert closest(PATH, ["srv/fetch.srv", "msg/Other.msg"]) == "srv/fetch.srv"
     assert closest(PATH, ["msg/Other.msg"]) == ""

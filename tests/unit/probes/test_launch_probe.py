@@ -63,7 +63,7 @@ launch.exceptions.InvalidLaunchFileError: Caught multiple exceptions when trying
 """
 
 
-def test_a_launch_file_that_cannot_be_read_is_told_by_its_error_and_line() -> None:
+def test_a_launch_file_that_cannot_be_read_is_reported_with_error_and_line() -> None:
     assert launch_probe.unreadable(NOT_READ) == "SyntaxError: expected ':' (robot.launch.py, line 28)"
     raised = NOT_READ.replace("expected ':' (robot.launch.py, line 28)", "no such thing")
     assert launch_probe.unreadable(raised) == "SyntaxError: no such thing (ws/src/pkg/launch/robot.launch.py, line 28)"
@@ -94,7 +94,7 @@ def test_a_wrong_argument_is_named(name: str, default: str, sentence: str) -> No
     assert caught.value.message == sentence
 
 
-def test_an_argument_without_a_description_keeps_half() -> None:
+def test_an_argument_without_a_description_earns_half_the_points() -> None:
     with pytest.raises(CheckFailed, match="has no description") as caught:
         launch_probe.expect_argument({"speed": Argument("speed", "", "0.2", ())}, "speed", "0.2")
     assert caught.value.fraction == 0.5
@@ -105,14 +105,14 @@ def test_started_and_ended_programs_are_listed_in_order() -> None:
     assert launch_probe.ended(STARTED) == ["self_test", "driver"]
 
 
-def test_names_that_a_launch_gave_are_read_from_the_commands_of_the_dead() -> None:
+def test_node_names_are_read_from_the_commands_of_ended_processes() -> None:
     died = "[ERROR] [{}-{}]: process has died [pid 7, exit code -9, cmd 'lib/{} --ros-args -r __node:={}']."
     output = "\n".join((died.format("self_test", 1, "self_test", "check"), died.format("driver", 2, "driver", "wheel")))
     assert launch_probe.node_names(output, "self_test") == {"check"}
     assert launch_probe.node_names(STARTED, "self_test") == set()
 
 
-def test_trouble_names_who_died_and_of_what() -> None:
+def test_trouble_names_the_process_that_died_and_the_cause() -> None:
     assert launch_probe.trouble(STARTED) == (
         "driver died with exit code 1 (rclpy.exceptions.InvalidParameterTypeException: "
         "Trying to set parameter 'speed' to '1' of type 'INTEGER')"
@@ -138,7 +138,7 @@ def test_trouble_is_the_error_that_ended_the_launch(output: str, what: str) -> N
     assert bool(found) is bool(what)
 
 
-def test_an_unwritten_part_is_told_as_such() -> None:
+def test_an_unwritten_part_is_reported_as_unwritten() -> None:
     with pytest.raises(StudentError) as caught:
         launch_probe.require_written(f"{CAUGHT}\n - NotImplementedError: still to be written\n")
     assert caught.value.diagnosis.kind.value == "unfinished"

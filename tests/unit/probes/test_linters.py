@@ -40,11 +40,11 @@ def workspace(tmp_path: Path) -> Workspace:
     return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
 
 
-def test_nothing_is_said_of_a_tidy_package(workspace: Workspace) -> None:
+def test_the_linters_report_nothing_about_a_clean_package(workspace: Workspace) -> None:
     assert objections(workspace, take(workspace, "half")) == {}
 
 
-def test_each_linter_names_the_first_that_it_finds_though_the_students_tests_and_conftest_find_nothing(
+def test_each_linter_names_its_first_finding_even_if_the_students_tests_report_none(
     workspace: Workspace,
 ) -> None:
     untidy = TIDY.replace("half of x.", "half of x").replace("x / 2", "x/ 2")
@@ -59,7 +59,7 @@ def test_each_linter_names_the_first_that_it_finds_though_the_students_tests_and
     assert caught.value.fraction == 0.5
 
 
-def test_the_tests_of_ros2_pkg_create_find_what_is_laid_into_a_copy_and_tests_that_call_nothing_do_not(
+def test_the_tests_of_ros2_pkg_create_find_an_inserted_fault_and_empty_tests_do_not(
     workspace: Workspace,
 ) -> None:
     folder = workspace.root / "src/half/test"
@@ -71,7 +71,7 @@ def test_the_tests_of_ros2_pkg_create_find_what_is_laid_into_a_copy_and_tests_th
         expect_tidy(workspace, take(workspace, "half"), TESTS)
 
 
-def test_a_conftest_is_not_obeyed_but_judged_like_any_other_file(workspace: Workspace) -> None:
+def test_the_linters_ignore_a_conftest_and_check_it_like_any_other_file(workspace: Workspace) -> None:
     (workspace.root / "src/half/test/conftest.py").write_text(EMPTIES.replace("Run none.", "Run none"))
     said = objections(workspace, take(workspace, "half"))
     assert list(said) == ["test_pep257"]

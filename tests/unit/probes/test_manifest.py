@@ -29,7 +29,7 @@ TEXT = """<package format="3">
 """
 
 
-def test_a_manifest_says_what_the_package_is_and_what_it_needs() -> None:
+def test_a_manifest_is_read_with_name_and_dependencies() -> None:
     found = manifest.parse(TEXT)
     assert (found.name, found.version, found.description, found.format) == ("lamp", "0.1.0", "A lamp", 3)
     assert found.licences == ("MIT", "Apache-2.0")
@@ -64,7 +64,7 @@ def test_a_manifest_without_a_build_type_says_so() -> None:
         ('<package format="3">', '<!DOCTYPE a [<!ENTITY b "c">]><package format="3">', "which no manifest needs"),
     ],
 )
-def test_what_ros_refuses_is_refused_with_the_reason(before: str, after: str, words: str) -> None:
+def test_a_manifest_that_ros_refuses_is_refused_with_the_reason(before: str, after: str, words: str) -> None:
     with pytest.raises(CheckFailed, match=words):
         manifest.parse(TEXT.replace(before, after), "lamp/package.xml")
 

@@ -28,13 +28,13 @@ from autograder.probes.parameters import (
 WANTED = ("safety_distance", "slow_distance")
 
 
-def test_a_missing_name_is_told_with_the_one_that_stands_for_it() -> None:
+def test_a_missing_parameter_is_reported_with_the_one_of_a_similar_name() -> None:
     assert near_misses(WANTED, {"saftey_distance", "slow_distance"}) == {"safety_distance": "saftey_distance"}
     sentence = missing_sentence(WANTED, {"saftey_distance"})
     assert sentence == "The node does not declare safety_distance (it declares saftey_distance), slow_distance."
 
 
-def test_nothing_is_said_where_nothing_is_missing() -> None:
+def test_no_sentence_is_written_if_no_parameter_is_missing() -> None:
     assert missing_sentence(WANTED, {*WANTED, "another"}) == ""
 
 
@@ -53,7 +53,7 @@ def test_values_are_the_same_only_in_the_same_type(value: object, wanted: object
     assert same(value, wanted) is equal  # type: ignore[arg-type]
 
 
-def test_differences_tell_an_integer_from_a_double() -> None:
+def test_differences_distinguish_an_integer_from_a_double() -> None:
     told = differences({"a": 1, "b": 2.0}, {"a": 1.0, "b": 2.0, "c": "x"})
     assert told == ["a is 1 instead of 1.0", "c is not set instead of 'x'"]
 
@@ -70,7 +70,7 @@ def test_numbers_take_the_type_that_a_node_declares_and_nothing_else_does() -> N
     }
 
 
-def test_a_nodes_own_words_are_one_line_of_bounded_length() -> None:
+def test_a_text_of_a_node_is_shortened_to_one_line_of_bounded_length() -> None:
     assert shortened("two\nlines") == "two lines"
     assert len(shortened("x" * 10_000)) == SHOWN + 1
 
@@ -97,7 +97,9 @@ def test_a_file_is_read_in_its_order(tmp_path: Path) -> None:
         ("# " + "x" * MAX_FILE, "far larger than a parameter file"),
     ],
 )
-def test_a_file_that_ros_would_not_read_is_told_why(tmp_path: Path, text: str, sentence: str) -> None:
+def test_a_parameter_file_that_ros_would_refuse_is_refused_with_the_reason(
+    tmp_path: Path, text: str, sentence: str
+) -> None:
     path = tmp_path / "fleet.yaml"
     path.write_text(text)
     with pytest.raises(CheckFailed, match=sentence):
@@ -105,7 +107,7 @@ def test_a_file_that_ros_would_not_read_is_told_why(tmp_path: Path, text: str, s
 
 
 @pytest.mark.parametrize("key", ["/**/driver", "driver", "/driver"])
-def test_what_a_file_says_for_a_node_is_found_however_its_name_is_written(key: str) -> None:
+def test_parameters_for_a_node_are_found_for_each_way_to_write_its_name(key: str) -> None:
     file = {key: {"speed": 0.3}, "/**": {"speed": 0.1, "range": 2.0}, "other": {"speed": 9.0}}
     assert for_node(file, "driver") == {"speed": 0.3, "range": 2.0}
 

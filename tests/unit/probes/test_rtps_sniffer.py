@@ -24,14 +24,14 @@ def say(word: bytes, address: str, port: int) -> None:
         mouth.sendto(word, (address, port))
 
 
-def test_an_announcement_is_taken_once(sniffer: RtpsSniffer) -> None:
+def test_the_sniffer_returns_an_announcement_once(sniffer: RtpsSniffer) -> None:
     assert not sniffer.take_announcements()
     say(b"RTPS and more", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
     assert sniffer.take_announcements()
     assert not sniffer.take_announcements()
 
 
-def test_what_is_no_announcement_is_not_taken(sniffer: RtpsSniffer) -> None:
+def test_the_sniffer_ignores_a_packet_that_is_no_announcement(sniffer: RtpsSniffer) -> None:
     say(b"hello", "127.0.0.1", 7400 + 250 * sniffer.domain + 10)
     assert not sniffer.take_announcements()
 
@@ -44,7 +44,7 @@ def test_two_sniffers_listen_in_different_domains(sniffer: RtpsSniffer) -> None:
         assert other.take_announcements()
 
 
-def test_an_ear_finds_no_room_where_all_domains_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sniffer_raises_when_every_domain_has_participants(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rtps_sniffer, "DOMAINS", range(228, 230))
     with ExitStack() as stack:
         for _ in rtps_sniffer.DOMAINS:

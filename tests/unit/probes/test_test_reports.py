@@ -60,10 +60,10 @@ def test_a_message_is_cut_to_its_bound() -> None:
     ],
     ids=["empty", "text", "bytes", "large", "entities", "encoding"],
 )
-def test_what_is_no_small_plain_report_is_nothing(data: bytes) -> None:
+def test_bytes_that_are_no_valid_small_report_give_no_claims(data: bytes) -> None:
     assert parse_claims(data) is None
 
 
-def test_a_report_says_what_became_of_each_test() -> None:
+def test_a_report_has_the_outcome_of_each_test() -> None:
     claims = parse_claims(b'<testsuite><testcase classname="t" name="a"/></testsuite>')
     assert claims == Claims({"t::a": ClaimedOutcome.PASSED}, {"t::a": ""})

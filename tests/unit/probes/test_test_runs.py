@@ -53,7 +53,7 @@ def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
     return run(workspace, take(workspace, "half"), orders)
 
 
-def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: Workspace) -> None:
+def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: Workspace) -> None:
     write(workspace, GOOD)
     right, wrong = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
     assert right.passed
@@ -64,7 +64,7 @@ def test_good_tests_pass_on_what_is_right_and_object_to_what_is_not(workspace: W
     assert not right.objects(right)
 
 
-def test_a_run_can_end_with_the_first_failure_and_go_backwards(workspace: Workspace) -> None:
+def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace: Workspace) -> None:
     write(workspace, GOOD)
     first, backwards = runs(
         workspace,
@@ -75,7 +75,7 @@ def test_a_run_can_end_with_the_first_failure_and_go_backwards(workspace: Worksp
     assert backwards.executed == ("test_half::test_even", "test_half::test_odd")
 
 
-def test_tests_that_cannot_be_read_object_to_nothing(workspace: Workspace) -> None:
+def test_tests_that_cannot_be_imported_find_no_fault(workspace: Workspace) -> None:
     write(workspace, GOOD)
     (right,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     write(workspace, "import no_such_module\n" + GOOD)
@@ -104,7 +104,7 @@ def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
     ],
     ids=["_exit", "exit", "kill"],
 )
-def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str) -> None:
+def test_a_run_that_exits_early_reports_no_test(workspace: Workspace, trick: str) -> None:
     write(workspace, trick + "\n" + GOOD)
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     assert not report.passed
@@ -116,7 +116,7 @@ def test_a_run_that_leaves_early_claims_nothing(workspace: Workspace, trick: str
     ["0\\n", "-1\\n", "all passed\\n", "0", "9" * 100],
     ids=["no XML", "negative", "words", "torn", "endless"],
 )
-def test_an_answer_that_is_none_claims_nothing(workspace: Workspace, said: str) -> None:
+def test_an_invalid_reply_of_a_run_reports_no_test(workspace: Workspace, said: str) -> None:
     # It goes to all descriptors that the host is given: the report's, the status's and the one that it waits for.
     trick = f"import os, sys\nfor fd in range(3, 64):\n    try:\n        os.write(fd, b'{said}')\n"
     trick += "    except OSError:\n        pass\nos._exit(0)\n"
@@ -126,7 +126,7 @@ def test_an_answer_that_is_none_claims_nothing(workspace: Workspace, said: str) 
     assert report.executed == ()
 
 
-def test_a_report_that_is_no_file_claims_nothing(workspace: Workspace) -> None:
+def test_a_report_that_is_no_file_reports_no_test(workspace: Workspace) -> None:
     trick = """
 import pytest
 
@@ -160,7 +160,7 @@ def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: p
         pytest.param(2, (Ending.WALL_TIME, Ending.WALL_TIME), id="on every version, as tests that never end"),
     ],
 )
-def test_a_run_that_alone_had_to_be_stopped_gets_a_second_one(
+def test_the_only_stopped_run_is_repeated_once(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[Ending, ...]
 ) -> None:
     write(workspace, GOOD)
@@ -194,7 +194,7 @@ def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
     assert endless.passed
 
 
-def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
+def test_no_run_sees_files_of_another_run(workspace: Workspace) -> None:
     write(
         workspace,
         "import os\nfrom pathlib import Path\n\n\ndef test_first():\n    mark = Path(os.environ['HOME'], 'mark')\n"
@@ -203,7 +203,7 @@ def test_no_run_sees_what_another_has_left(workspace: Workspace) -> None:
     assert all(runs(workspace, TestRun(("test_half.py",), RIGHT))[0].passed for _ in range(3))
 
 
-def test_two_versions_are_seen_at_places_that_differ_in_a_random_word_only(workspace: Workspace) -> None:
+def test_the_paths_of_two_versions_differ_only_in_a_random_word(workspace: Workspace) -> None:
     place = (
         "re.sub(r'/tests-[a-z0-9_]{8}/', '/', str((half.__file__, os.getcwd(), sys.path, sorted(os.environ.items()))))"
     )
@@ -215,7 +215,7 @@ def test_two_versions_are_seen_at_places_that_differ_in_a_random_word_only(works
     assert messages.pop().startswith("assert not ")
 
 
-def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
+def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspace) -> None:
     made = "import rclpy\nfrom rclpy.context import Context\n\nKEPT = []\n\n\ndef test_it():\n    context = Context()\n"
     made += "    rclpy.init(context=context)\n    node = rclpy.create_node('n', context=context)\n"
     write(workspace, made + "    KEPT.append(node)\n")
@@ -238,7 +238,7 @@ def test_a_context_that_is_left_behind_is_seen(workspace: Workspace) -> None:
     ],
     ids=["default", "on this machine", "own domain", "hidden"],
 )
-def test_who_joins_the_default_domain_is_overheard(workspace: Workspace, init: str, more: str, joins: bool) -> None:
+def test_joining_the_default_domain_is_detected(workspace: Workspace, init: str, more: str, joins: bool) -> None:
     text = "import os\nimport rclpy\nfrom rclpy.context import Context\n\n\ndef test_it():\n    context = Context()\n"
     text += f"    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = '{more}'\n" if more else ""
     text += f"    rclpy.init(context=context, {init})\n    node = rclpy.create_node('n', context=context)\n"
@@ -249,14 +249,14 @@ def test_who_joins_the_default_domain_is_overheard(workspace: Workspace, init: s
     assert report.joined_domain is joins
 
 
-def test_where_nobody_joins_nobody_is_heard(workspace: Workspace) -> None:
+def test_a_run_that_joins_no_domain_is_not_reported(workspace: Workspace) -> None:
     write(workspace, GOOD)
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT, sniffed=True))
     assert report.passed
     assert not report.joined_domain
 
 
-def test_tests_that_speak_of_launching_get_its_plugin_and_others_do_not(workspace: Workspace) -> None:
+def test_only_tests_that_mention_launch_get_the_launch_plugin(workspace: Workspace) -> None:
     ask = "def test_it(pytestconfig):\n    assert {}pytestconfig.pluginmanager.has_plugin('lau' 'nch_pytest.plugin')\n"
     write(workspace, ask.format("not "))
     (plain,) = runs(workspace, TestRun(("test_half.py",), RIGHT))

@@ -64,7 +64,7 @@ def test_a_disguised_version_behaves_the_same_and_looks_different_for_each_seed(
     assert disguise(version, 1).files["config/a.yaml"] == "x: 1"
 
 
-def test_a_version_is_laid_down_as_if_it_had_been_built(tmp_path: Path) -> None:
+def test_a_version_is_installed_as_a_build_would_install_it(tmp_path: Path) -> None:
     version = Version(
         {"p/a.py": "A = 1\n", "launch/a.launch.py": "B = 2\n", "setup.py": "", "package.xml": "<package/>"},
         {"tool": "p.a"},
@@ -103,14 +103,14 @@ def test_all_versions_have_the_same_files() -> None:
 
 @pytest.mark.parametrize("fault", faults(), ids=lambda fault: str(fault.id))
 @pytest.mark.parametrize("name", STYLES)
-def test_every_fault_fits_both_styles(fault: Fault, name: str) -> None:
+def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
     faulty = broken(fault, name, random.Random(1)).files
     right = disguise(style(name), random.Random(1).getrandbits(32)).files
     assert {path for path in right if right[path] != faulty[path]} >= {fault.file}
     compile(faulty[fault.file], fault.file, "exec")
 
 
-def test_every_other_wording_fits() -> None:
+def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
     made = [reworded(random.Random(seed)).files for seed in range(30)]
     plain = disguise(style(STYLES[0]), 1).files
     assert all(files.keys() == plain.keys() for files in made)
@@ -119,13 +119,13 @@ def test_every_other_wording_fits() -> None:
             compile(files[name], name, "exec")
 
 
-def test_a_fault_that_no_longer_fits_is_named() -> None:
+def test_a_fault_whose_text_is_not_found_is_named() -> None:
     fault = Fault("lost", "stop", "speed_guard/limits.py", dict.fromkeys(STYLES, ("no such text", "")), frozenset())
     with pytest.raises(GraderError, match=r"fault lost: 'no such text' stands 0 times in speed_guard/limits.py"):
         broken(fault, STYLES[0], random.Random(1))
 
 
-def test_a_fault_must_not_stand_twice_unless_it_says_so() -> None:
+def test_the_text_of_a_fault_must_occur_once_unless_the_fault_allows_more() -> None:
     edits = dict.fromkeys(STYLES, ("return", "return None or"))
     with pytest.raises(GraderError, match=r"stands \d times"):
         broken(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))

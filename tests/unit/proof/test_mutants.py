@@ -27,7 +27,7 @@ def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "mutants.yaml"
 
 
-def test_a_mutant_is_read_with_what_it_leaves_out_filled_in(described: Path) -> None:
+def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> None:
     described.write_text(
         HEAD + "  - {id: a, title: t, loses: [nan], edits: [{find: x, replace: y}]}\n"
         "  - {id: b, title: t, loses: all, diagnosis: stuck, demo: true, slow: true,"
@@ -41,7 +41,7 @@ def test_a_mutant_is_read_with_what_it_leaves_out_filled_in(described: Path) -> 
     assert second.edits[0].file == "other.py"
 
 
-def test_a_check_that_the_suite_does_not_have_is_named(described: Path) -> None:
+def test_a_mutant_that_loses_an_unknown_check_is_refused(described: Path) -> None:
     described.write_text(HEAD + "  - {id: a, title: t, loses: [nan, flies], edits: []}\n")
     with pytest.raises(GraderError, match="mutant a: there is no check flies"):
         mutants("02_nodes")
@@ -54,7 +54,7 @@ def test_a_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
 
 
 @pytest.mark.parametrize(("find", "times"), [("no such text", 0), ("import", 2)])
-def test_an_edit_that_does_not_stand_exactly_once_is_refused(tmp_path: Path, find: str, times: int) -> None:
+def test_an_edit_whose_text_does_not_occur_exactly_once_is_refused(tmp_path: Path, find: str, times: int) -> None:
     shutil.copytree(layout.SOLUTIONS / "my_robot_package", tmp_path / "reference")
     text = (tmp_path / "reference" / "setup.py").read_text()
     times = text.count(find)
@@ -79,7 +79,7 @@ def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment
         assert mutant.loses
 
 
-def test_mutants_have_names_of_their_own_and_every_check_is_lost_by_one() -> None:
+def test_mutants_have_unique_names_and_every_check_is_lost_by_one() -> None:
     for assignment in suites.graded():
         every = mutants(assignment)
         assert len({mutant.id for mutant in every}) == len(every)

@@ -96,11 +96,11 @@ def made(functions: frozenset[str] | None = None) -> list[tuple[str, str, str]]:
         ("wall time", "self.time = __import__('rclpy.clock').clock.Clock().now()"),
     ],
 )
-def test_each_operator_makes_its_slip(operator: str, line: str) -> None:
+def test_each_operator_makes_its_mutation(operator: str, line: str) -> None:
     assert (operator, line) in [(name, changed) for name, _, changed in made()]
 
 
-def test_words_for_people_are_left_alone() -> None:
+def test_docstrings_and_messages_are_not_mutated() -> None:
     lines = [line for _, _, line in made()]
     assert not any("Make it" in line or "words'" in line or "wheelss" in line or "clears" in line for line in lines)
 

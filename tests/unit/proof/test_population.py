@@ -19,7 +19,7 @@ ASSIGNMENT = "02_nodes"
 
 
 @pytest.mark.parametrize("assignment", suites.graded())
-def test_each_mutant_is_another_text_and_has_a_name_of_its_own(assignment: str) -> None:
+def test_each_mutant_has_its_own_text_and_name(assignment: str) -> None:
     found = population(assignment)
     assert found == population(assignment)
     assert len({mutant.id for mutant in found.mutants}) == len(found.mutants) > 100
@@ -27,12 +27,12 @@ def test_each_mutant_is_another_text_and_has_a_name_of_its_own(assignment: str) 
 
 
 @pytest.mark.parametrize("assignment", suites.graded())
-def test_each_reason_belongs_to_a_mutant_that_exists(assignment: str) -> None:
+def test_each_reason_for_a_survivor_names_an_existing_mutant(assignment: str) -> None:
     found = reasons(assignment, population(assignment))
     assert all(reason.startswith(survivors.KINDS) for reason in found.values())
 
 
-def test_a_name_outlives_changes_elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_name_of_a_mutant_does_not_change_with_other_code(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from autograder.proof.population import _named
 
     before = _named("a.py", "f", "sign", ((4, 5, "2"),), "x = 1\n")
@@ -85,7 +85,7 @@ def test_the_score_leaves_out_the_equivalent_and_counts_those_outside_of_the_con
     assert holds([found]) == enough
 
 
-def test_a_pair_has_the_reason_of_its_halves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_pair_of_mutants_has_the_reason_of_its_two_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     pair = next(mutant.id for mutant in population(ASSIGNMENT).mutants if mutant.operator == "pair")
     one, other = pair.split(" + ")
     text = f"- {{outside: who cares, mutants: ['{one}']}}\n- {{equivalent: the same, mutants: ['{other}']}}"
@@ -93,7 +93,7 @@ def test_a_pair_has_the_reason_of_its_halves(monkeypatch: pytest.MonkeyPatch, tm
     assert with_reason(found, monkeypatch, text, tmp_path).reasons[pair] == "outside: who cares"
 
 
-def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_mutant_that_was_not_graded_makes_the_proof_fail(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     found = surveyed(*["starts"] * 39, FAILED)
     found = with_reason(
         found, monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.fates[-1].id}']}}", tmp_path
@@ -109,7 +109,7 @@ def test_a_mutant_that_was_not_graded_is_no_success(monkeypatch: pytest.MonkeyPa
         ("- {equivalent: x, outside: y, mutants: []}", "equivalent or outside"),
     ],
 )
-def test_a_reason_that_fits_nothing_is_refused(
+def test_a_reason_that_matches_no_mutant_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, said: str
 ) -> None:
     with pytest.raises(GraderError, match=said):

@@ -72,7 +72,7 @@ def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
     return [claim.mismatch for claim in claims]
 
 
-def test_submissions_of_several_chapters_may_have_one_name(tmp_path: Path) -> None:
+def test_submissions_of_several_chapters_may_have_the_same_name(tmp_path: Path) -> None:
     came: list[str] = []
     said = run([case(name) for name in CHAPTERS], tmp_path, on_claim=lambda claim: came.append(claim.assignment))
     assert all(said), "what was not graded shows nothing"
@@ -81,7 +81,7 @@ def test_submissions_of_several_chapters_may_have_one_name(tmp_path: Path) -> No
     assert all("nobody grades reference" in log for log in logs)
 
 
-def test_chapters_are_graded_side_by_side_and_told_in_order(tmp_path: Path) -> None:
+def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Path) -> None:
     made: list[str] = []
 
     def named(assignment: str, name: str) -> Case:

@@ -13,7 +13,7 @@ from tests.benchmarks.repeat_capstone import Grading, cut_off, stored, summarise
 ONE = Grading("v1", 1, 2, 100.0, (), {"corner.json": "0123"}, 7.5)
 
 
-def test_the_gradings_of_one_version_are_kept_and_a_torn_line_is_not(tmp_path: Path) -> None:
+def test_gradings_of_one_version_are_kept_and_an_incomplete_line_is_not(tmp_path: Path) -> None:
     report = tmp_path / "capstones.jsonl"
     assert stored(report, "v1") == {}
     other = replace(ONE, version="v2", number=2)

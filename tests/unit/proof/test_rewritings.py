@@ -58,7 +58,7 @@ def robot(text: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("restyled", [rewritten, formatted])
-def test_the_module_does_the_same(restyled: Any) -> None:
+def test_a_rewritten_module_behaves_the_same(restyled: Any) -> None:
     text = restyled(MODULE)
     assert text != MODULE
     before, after = robot(MODULE), robot(text)
@@ -72,7 +72,7 @@ def test_the_module_does_the_same(restyled: Any) -> None:
     assert after["swap"](1, 2) == before["swap"](1, 2)
 
 
-def test_everything_is_in_other_words() -> None:
+def test_a_rewritten_module_has_other_names_and_expressions() -> None:
     text = rewritten(MODULE)
     assert "from __future__ import annotations\nimport math" in text
     assert "return max(0.0, lef_ / 0.016) if not (1.6 < lef_) else 100.0" in text
@@ -83,7 +83,7 @@ def test_everything_is_in_other_words() -> None:
     assert names == ["__init__", "ask", "measure", "empty", "percent"]
 
 
-def test_what_could_change_the_meaning_stays() -> None:
+def test_constructs_whose_rewriting_could_change_the_meaning_stay() -> None:
     text = rewritten(MODULE)
     assert "return first() < second()" in text  # the order of the calls
     assert "if 0.1 <= readin_ < 10.0" in text  # a chain has no mirror image

@@ -56,7 +56,7 @@ def test_a_release_gains_nothing() -> None:
     assert verify_zero(result("nan")).startswith("it scores")
 
 
-def test_a_mutant_loses_what_it_names_and_no_other() -> None:
+def test_a_mutant_loses_the_checks_that_it_names_and_no_other() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
     assert verify_mutant(mutant, result(*mutant.loses)) == ""
     assert verify_mutant(mutant, result("nan")) == "also loses nan; keeps minus_inf, warns"
@@ -85,7 +85,7 @@ def test_the_summary_counts_each_kind() -> None:
     }
 
 
-def test_the_whole_proof_holds_every_kind_and_names_each_submission_once() -> None:
+def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
     found = cases(ASSIGNMENT)
     assert {case.kind for case in found} >= set(CaseKind) - {CaseKind.VARIANT}
     assert len({case.name for case in found}) == len(found)

@@ -69,7 +69,7 @@ def test_a_point_lost_in_real_time_on_a_busy_machine_is_in_doubt(
     assert result.in_doubt is in_doubt
 
 
-def test_a_result_survives_the_way_to_json_and_back(make_result: MakeResult, broken_result: Result) -> None:
+def test_a_result_is_the_same_after_a_way_through_json(make_result: MakeResult, broken_result: Result) -> None:
     artifact = Artifact("tracks/a.png", "track", "ab", "turns", "It hits a wall.")
     for result in (
         make_result(
@@ -103,7 +103,7 @@ def test_every_field_of_a_result_is_published(make_result: MakeResult, broken_re
     assert set(plain["diagnosis"]) == set(properties["diagnosis"]["properties"])
 
 
-def test_fields_that_a_later_version_added_are_read_over(make_result: MakeResult) -> None:
+def test_fields_that_a_later_version_added_are_ignored(make_result: MakeResult) -> None:
     result = make_result(artifacts=(Artifact("a.png", "track", "ab", "turns"),))
     plain = result.to_json()
     for part in (plain, plain["build"], plain["diagnosis"], plain["checks"][0], plain["artifacts"][0]):
@@ -128,7 +128,7 @@ def test_a_diagnosis_that_this_version_does_not_know_is_refused(make_result: Mak
         ({"max_score": 0}, "max_score: 0 is less than or equal to the minimum of 0"),
     ],
 )
-def test_what_is_no_result_is_refused_by_file_and_field(
+def test_an_invalid_result_is_refused_with_file_and_field(
     make_result: MakeResult, change: dict[str, object], words: str
 ) -> None:
     with pytest.raises(UsageError) as caught:
@@ -136,7 +136,7 @@ def test_what_is_no_result_is_refused_by_file_and_field(
     assert words in str(caught.value)
 
 
-def test_something_else_altogether_is_refused() -> None:
+def test_json_that_is_no_object_is_refused() -> None:
     with pytest.raises(UsageError, match="result: not a grading result: the top level: 7 is not of type 'object'"):
         from_json(7)
 
@@ -170,7 +170,7 @@ def test_a_student_error_carries_its_diagnosis() -> None:
     assert str(error) == "setup.py, line 3: a bracket is not closed"
 
 
-def test_the_graders_faults_are_not_the_students() -> None:
+def test_a_grader_error_is_no_student_error() -> None:
     assert issubclass(IsolationError, GraderError)
     assert not issubclass(GraderError, StudentError)
     assert not issubclass(StudentError, GraderError)

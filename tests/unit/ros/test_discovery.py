@@ -11,7 +11,7 @@ import pytest
 from autograder.ros.discovery import PROFILES_VARIABLE, announcing_often
 
 
-def test_the_profile_is_there_in_the_block_and_gone_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_profile_is_set_in_the_block_and_removed_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(PROFILES_VARIABLE, raising=False)
     with announcing_often():
         path = Path(os.environ[PROFILES_VARIABLE])

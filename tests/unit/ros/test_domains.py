@@ -10,13 +10,13 @@ from autograder.ros.domains import DOMAINS, Domain
 HOLD = "from autograder.ros.domains import Domain; domain = Domain({}); print(domain.number, flush=True); input()"
 
 
-def test_two_that_begin_at_the_same_place_get_two_domains() -> None:
+def test_two_claims_from_the_same_number_get_different_domains() -> None:
     with Domain(7) as one, Domain(7) as other:
         assert one.number != other.number
         assert {one.number, other.number} <= set(DOMAINS)
 
 
-def test_another_process_gets_another_domain_and_its_own_is_free_when_it_has_ended() -> None:
+def test_a_domain_of_another_process_is_free_after_its_end() -> None:
     command = [sys.executable, "-c", HOLD.format(30)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -30,7 +30,7 @@ def test_another_process_gets_another_domain_and_its_own_is_free_when_it_has_end
         assert mine.number == number
 
 
-def test_when_all_are_taken_one_is_shared() -> None:
+def test_a_domain_is_shared_if_all_are_taken() -> None:
     claims = [Domain() for _ in range(len(DOMAINS) + 1)]
     try:
         with Domain(3) as shared:

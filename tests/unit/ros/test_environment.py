@@ -104,7 +104,7 @@ def test_another_distribution_is_refused_by_name(elsewhere: Path, distro: str, n
     assert "source /opt/ros/jazzy/setup.bash" in done.stdout
 
 
-def test_a_half_sourced_jazzy_is_told_what_is_missing(elsewhere: Path) -> None:
+def test_a_half_sourced_jazzy_is_reported_with_what_is_missing(elsewhere: Path) -> None:
     done = python(FIND, PYTHONPATH=str(elsewhere), ROS_DISTRO="jazzy")
     assert done.stdout.startswith(f"RosNotFoundError rclpy is at {elsewhere / 'rclpy'}, but not in AMENT_PREFIX_PATH")
 
@@ -115,7 +115,7 @@ def test_without_any_ros_the_message_says_what_to_do() -> None:
     assert done.stdout.startswith("RosNotFoundError rclpy cannot be imported: run `make setup`"), done.stderr
 
 
-def test_children_get_overlays_first_and_only_what_was_asked_for() -> None:
+def test_child_processes_get_overlays_first_and_only_requested_variables() -> None:
     variables = ROS.variables(overlays=(Path("/near"), Path("/far")), domain=232, log_dir=Path("/logs"))
     assert variables["AMENT_PREFIX_PATH"] == variables["CMAKE_PREFIX_PATH"] == "/near:/far:/venv"
     assert (variables["ROS_DOMAIN_ID"], variables["ROS_LOG_DIR"]) == ("232", "/logs")
@@ -134,7 +134,7 @@ def test_a_domain_without_ports_is_refused(domain: int) -> None:
         ROS.variables(domain=domain)
 
 
-def test_each_test_has_a_domain_whose_ports_linux_gives_to_nobody_else(ros_domain: int) -> None:
+def test_each_test_has_a_domain_whose_ports_linux_does_not_give_to_other_programs(ros_domain: int) -> None:
     assert 1 <= ros_domain <= 101
     assert os.environ["ROS_DOMAIN_ID"] == str(ros_domain)
 
@@ -157,7 +157,7 @@ def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
     assert done.stdout.split() == ["jazzy"], done.stderr
 
 
-def test_a_terminal_has_logs_on_stderr_as_in_ros_and_a_notebook_on_stdout(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_logs_go_to_stderr_in_a_terminal_and_to_stdout_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "RCUTILS_LOGGING_USE_STDOUT"
     monkeypatch.delenv(name)
     assert with_ros("sh", "-c", f"echo ${name}").stdout == "\n"
@@ -165,12 +165,12 @@ def test_a_terminal_has_logs_on_stderr_as_in_ros_and_a_notebook_on_stdout(monkey
     assert with_ros(sys.executable, "-c", kernel).stdout == "1\n"
 
 
-def test_a_command_that_is_not_there_is_named() -> None:
+def test_a_missing_command_is_named() -> None:
     done = with_ros("no-such-command")
     assert (done.returncode, done.stderr) == (127, "no-such-command: No such file or directory\n")
 
 
-def test_a_command_is_not_run_without_a_usable_ros(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_command_runs_without_a_usable_ros(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(elsewhere))
     monkeypatch.setenv("ROS_DISTRO", "rolling")
     done = with_ros("echo", "ran")

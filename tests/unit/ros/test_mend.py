@@ -26,11 +26,11 @@ set(python "/P/bin/python")
 """
 
 
-def test_each_kind_of_folder_is_replaced_by_its_own() -> None:
+def test_each_kind_of_folder_is_replaced_by_that_of_the_interpreter() -> None:
     assert mend.mended(BAKED, headers="/H", numpy_headers="/N", prefix="/P") == MENDED
 
 
-def test_a_folder_with_backslashes_is_taken_literally() -> None:
+def test_a_folder_with_backslashes_is_written_literally() -> None:
     text = mend.mended("/opt/python/cp312-cp312/bin", headers="", numpy_headers="", prefix=r"/odd\1name")
     assert text == r"/odd\1name/bin"
 
@@ -46,7 +46,7 @@ def prefix(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_only_baked_cmake_files_are_rewritten_and_a_second_time_none(prefix: Path) -> None:
+def test_only_cmake_files_with_foreign_paths_are_rewritten_and_only_once(prefix: Path) -> None:
     folder = prefix / "share" / "std_msgs" / "cmake"
     assert [path.name for path in mend.baked_files(prefix)] == ["baked.cmake"]
     assert mend.mend_wheels(prefix) == 1
@@ -59,15 +59,15 @@ def test_only_baked_cmake_files_are_rewritten_and_a_second_time_none(prefix: Pat
     assert sorted(path.name for path in folder.iterdir()) == ["baked.cmake", "good.cmake", "notes.txt"]
 
 
-def test_a_prefix_without_wheels_needs_no_mending(tmp_path: Path) -> None:
+def test_a_prefix_without_wheels_is_not_changed(tmp_path: Path) -> None:
     assert mend.mend_wheels(tmp_path) == 0
 
 
-def test_the_environment_that_runs_the_tests_is_mended() -> None:
+def test_the_environment_of_the_tests_has_no_foreign_paths() -> None:
     assert mend.baked_files(Path(sys.prefix)) == []
 
 
-def test_the_stand_ins_come_after_everything_real(tmp_path: Path) -> None:
+def test_the_stand_ins_come_last_on_the_path(tmp_path: Path) -> None:
     pth = mend.link_standins(tmp_path)
     assert mend.link_standins(tmp_path) == pth
     assert [path.name for path in tmp_path.iterdir()] == [mend.STANDINS_PTH]
@@ -76,7 +76,7 @@ def test_the_stand_ins_come_after_everything_real(tmp_path: Path) -> None:
     assert done.stdout.strip() == str(Path(mend.__file__).parent / "standins"), done.stderr
 
 
-def test_flake8_checks_in_one_process_and_is_mended_once(tmp_path: Path) -> None:
+def test_flake8_is_set_to_one_process_once(tmp_path: Path) -> None:
     assert not mend.mend_flake8(tmp_path)
     path = tmp_path / mend.FLAKE8_INI
     path.parent.mkdir(parents=True)
@@ -87,7 +87,7 @@ def test_flake8_checks_in_one_process_and_is_mended_once(tmp_path: Path) -> None
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_the_linter_of_this_environment_is_mended() -> None:
+def test_flake8_of_this_environment_is_set_to_one_process() -> None:
     path = Path(sysconfig.get_paths()["purelib"]) / mend.FLAKE8_INI
     assert not path.is_file() or mend.ONE_PROCESS in path.read_text()
 
@@ -95,7 +95,7 @@ def test_the_linter_of_this_environment_is_mended() -> None:
 PAUSE = "            time.sleep(0.0001)  # mended: gives the interpreter to the thread that the handler waits for\n"
 
 
-def test_the_executor_is_mended_once_and_only_if_it_is_the_one_known(tmp_path: Path) -> None:
+def test_the_executor_is_patched_once_and_only_if_its_text_is_known(tmp_path: Path) -> None:
     assert not mend.mend_executor(tmp_path)
     path = tmp_path / mend.EXECUTORS
     path.parent.mkdir(parents=True)
@@ -109,7 +109,7 @@ def test_the_executor_is_mended_once_and_only_if_it_is_the_one_known(tmp_path: P
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_the_executor_of_this_environment_is_mended() -> None:
+def test_the_executor_of_this_environment_is_patched() -> None:
     path = Path(sysconfig.get_paths()["purelib"]) / mend.EXECUTORS
     if not path.is_file():
         pytest.skip("rclpy is not from the wheels")

@@ -15,7 +15,7 @@ PAGE = CHAPTERS / "ros2-commands.md"
 TYPED = sorted(set(re.findall(r"`ros2 ([^`]+)`", PAGE.read_text(encoding="utf-8"))))
 
 
-def test_the_page_has_every_verb_that_the_course_uses() -> None:
+def test_the_commands_page_has_every_verb_that_the_course_uses() -> None:
     used = {
         match
         for notebook in CHAPTERS.glob("*/*.ipynb")

@@ -78,7 +78,7 @@ def test_octets_and_numpy_arrays_become_plain_values() -> None:
     frame=st.text(st.characters(exclude_categories=["Cs", "Cc", "Zl", "Zp"])),
     sec=st.integers(-(2**31), 2**31 - 1),
 )
-def test_what_yaml_says_sets_the_same_message(x: float, ranges: list[float], frame: str, sec: int) -> None:
+def test_a_message_is_the_same_after_a_way_through_yaml(x: float, ranges: list[float], frame: str, sec: int) -> None:
     scan = LaserScan(ranges=ranges)
     scan.header.frame_id, scan.header.stamp.sec = frame, sec
     twist = Twist()
@@ -113,7 +113,9 @@ def test_fields_are_converted_to_their_type() -> None:
         (Int32(), {"data": "many"}, ValueError, "invalid literal for int"),
     ],
 )
-def test_what_does_not_fit_is_an_error(message: Any, values: Any, error: type[Exception], text: str) -> None:
+def test_values_that_do_not_fit_a_message_are_an_error(
+    message: Any, values: Any, error: type[Exception], text: str
+) -> None:
     with pytest.raises(error, match=text):
         set_message_fields(message, values)
 
@@ -161,7 +163,7 @@ def test_a_wrong_name_of_an_interface_is_an_error(name: str, error: type[Excepti
         get_interface_path(name)
 
 
-def test_names_become_classes() -> None:
+def test_the_name_of_an_interface_gives_its_class() -> None:
     assert get_message("std_msgs/msg/String") is get_message("std_msgs/String") is String
     assert get_service("std_srvs/srv/SetBool") is get_interface("std_srvs/srv/SetBool") is SetBool
     assert get_message_namespaced_type("std_msgs/String").namespaced_name() == ("std_msgs", "msg", "String")

@@ -38,7 +38,7 @@ APACHE = """# Copyright 2024-2026 Ada Lovelace
         ("# Copyright Ada\n", "#", Header((), "<unknown>")),
     ],
 )
-def test_the_first_comment_says_whose_a_file_is(text: str, comment: str, header: Header) -> None:
+def test_the_first_comment_names_holder_and_licence_of_a_file(text: str, comment: str, header: Header) -> None:
     assert parse_header(text.splitlines(), comment=comment) == header
 
 
@@ -70,7 +70,9 @@ def test_a_folder_is_searched_for_source_files(tmp_path: Path, capsys: pytest.Ca
     assert main([str(tmp_path), "--exclude", "bare.py", "odd.cpp"]) == 0
 
 
-def test_a_file_that_is_no_text_or_not_there_is_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_file_and_a_file_that_is_no_text_are_errors(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "bad.py").write_bytes(b"\xff\xfe")
     assert main([str(tmp_path)]) == 1
     assert "bad.py: cannot be read as text" in capsys.readouterr().err

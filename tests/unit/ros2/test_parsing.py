@@ -44,7 +44,7 @@ def test_a_command_alone_prints_its_help(words: tuple[str, ...], capsys: pytest.
     "words",
     [("bag", "record"), ("daemon", "stop"), ("component", "list"), ("topic", "delay", "/x"), ("service", "echo", "/x")],
 )
-def test_what_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
+def test_a_command_that_is_not_covered_is_named_with_the_place_where_it_works(words: tuple[str, ...]) -> None:
     outcome = main(words)
     assert isinstance(outcome, str)
     thing = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
@@ -53,7 +53,9 @@ def test_what_is_not_covered_is_named_with_the_place_where_it_works(words: tuple
 
 
 @pytest.mark.parametrize("words", [("tpoic", "list"), ("topic", "lst"), ("topic", "echo"), ("topic", "pub", "-r", "0")])
-def test_a_mistyped_word_is_an_error_of_argparse(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_mistyped_argument_is_an_error_of_argparse(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(SystemExit) as ended:
         main(words)
     assert ended.value.code == 2
@@ -112,7 +114,7 @@ def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
     assert done.stdout.endswith("\nFalse\n"), done.stderr
 
 
-def test_a_reader_that_stops_listening_is_no_traceback() -> None:
+def test_a_closed_output_pipe_gives_no_traceback() -> None:
     shell = f"{sys.executable} -m autograder.ros.ros2 interface list | head -1"
     done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("Messages:\n", "")

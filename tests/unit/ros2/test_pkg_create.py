@@ -18,7 +18,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_it_tells_of_each_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_create_prints_each_file(capsys: pytest.CaptureFixture[str]) -> None:
     assert (
         main(["pkg", "create", "p", "--build-type", "ament_python", "--license", "MIT", "--maintainer-name", "A"])
         is None
@@ -44,7 +44,7 @@ def test_it_tells_of_each_file(capsys: pytest.CaptureFixture[str]) -> None:
     assert Path("p/LICENSE").is_file()
 
 
-def test_it_tells_of_the_folders_for_sources_and_headers(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_create_prints_the_folders_for_sources_and_headers(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "p", "--license", "MIT"]) is None
     printed = capsys.readouterr().out.splitlines()
     assert printed[printed.index("creating folder ./p") :] == [
@@ -98,7 +98,7 @@ def test_an_existing_folder_is_left_alone(capsys: pytest.CaptureFixture[str]) ->
         (("p", "--destination-directory", "/proc/nowhere"), "unable to create /proc/nowhere/p"),
     ],
 )
-def test_what_cannot_work_is_refused(words: tuple[str, ...], error: str) -> None:
+def test_a_call_of_pkg_create_that_cannot_work_is_refused(words: tuple[str, ...], error: str) -> None:
     outcome = main(["pkg", "create", *words])
     assert isinstance(outcome, str)
     assert outcome.startswith(error)

@@ -23,7 +23,7 @@ class InterruptedExecutor:
         self.turns += 1
 
 
-def test_an_interrupted_turn_comes_to_its_end() -> None:
+def test_an_interrupted_turn_of_the_executor_is_completed() -> None:
     executor = InterruptedExecutor()
     session = Session(cast("Any", None), cast("Any", executor), None)
     with pytest.raises(KeyboardInterrupt):
@@ -31,7 +31,7 @@ def test_an_interrupted_turn_comes_to_its_end() -> None:
     assert executor.turns == 1
 
 
-def test_an_interrupt_reaches_whoever_holds_signals_back_outside() -> None:
+def test_an_interrupt_reaches_the_outer_block_that_defers_signals() -> None:
     executor = InterruptedExecutor()
     session = Session(cast("Any", None), cast("Any", executor), None)
     with signals_held_back() as noted:

@@ -81,14 +81,14 @@ def test_hidden_names_begin_with_an_underscore() -> None:
     assert [has_hidden_part(name) for name in ("/a/_action/status", "/a_b", "/_x")] == [True, False, True]
 
 
-def test_two_nodes_of_one_name_are_worth_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_nodes_with_the_same_name_are_warned_of(capsys: pytest.CaptureFixture[str]) -> None:
     warn_of_duplicates([NodeName("a", "/"), NodeName("b", "/")])
     assert capsys.readouterr().err == ""
     warn_of_duplicates([NodeName("a", "/"), NodeName("a", "/")])
     assert capsys.readouterr().err.startswith("WARNING: Be aware that there are nodes in the graph that share")
 
 
-def test_a_rate_is_what_the_gaps_say() -> None:
+def test_a_rate_is_computed_from_the_gaps() -> None:
     assert Rate.of([5]) is None
     assert str(Rate.of([0, 100_000_000, 300_000_000])) == (
         "average rate: 6.667\n\tmin: 0.100s max: 0.200s std dev: 0.05000s window: 2"
@@ -128,7 +128,7 @@ def test_a_filter_is_a_python_expression_over_m() -> None:
         message_filter("m >")
 
 
-def test_a_goal_does_not_take_stamps() -> None:
+def test_a_goal_refuses_automatic_stamps() -> None:
     with pytest.raises(Ros2Error, match="Failed to populate request: Value 'now'"):
         filled(Twist, "{linear: now}", "request", stamps=False)
 
@@ -180,12 +180,12 @@ def test_launch_arguments_are_names_and_values() -> None:
 
 
 @pytest.mark.parametrize("word", ["a=1", ":=1", "a:="])
-def test_a_launch_argument_lacks_neither_name_nor_value(word: str) -> None:
+def test_a_launch_argument_without_a_name_or_value_is_refused(word: str) -> None:
     with pytest.raises(Ros2Error, match=f"malformed launch argument '{word}', expected format '<name>:=<value>'"):
         launch_arguments([word])
 
 
-def test_a_path_of_a_launch_file_takes_all_other_words_as_arguments(tmp_path: Path) -> None:
+def test_after_a_path_of_a_launch_file_all_words_are_arguments(tmp_path: Path) -> None:
     path = tmp_path / "x.launch.py"
     path.touch()
     assert find_launch_file(str(path), "a:=1", ["b:=2"]) == (path, ["a:=1", "b:=2"])
@@ -207,7 +207,7 @@ def spec(**fields: str) -> PackageSpec:
 
 @settings(deadline=None)
 @given(st.text())
-def test_any_description_survives_setup_py(description: str) -> None:
+def test_any_description_is_kept_by_setup_py(description: str) -> None:
     line = next(
         line for line in setup_py(spec(description=description)).split("\n") if line.startswith("    description=")
     )

@@ -19,13 +19,13 @@ from launch.substitutions import LaunchConfiguration, PythonExpression
 
 @pytest.mark.parametrize(("text", "holds"), [("true", True), ("True", True), ("1", True), (" TRUE ", True)])
 @pytest.mark.parametrize("negate", [False, True])
-def test_true_and_one_hold(context: LaunchContext, text: str, holds: bool, negate: bool) -> None:
+def test_true_and_one_are_true_conditions(context: LaunchContext, text: str, holds: bool, negate: bool) -> None:
     condition = UnlessCondition(text) if negate else IfCondition(text)
     assert condition.evaluate(context) is not negate
 
 
 @pytest.mark.parametrize("text", ["false", "False", "0"])
-def test_false_and_zero_do_not_hold(context: LaunchContext, text: str) -> None:
+def test_false_and_zero_are_false_conditions(context: LaunchContext, text: str) -> None:
     assert IfCondition(text).evaluate(context) is False
     assert UnlessCondition(text).evaluate(context) is True
 
@@ -62,7 +62,7 @@ def test_a_launch_configuration_is_compared_with_a_text(
         assert LaunchConfigurationNotEquals(name, expected).evaluate(context) is not equal
 
 
-def test_a_condition_that_is_none_is_refused_at_once() -> None:
+def test_a_value_that_is_no_condition_is_refused_at_once() -> None:
     with pytest.raises(TypeError, match=r"LogInfo: condition must be a launch.Condition such as IfCondition.*got str"):
         LogInfo(msg="", condition="true")
 

@@ -80,7 +80,7 @@ def test_the_description_of_an_argument_names_its_choices(arguments: dict[str, A
     assert DeclareLaunchArgument("x", **arguments).description == description
 
 
-def test_what_a_group_sets_ends_with_the_group(run: Run, note: Note, seen: list[str]) -> None:
+def test_a_configuration_set_in_a_group_ends_with_the_group(run: Run, note: Note, seen: list[str]) -> None:
     run(
         SetLaunchConfiguration("x", "outer"),
         GroupAction([note(X), SetLaunchConfiguration("x", "inner"), note(X)]),
@@ -128,7 +128,7 @@ def test_the_environment_of_a_group_ends_with_it(run: Run, note: Note, seen: lis
     assert seen == ["inner", "unset", "outer", "unset"]
 
 
-def test_an_environment_variable_grows_at_either_end(run: Run) -> None:
+def test_an_environment_variable_can_be_extended_at_both_ends(run: Run) -> None:
     run(
         AppendEnvironmentVariable("COURSE_PATH", "b"),
         AppendEnvironmentVariable("COURSE_PATH", "c"),
@@ -159,7 +159,7 @@ def test_an_opaque_function_gets_its_arguments_and_may_yield_actions(run: Run, n
     assert seen == ["1", "abc"]
 
 
-def test_what_is_no_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_value_that_is_no_entity_is_named(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("LogInfo") == 1
     assert "expected a LaunchDescriptionEntity such as an action, got str: 'LogInfo'" in capsys.readouterr().out
 

@@ -53,7 +53,7 @@ def inner(tmp_path: Path) -> Path:
     return path
 
 
-def test_an_included_file_gets_its_arguments_and_knows_where_it_is(
+def test_an_included_file_gets_its_arguments_and_its_own_path(
     run: Run, inner: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = PythonLaunchDescriptionSource([str(inner.parent), "/inner.launch.py"])

@@ -35,7 +35,7 @@ def test_a_module_offers_its_names_or_the_page_says_that_they_are_not_covered(mo
 
 
 @pytest.mark.parametrize("module", PAGE["INNER_NAMES"])
-def test_what_the_page_calls_not_covered_says_so(module: str) -> None:
+def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(module: str) -> None:
     for name in PAGE["INNER_NAMES"][module].split():
         if f"{module}.{name}" in MODULES:
             continue  # a submodule of this name can be imported
@@ -43,7 +43,7 @@ def test_what_the_page_calls_not_covered_says_so(module: str) -> None:
             getattr(importlib.import_module(module), name)
 
 
-def test_a_name_of_a_submodule_is_that_of_its_package() -> None:
+def test_a_name_of_a_submodule_is_the_same_object_as_in_its_package() -> None:
     from launch.actions import GroupAction
     from launch.event_handlers import OnProcessExit
 
@@ -51,12 +51,12 @@ def test_a_name_of_a_submodule_is_that_of_its_package() -> None:
     assert importlib.import_module("launch.event_handlers.on_process_exit").OnProcessExit is OnProcessExit
 
 
-def test_what_has_no_stand_in_is_named_when_it_is_imported() -> None:
+def test_a_class_without_a_stand_in_raises_an_error_when_it_is_used() -> None:
     module = importlib.import_module("launch_ros.actions.composable_node_container")
     with pytest.raises(NotInStandInError, match="ComposableNodeContainer' is not covered"):
         module.ComposableNodeContainer  # noqa: B018
 
 
-def test_a_module_that_the_real_package_has_not_is_not_found() -> None:
+def test_a_module_that_the_real_package_does_not_have_is_not_found() -> None:
     with pytest.raises(ModuleNotFoundError):
         importlib.import_module("launch.actions.fly")

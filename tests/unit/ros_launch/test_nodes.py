@@ -60,7 +60,7 @@ def test_a_node_gets_name_namespace_and_remappings(run: Run) -> None:
     assert node.expanded_remapping_rules == [("scan", "front/scan"), ("cmd", "/cmd_vel")]
 
 
-def test_a_node_without_a_name_keeps_its_own(run: Run) -> None:
+def test_a_node_without_a_name_in_the_launch_file_keeps_its_own_name(run: Run) -> None:
     node = Recorded()
     run(node)
     assert node.words == ["/bin/node", "--ros-args"]

@@ -14,7 +14,7 @@ ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an inst
 
 
 @pytest.mark.parametrize("name", PACKAGES)
-def test_a_stand_in_says_so_and_how_to_get_the_real_one(name: str) -> None:
+def test_a_stand_in_says_that_it_is_one_and_how_to_get_the_real_package(name: str) -> None:
     text = " ".join((importlib.import_module(name).__doc__ or "").split())
     assert text.startswith(f"Stand-in for `{name}`")
     assert "make real-launch" in text

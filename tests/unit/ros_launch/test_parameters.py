@@ -109,7 +109,7 @@ def test_parameters_must_be_a_list(context: LaunchContext, given: Any) -> None:
         evaluate_parameters(context, given)
 
 
-def test_other_things_are_no_parameters(context: LaunchContext) -> None:
+def test_other_values_are_refused_as_parameters(context: LaunchContext) -> None:
     with pytest.raises(TypeError, match=r"parameters must be files, dictionaries or launch_ros.descriptions, got int"):
         evaluate_parameters(context, [5])
 
@@ -150,7 +150,7 @@ def test_a_value_that_looks_like_a_substitution_is_left_as_it_is(context: Launch
         ("a: $(var odd)", SubstitutionFailure, "The substituted parameter file '.*' is not a valid yaml file"),
     ],
 )
-def test_a_substitution_that_fails_in_a_parameter_file_says_why(
+def test_a_failed_substitution_in_a_parameter_file_gives_the_reason(
     context: LaunchContext, tmp_path: Path, text: str, error: type[Exception], message: str
 ) -> None:
     context.launch_configurations["odd"] = "x: y: z"

@@ -71,7 +71,7 @@ ROBOT = LaunchConfiguration("robot")
         (IfElseSubstitution("false", LaunchConfiguration("missing"), "real"), "real"),
     ],
 )
-def test_a_substitution_stands_for_its_text(context: LaunchContext, substitution: Any, text: str) -> None:
+def test_a_substitution_evaluates_to_its_text(context: LaunchContext, substitution: Any, text: str) -> None:
     assert context.perform_substitution(substitution) == text
 
 
@@ -93,12 +93,12 @@ def test_a_substitution_stands_for_its_text(context: LaunchContext, substitution
         (FileContent("/no/such/file"), "Failed to open file '/no/such/file': No such file or directory"),
     ],
 )
-def test_a_substitution_that_fails_says_why(context: LaunchContext, substitution: Any, message: str) -> None:
+def test_a_failed_substitution_gives_the_reason(context: LaunchContext, substitution: Any, message: str) -> None:
     with pytest.raises(SubstitutionFailure, match=message):
         context.perform_substitution(substitution)
 
 
-def test_an_environment_variable_is_read_late_and_from_the_process(
+def test_an_environment_variable_is_read_from_the_process_when_it_is_evaluated(
     context: LaunchContext, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     substitution = EnvironmentVariable("SET_LATER")
@@ -141,7 +141,7 @@ def test_strings_and_substitutions_in_a_row_are_joined(context: LaunchContext) -
 
 
 @pytest.mark.parametrize("value", [5, True, [1, "a"], [None]])
-def test_other_values_are_no_substitutions(value: Any) -> None:
+def test_other_values_are_refused_as_substitutions(value: Any) -> None:
     with pytest.raises(
         TypeError, match=r"Failed to normalize given item of type .*'launch.Substitution' were expected"
     ):
@@ -184,7 +184,7 @@ def test_a_substitution_describes_itself_without_a_context(substitution: Any, de
 
 
 @pytest.mark.parametrize("kind", [AndSubstitution, OrSubstitution])
-def test_both_sides_can_be_asked_for(context: LaunchContext, kind: Any) -> None:
+def test_both_operands_of_a_substitution_can_be_read(context: LaunchContext, kind: Any) -> None:
     decision = kind("true", ["f", LaunchConfiguration("rest", default="alse")])
     assert [context.perform_substitution(part) for part in decision.left] == ["true"]
     assert [context.perform_substitution(part) for part in decision.right] == ["f", "alse"]

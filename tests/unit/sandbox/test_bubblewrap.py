@@ -42,7 +42,7 @@ def test_the_environment_is_cleared_before_it_is_set(tmp_path: Path) -> None:
     assert options[options.index("--setenv") + 1 :][:2] == ["LANG", "C.UTF-8"]
 
 
-def test_nothing_of_the_accounts_or_homes_is_shown(tmp_path: Path) -> None:
+def test_no_accounts_and_no_home_folders_are_shown(tmp_path: Path) -> None:
     options = _options(_sandbox(Sandbox(tmp_path)))
     shown = {Path(path) for flag in ("--bind", "--ro-bind", "--dev-bind") for path in _pairs(options, flag)}
     python = set(bubblewrap.python_mounts())
@@ -51,7 +51,7 @@ def test_nothing_of_the_accounts_or_homes_is_shown(tmp_path: Path) -> None:
     assert not any(layout.ROOT.is_relative_to(path) for path in shown)
 
 
-def test_suites_and_solutions_are_covered_wherever_a_mount_would_show_them(tmp_path: Path) -> None:
+def test_suites_and_solutions_are_hidden_in_each_mount_that_contains_them(tmp_path: Path) -> None:
     spec = Sandbox(tmp_path, mounts=(Mount(layout.ROOT),))
     options = _options(_sandbox(spec))
     mounted = options.index(str(layout.ROOT))
@@ -61,7 +61,7 @@ def test_suites_and_solutions_are_covered_wherever_a_mount_would_show_them(tmp_p
         assert str(secret) in _pairs(options, "--remount-ro")
 
 
-def test_only_mounts_that_say_so_are_writable(tmp_path: Path) -> None:
+def test_only_mounts_marked_as_writable_are_writable(tmp_path: Path) -> None:
     spec = Sandbox(tmp_path, mounts=(Mount(tmp_path / "in"), Mount(tmp_path / "out", writable=True)))
     options = _options(_sandbox(spec))
     assert _pairs(options, "--bind") == [str(tmp_path / "out")]

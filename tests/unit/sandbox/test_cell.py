@@ -14,9 +14,7 @@ from autograder.sandbox import Tier
 from autograder.sandbox.cell import run_in_cell
 
 
-def test_folders_of_cells_that_nobody_holds_are_swept_and_no_others(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     left, held, young, other = (
         tmp_path / f"{name}" for name in ("autograder-cell-1", "autograder-cell-2", "autograder-cell-3", "other")

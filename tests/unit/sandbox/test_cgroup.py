@@ -42,7 +42,7 @@ def test_version_2_offers_the_groups_that_hand_the_pids_controller_down(tmp_path
     assert cgroup.homes("pids", mountinfo, "0::/user.slice/session.scope\n") == [tmp_path / "user.slice", tmp_path]
 
 
-def test_without_control_groups_there_is_no_home() -> None:
+def test_without_control_groups_no_folder_is_offered() -> None:
     assert cgroup.homes("pids", "23 1 0:21 / /proc rw - proc proc rw\n", "") == []
 
 
@@ -52,7 +52,7 @@ def _look_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(("user", "bounds"), [(0, set()), (1000, {"pids"})])
-def test_where_no_group_can_be_made_prlimit_bounds_everybody_but_root(
+def test_without_a_control_group_prlimit_bounds_all_users_but_root(
     monkeypatch: pytest.MonkeyPatch, user: int, bounds: set[str]
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: user)
@@ -97,7 +97,7 @@ def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
 
 
 @NEEDED
-def test_the_kernel_refuses_one_process_too_many_and_nothing_stays(tmp_path: Path) -> None:
+def test_the_kernel_refuses_one_process_too_many_and_no_process_is_left(tmp_path: Path) -> None:
     group = cgroup.make(Limits(threads=1))
     script = "for n in 1 2 3 4 5; do sleep 30 >&- 2>&- & done; echo all of them"
     done = subprocess.run(group.enter(["sh", "-c", script]), capture_output=True, text=True, timeout=20, check=False)
@@ -115,7 +115,7 @@ def _runs(pid: str) -> bool:
 
 
 @NEEDED
-def test_a_group_left_by_a_grader_that_was_killed_is_swept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
     left = cgroup.make(Limits())
     monkeypatch.setattr(cgroup, "_STALE", -1.0)
     group = cgroup.make(Limits())

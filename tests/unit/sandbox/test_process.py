@@ -46,7 +46,7 @@ def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
         assert (process.ending, process.returncode, process.output) == (Ending.EXITED, 3, "hello\n")
 
 
-def test_what_is_written_can_be_read_at_once() -> None:
+def test_output_of_a_program_can_be_read_at_once() -> None:
     """A program that says that it has written something has: nobody need wait for the watcher."""
     code = "import os, sys\nfor n in range(3000):\n    print(n, flush=True); os.write(int(sys.argv[1]), b'x')"
     said, tell = os.pipe()
@@ -62,7 +62,7 @@ def test_what_is_written_can_be_read_at_once() -> None:
         os.close(said)
 
 
-def test_while_it_runs_it_has_neither_status_nor_ending() -> None:
+def test_a_running_program_has_neither_status_nor_ending() -> None:
     with Process(_python("import signal; print('up', flush=True); signal.pause()"), Limits()) as process:
         assert _until(lambda: process.output == "up\n")
         assert (process.ending, process.returncode) == (None, None)
@@ -70,7 +70,7 @@ def test_while_it_runs_it_has_neither_status_nor_ending() -> None:
     assert process.returncode == -signal.SIGKILL
 
 
-def test_it_cannot_read_from_the_grader_s_stdin() -> None:
+def test_a_program_cannot_read_from_the_grader_s_stdin() -> None:
     with Process(_python("input()"), Limits()) as process:
         assert process.wait(LONG)
         assert "EOFError" in process.output
@@ -82,7 +82,7 @@ def test_time_is_limited() -> None:
         assert process.ending is Ending.WALL_TIME
 
 
-def test_the_time_of_a_program_whose_place_is_held_counts_from_its_coming() -> None:
+def test_the_time_limit_of_a_forked_program_starts_when_it_enters() -> None:
     with Process(_python("import signal; signal.pause()"), Limits(wall_seconds=0.2), held=True) as process:
         assert not process.wait(1.0)
         process.entered(process.pid)
@@ -90,7 +90,7 @@ def test_the_time_of_a_program_whose_place_is_held_counts_from_its_coming() -> N
         assert process.ending is Ending.WALL_TIME
 
 
-def test_output_is_limited_and_only_so_much_is_kept() -> None:
+def test_output_is_limited_and_only_its_first_part_is_kept() -> None:
     with Process(_python("while True: print('x' * 999)"), Limits(output=10_000)) as process:
         assert process.wait(LONG)
         assert process.ending is Ending.OUTPUT
@@ -109,7 +109,7 @@ signal.pause()
         assert process.ending is Ending.MEMORY
 
 
-def test_memory_that_many_small_processes_hold_is_a_matter_of_their_number() -> None:
+def test_many_small_processes_are_limited_by_their_number_and_not_by_memory() -> None:
     code = "import os, signal\nfor _ in range(40): os.fork() or signal.pause()\nsignal.pause()"
     with Process(_python(code), Limits(memory=120 * MIB)) as process:
         assert process.wait(LONG)
@@ -145,7 +145,7 @@ def test_bytes_that_are_no_utf_8_are_replaced() -> None:
         assert process.output == "a\N{REPLACEMENT CHARACTER}\0b"
 
 
-def test_a_grandchild_that_holds_the_output_open_does_not_hold_up_the_end() -> None:
+def test_a_grandchild_that_keeps_the_output_open_does_not_delay_the_end() -> None:
     code = """
 import subprocess, sys
 print(subprocess.Popen([sys.executable, "-I", "-c", "import signal; signal.pause()"]).pid, flush=True)
@@ -166,7 +166,7 @@ def test_signals_after_the_end_do_nothing() -> None:
         assert (process.ending, process.returncode) == (Ending.EXITED, 0)
 
 
-def test_its_environment_is_the_one_that_is_given() -> None:
+def test_a_program_has_only_the_given_environment() -> None:
     environment = {"ONLY": "this"}
     with Process(
         _python("import os; print(os.environ.get('HOME'), os.environ['ONLY'])"), Limits(), environment=environment
@@ -196,13 +196,13 @@ def test_measuring_stops_when_there_are_far_too_many() -> None:
     assert len(measure(1, most=0).pids) <= 1
 
 
-def test_measuring_a_process_that_is_gone_finds_nothing() -> None:
+def test_measuring_an_ended_process_gives_no_process() -> None:
     with Process(_python("pass"), Limits()) as process:
         assert process.wait(LONG)
     assert measure(process.pid).pids == ()
 
 
-def test_a_program_that_is_not_there_is_an_error_at_once() -> None:
+def test_a_missing_program_is_an_error_at_once() -> None:
     with pytest.raises(FileNotFoundError):
         Process(["/no/such/program"], Limits())
 

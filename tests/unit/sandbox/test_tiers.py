@@ -32,7 +32,7 @@ def _bwrap(folder: Path, script: str) -> None:
     path.chmod(0o755)
 
 
-def test_without_bubblewrap_the_strong_tier_is_refused_with_what_mends_it(tools: Path) -> None:
+def test_without_bubblewrap_the_strong_tier_is_refused_with_the_remedy(tools: Path) -> None:
     with pytest.raises(IsolationError) as caught:
         require(Tier.BUBBLEWRAP)
     sentence = str(caught.value)
@@ -52,7 +52,7 @@ def test_a_kernel_that_forbids_namespaces_is_quoted(tools: Path) -> None:
         require(Tier.BUBBLEWRAP)
 
 
-def test_a_bubblewrap_that_fails_in_silence_is_still_named(tools: Path) -> None:
+def test_a_bubblewrap_that_fails_without_a_message_is_named(tools: Path) -> None:
     _bwrap(tools, "exit 7")
     with pytest.raises(IsolationError, match="bwrap ended with status 7"):
         require(Tier.BUBBLEWRAP)

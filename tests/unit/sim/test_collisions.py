@@ -140,7 +140,7 @@ def test_robots_collide_with_each_other() -> None:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_mover_that_runs_into_a_robot_is_a_collision_and_lets_it_get_away(engine: str) -> None:
+def test_a_mover_that_runs_into_a_robot_is_a_collision_and_the_robot_can_drive_away(engine: str) -> None:
     mover = Mover(((1.0, 0.0), (-1.0, 0.0)), radius=0.2, speed=0.5, phase=0.0, name="cart")
     world = World.from_segments(box(4.0, 3.0), movers=[mover])
     subject = at(Pose(), world, engine)

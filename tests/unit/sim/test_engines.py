@@ -42,7 +42,7 @@ from sim.scene import beams_of
 from tests.unit.sim.worlds import ENGINES, FULL_TURN, at, random_pose, random_world, wander
 
 SQUARE = ((-0.15, -0.1), (0.15, -0.1), (0.15, 0.1), (-0.15, 0.1))
-# Of the scans of `golden`, found once and the same on every machine; see `test_the_scans_are_those_of_every_machine`.
+# Of the scans of `golden`, the same on every machine: see `test_the_scans_are_the_same_bits_on_every_machine`.
 GOLDEN = "fce9484f7817df2924302ac482de20974748198a9b9bce93149d1ea2a170cb3b"
 
 
@@ -70,7 +70,7 @@ def golden(name: str) -> str:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_the_scans_are_those_of_every_machine(name: str) -> None:
+def test_the_scans_are_the_same_bits_on_every_machine(name: str) -> None:
     """Only correctly rounded operations stand between the seed and the scan, so that no processor can tell."""
     assert golden(name) == GOLDEN
 
@@ -97,7 +97,7 @@ def test_a_processor_without_vector_units_or_fused_multiply_add_finds_the_same_s
 
 
 @pytest.mark.parametrize("lidar", [LDS_01, UTM_30LX, LidarSpec(beams=7, angle_min=-1.0, angle_increment=0.11)])
-def test_both_engines_cast_the_same_fans(lidar: LidarSpec) -> None:
+def test_both_engines_cast_the_same_fans_of_beams(lidar: LidarSpec) -> None:
     random = np.random.default_rng(9)
     world = random_world(1, walls=40)
     for number in range(150):
@@ -123,7 +123,7 @@ def test_single_beams_and_fans_agree_bit_for_bit() -> None:
         np.testing.assert_array_equal(np.where(plain > FULL_TURN.range_max, np.inf, plain), fan)
 
 
-def test_walls_out_of_reach_are_left_out_without_a_trace() -> None:
+def test_leaving_out_walls_out_of_range_does_not_change_a_scan() -> None:
     world = random_world(3, walls=900, size=30.0)
     random = np.random.default_rng(5)
     for _ in range(40):
@@ -135,7 +135,7 @@ def test_walls_out_of_reach_are_left_out_without_a_trace() -> None:
 
 
 @pytest.mark.parametrize("walls", [301, 3000])
-def test_the_grid_changes_the_cost_and_not_a_bit(walls: int) -> None:
+def test_the_grid_does_not_change_a_bit_of_a_scan(walls: int) -> None:
     world = random_world(3, walls=walls, size=30.0)
     assert at(Pose(), world, "numba").scene.grid is not None
     assert at(Pose(), world, "numpy").scene.grid is None
@@ -178,7 +178,7 @@ def test_the_order_of_observations_does_not_matter() -> None:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_one_long_step_ends_where_many_short_ones_do(name: str) -> None:
+def test_one_long_step_has_the_same_end_as_many_short_ones(name: str) -> None:
     subject = simulation(name)
     commands = {"r0": Command(0.4, 0.7), "r1": Command(0.3, -0.2)}
     long = step(subject, start(subject), commands, 1.0)
@@ -213,14 +213,14 @@ def test_an_unknown_engine_is_refused_by_name() -> None:
         Simulation(World(), engine="cuda")  # type: ignore[arg-type]
 
 
-def test_an_engine_that_is_not_installed_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_engine_is_reported_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sim.engine.compiled", None)
     monkeypatch.delattr("sim.engine.compiled", raising=False)
     with pytest.raises(EngineError, match=r"pip install .*fast.*, or use engine='numpy'"):
         engine("numba")
 
 
-def test_auto_takes_numba_where_it_is_installed() -> None:
+def test_auto_takes_numba_if_it_is_installed() -> None:
     assert engine("auto") is engine("numba")
 
 

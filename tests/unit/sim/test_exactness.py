@@ -78,7 +78,7 @@ def check(origin: tuple[float, float], yaw: float, segments: list[tuple[float, f
 @example((0.0, 0.0), 0.0, [(1.0, 1.0, 2.0, 2.0), (2.0, 0.0, 2.0, 0.0)])  # a wall of no length
 @example((0.0, 0.0), 0.0, [(2.0, 0.0, 2.0, 2.0), (2.0, -2.0, 2.0, 0.0)])  # through a shared end
 @example((0.0, 0.0), 0.0, [(-2.0, -2.0, 2.0, -2.0), (2.0, -2.0, 2.0, 2.0)])  # at a corner
-def test_any_walls_at_all_are_met_where_rational_arithmetic_says(
+def test_beams_hit_any_walls_where_rational_arithmetic_says(
     origin: tuple[float, float], yaw: float, segments: list[tuple[float, float, float, float]]
 ) -> None:
     check(origin, yaw, segments)
@@ -86,7 +86,7 @@ def test_any_walls_at_all_are_met_where_rational_arithmetic_says(
 
 @settings(deadline=None, max_examples=150)
 @given(points, angles, st.floats(0.01, 20), st.integers(-3, 3), st.floats(0.01, 20), st.integers(-3, 3))
-def test_walls_that_graze_a_beam_or_lie_along_it_are_decided_exactly(
+def test_walls_that_a_beam_touches_or_runs_along_are_decided_exactly(
     origin: tuple[float, float], yaw: float, near: float, left: int, far: float, right: int
 ) -> None:
     """The wall's ends are on the beam, or a rounding error or three beside it."""
@@ -138,7 +138,7 @@ def test_a_beam_tangent_to_a_pillar_or_nearly_is_measured_to_a_picometre(
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_robot_inside_a_wall_or_a_pillar_sees_nothing_but_too_close(engine: str) -> None:
+def test_a_robot_inside_a_wall_or_a_pillar_measures_only_too_close(engine: str) -> None:
     for world in (
         World.from_segments([[-1.0, 0.0, 1.0, 0.0]]),
         World.from_segments([], circles=[[0.1, 0.1, 0.5]]),

@@ -152,7 +152,7 @@ def test_lidars_see_the_other_robots_and_the_movers() -> None:
     assert ranges[270] == np.inf
 
 
-def test_a_dead_lidar_sends_nothing_while_it_is_dead() -> None:
+def test_a_failed_lidar_sends_no_scan() -> None:
     subject = at(Pose(), ROOM, faults=Faults(dead=(Window(0.1, 0.2),)))
     state = start(subject)
     seen = []
@@ -176,7 +176,7 @@ def test_a_frozen_lidar_repeats_one_scan_with_new_stamps() -> None:
     assert not np.array_equal(scans[2].ranges, scans[3].ranges)
 
 
-def test_a_dead_sector_reads_nan_across_the_zero_too() -> None:
+def test_a_failed_sector_gives_nan_also_across_angle_zero() -> None:
     sector = DeadSector(math.radians(-10.5), math.radians(20.5), Window(0.0, 1.0))
     subject = at(Pose(), ROOM, lidar=LDS_01, faults=Faults(sectors=(sector,)))
     lost = np.flatnonzero(np.isnan(look(subject).ranges)).tolist()
@@ -234,12 +234,12 @@ def test_scan_angles_put_zero_ahead_and_left_positive(beam: int) -> None:
         ({"dropout": 1.5}, "dropout is 1.5; give a probability"),
     ],
 )
-def test_a_lidar_that_makes_no_sense_is_refused(change: dict[str, float], message: str) -> None:
+def test_an_invalid_lidar_is_refused(change: dict[str, float], message: str) -> None:
     with pytest.raises(SpecError, match=message):
         replace(LDS_01, **change)  # type: ignore[arg-type]
 
 
-def test_faults_that_make_no_sense_are_refused() -> None:
+def test_invalid_faults_are_refused() -> None:
     with pytest.raises(SpecError, match="give a start of 0 or more and a later end"):
         Window(2.0, 1.0)
     with pytest.raises(SpecError, match="give two angles in radians"):

@@ -11,14 +11,14 @@ from sim.log import LEFT_OUT, MOST_LETTERS, MOST_LINES, Log
 RUN = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)
 
 
-def test_lines_are_kept_in_order_and_empty_ones_are_not() -> None:
+def test_lines_are_kept_in_order_and_empty_lines_are_left_out() -> None:
     log = Log()
     for seconds, text in ((0.1, "first"), (0.2, "  "), (0.30004, "second")):
         log.add(seconds, text)
     assert log.lines() == ((0.1, "first"), (0.3, "second"))
 
 
-def test_of_a_flood_the_first_and_the_last_lines_are_kept() -> None:
+def test_the_first_and_the_last_lines_of_a_flood_are_kept() -> None:
     log = Log()
     for number in range(50_000):
         log.add(number / 1000, f"{number} {'x' * 1000}")
@@ -29,14 +29,14 @@ def test_of_a_flood_the_first_and_the_last_lines_are_kept() -> None:
     assert max(len(text) for _, text in lines) == MOST_LETTERS
 
 
-def test_as_many_lines_as_are_kept_are_no_flood() -> None:
+def test_a_log_of_at_most_the_kept_number_of_lines_is_complete() -> None:
     log = Log()
     for number in range(2 * MOST_LINES):
         log.add(0.0, str(number))
     assert [text for _, text in log.lines()] == [str(number) for number in range(2 * MOST_LINES)]
 
 
-def test_a_saved_run_keeps_its_lines_and_they_are_no_part_of_its_hash(tmp_path: Path) -> None:
+def test_a_saved_run_keeps_its_lines_and_its_hash_does_not_depend_on_them(tmp_path: Path) -> None:
     talking = replace(RUN, said=((0.2, "<b>näher</b>"),))
     talking.save(tmp_path / "run.npz")
     assert load_recording(tmp_path / "run.npz").said == talking.said

@@ -105,7 +105,7 @@ def test_speeds_and_accelerations_keep_within_their_limits() -> None:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_the_watchdog_stops_a_robot_that_hears_nothing(engine: str) -> None:
+def test_the_watchdog_stops_a_robot_without_commands(engine: str) -> None:
     spec = replace(FREE, watchdog=0.3)
     simulation = Simulation(NOWHERE, (spec,), engine=engine)  # type: ignore[arg-type]
     state = step(simulation, start(simulation), Command(1.0, 0.0))
@@ -146,7 +146,7 @@ def test_perfect_wheels_measure_the_truth() -> None:
 
 
 @pytest.mark.parametrize("command", [Command(0.5, 0.0), Command(0.4, 0.5), Command(0.0, 1.0)])
-def test_the_odometry_says_honestly_how_wrong_it_is(command: Command) -> None:
+def test_the_covariance_of_odometry_fits_its_errors(command: Command) -> None:
     """The errors of many robots, weighed with the covariance each reports, are chi-square of three degrees."""
     drift = OdometryDrift(linear=0.03, angular=0.03, veer=0.02)
     spec = replace(FREE, drift=drift)
@@ -181,19 +181,19 @@ def test_a_mover_goes_round_a_loop() -> None:
     assert simulation.movers_at(round(half * 1e9))[0][:2] == pytest.approx((0.5, 0.5))
 
 
-def test_the_seed_draws_where_a_mover_begins() -> None:
+def test_the_seed_decides_where_a_mover_begins() -> None:
     world = World.from_segments([], movers=[Mover(((0, 0), (4, 0))), Mover(((0, 1), (4, 1)))])
     begins = [tuple(x for x, _, _ in Simulation(world, seed=seed).movers_at(0)) for seed in (1, 1, 2)]
     assert begins[0] == begins[1] != begins[2]
     assert begins[0][0] != begins[0][1]
 
 
-def test_a_mover_of_one_point_stands_still() -> None:
+def test_a_mover_with_one_point_does_not_move() -> None:
     simulation = Simulation(World.from_segments([], movers=[Mover(((1.0, 2.0),))]))
     assert simulation.movers_at(10**12) == [(1.0, 2.0, 0.2)]
 
 
-def test_in_an_empty_world_nothing_is_near() -> None:
+def test_an_empty_world_has_no_nearest_obstacle() -> None:
     simulation = Simulation(NOWHERE)
     nearest = clearance(simulation, start(simulation))
     assert (nearest.distance, nearest.what) == (math.inf, "nothing")
@@ -217,12 +217,12 @@ def test_in_an_empty_world_nothing_is_near() -> None:
         ({"footprint": ((2, 2), (3, 2), (3, 3))}, "round \\(0, 0\\)"),
     ],
 )
-def test_a_robot_that_makes_no_sense_is_refused(change: dict[str, object], message: str) -> None:
+def test_an_invalid_robot_is_refused(change: dict[str, object], message: str) -> None:
     with pytest.raises(SpecError, match=message):
         replace(RobotSpec(), **change)  # type: ignore[arg-type]
 
 
-def test_a_drift_that_makes_no_sense_is_refused() -> None:
+def test_an_invalid_drift_is_refused() -> None:
     with pytest.raises(SpecError, match="drift: veer is -1; give a standard deviation"):
         OdometryDrift(veer=-1)
 
@@ -237,19 +237,19 @@ def test_a_drift_that_makes_no_sense_is_refused() -> None:
         ({"seed": 0.5}, "seed is 0.5; give a whole number"),
     ],
 )
-def test_a_simulation_that_makes_no_sense_is_refused(more: dict[str, object], message: str) -> None:
+def test_an_invalid_simulation_is_refused(more: dict[str, object], message: str) -> None:
     with pytest.raises(SpecError, match=message):
         Simulation(NOWHERE, **more)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("dt", [0.0, -1.0, math.nan, math.inf, 1e9])
-def test_a_step_that_makes_no_sense_is_refused(dt: float) -> None:
+def test_an_invalid_step_is_refused(dt: float) -> None:
     simulation = Simulation(NOWHERE)
     with pytest.raises(SpecError, match="give a step in seconds, above 0"):
         step(simulation, start(simulation), Command(), dt)
 
 
-def test_commands_that_make_no_sense_are_refused() -> None:
+def test_invalid_commands_are_refused() -> None:
     one = Simulation(NOWHERE)
     two = Simulation(NOWHERE, (RobotSpec(name="a"), RobotSpec(name="b")))
     with pytest.raises(SpecError, match="the command for robot 'robot' is not finite"):
@@ -260,7 +260,7 @@ def test_commands_that_make_no_sense_are_refused() -> None:
         step(two, start(two), {"c": Command()})
 
 
-def test_worlds_that_make_no_sense_are_refused() -> None:
+def test_invalid_worlds_are_refused() -> None:
     for build, message in (
         (lambda: World.from_segments([[0, 0, 1, math.nan]]), "segments hold a number that is not within"),
         (lambda: World.from_segments([[0, 0, 1, 1e9]]), "segments hold a number that is not within"),

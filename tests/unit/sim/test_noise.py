@@ -19,7 +19,7 @@ NORMAL = statistics.NormalDist()
 
 
 @given(st.integers(0, 2**64 - 1))
-def test_a_word_becomes_the_normal_number_of_its_share(word: int) -> None:
+def test_a_random_word_becomes_the_normal_quantile_of_its_uniform_number(word: int) -> None:
     raw = np.array([word], dtype=np.uint64)
     share = float(uniform(raw)[0])
     assert 0.0 < share < 1.0
@@ -35,7 +35,7 @@ def test_the_normal_numbers_have_the_moments_of_their_distribution() -> None:
     assert abs((sample**4).mean() - 3.0) < 5 * math.sqrt(96 / n)
 
 
-def test_the_words_of_a_key_never_change() -> None:
+def test_the_random_words_of_a_key_never_change() -> None:
     blocks = words_of_ticks(key_of(2, "b", "c"), 9, 5)
     raw = np.concatenate((words(key_of(1, "robot", "range"), 7, 100), blocks.ravel()))
     hashes = [
@@ -44,7 +44,7 @@ def test_the_words_of_a_key_never_change() -> None:
     assert hashes == ["1526e530d2c0bbe0283f12ad23ce4a9d", "88c9b7601b545f95592240fef5302c5e"]
 
 
-def test_ticks_have_words_of_their_own_whether_asked_for_at_once_or_singly() -> None:
+def test_each_tick_has_its_own_random_words_drawn_together_or_singly() -> None:
     key = key_of(3, "robot", "odometry")
     together = words_of_ticks(key, 10, 6)
     singly = [words_of_ticks(key, 10 + tick, 1)[0] for tick in range(6)]
@@ -53,7 +53,7 @@ def test_ticks_have_words_of_their_own_whether_asked_for_at_once_or_singly() -> 
     assert not np.array_equal(words(key, 1, 4), words(key, 2, 4))
 
 
-def test_importing_the_simulator_is_light() -> None:
+def test_importing_the_simulator_imports_no_heavy_library() -> None:
     """Neither numba nor a plotting library, ROS or pandas comes along, and the array engine needs none of them."""
     script = """
 import sys

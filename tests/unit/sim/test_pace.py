@@ -14,7 +14,7 @@ def look(pace: Pace, now: float, speed: float) -> float:
     return seconds
 
 
-def test_time_begins_with_the_first_look() -> None:
+def test_time_begins_with_the_first_call() -> None:
     pace = Pace(0.02)
     assert look(pace, 1000.0, 2.0) == 0.0
     assert not pace.late
@@ -22,7 +22,7 @@ def test_time_begins_with_the_first_look() -> None:
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0])
-def test_a_delay_is_made_up_for_by_parts_that_no_watchdog_notices(speed: float) -> None:
+def test_a_delay_is_caught_up_in_parts_shorter_than_a_watchdog(speed: float) -> None:
     pace = Pace(0.02)
     look(pace, 0.0, speed)
     parts = [look(pace, 0.2, speed) for _ in range(10)]
@@ -31,7 +31,7 @@ def test_a_delay_is_made_up_for_by_parts_that_no_watchdog_notices(speed: float) 
     assert not pace.late
 
 
-def test_what_is_more_than_a_leap_is_told_and_forgotten() -> None:
+def test_a_delay_beyond_the_longest_leap_is_reported_and_dropped() -> None:
     pace = Pace(0.02)
     look(pace, 0.0, 2.0)
     first = look(pace, 60.0, 2.0)
@@ -47,7 +47,7 @@ def test_a_long_tick_and_a_high_speed_are_reached(tick: float, speed: float) -> 
     assert gone == pytest.approx(30.0 * speed)
 
 
-def test_a_pause_and_a_new_start_are_not_made_up_for() -> None:
+def test_a_pause_and_a_new_start_are_not_caught_up() -> None:
     pace = Pace(0.02)
     look(pace, 0.0, 1.0)
     assert pace.due(5.0, 1.0, paused=True) == 0.0

@@ -69,7 +69,7 @@ def test_a_recording_has_a_row_for_every_state(recording: Recording) -> None:
     assert recording.clearances.shape == recording.collided.shape == (61, 2)
 
 
-def test_a_dead_lidar_leaves_no_scan_in_the_recording(recording: Recording) -> None:
+def test_a_failed_lidar_leaves_no_scan_in_the_recording(recording: Recording) -> None:
     rows = recording.scans[0].rows.tolist()
     assert rows == [row for row in range(60) if not 10 <= row < 15]
     assert recording.scans[0].ranges.shape == (55, 360)
@@ -85,7 +85,7 @@ def test_a_saved_recording_loads_to_the_same_bits(recording: Recording, saved: P
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_replay_finds_every_state_again(recording: Recording, saved: Path, engine: Any) -> None:
+def test_a_replay_computes_every_state_again(recording: Recording, saved: Path, engine: Any) -> None:
     states = list(replay(load_recording(saved), engine=engine))
     poses = [[(r.pose.x, r.pose.y, r.pose.theta) for r in state.robots] for state in states]
     np.testing.assert_array_equal(np.array(poses), recording.poses)
@@ -99,13 +99,13 @@ def test_a_replay_finds_every_state_again(recording: Recording, saved: Path, eng
         np.testing.assert_array_equal(scan.ranges, ranges)
 
 
-def test_the_hash_tells_runs_apart_and_engines_not(recording: Recording) -> None:
+def test_the_hash_differs_between_runs_and_not_between_engines(recording: Recording) -> None:
     again = run(everything("numba"), wander(4, ("a", "b")), 6.0)
     other = run(everything(), wander(5, ("a", "b")), 6.0)
     assert again.sha256() == recording.sha256() != other.sha256()
 
 
-def test_a_recorder_notes_what_was_and_what_was_not_commanded() -> None:
+def test_a_recorder_stores_commands_and_ticks_without_a_command() -> None:
     simulation = Simulation(random_world(1), (RobotSpec(name="a", watchdog=math.inf),))
     recorder = Recorder(simulation)
     state = step(simulation, start(simulation), Command(0.2, 0.1), 0.1)
@@ -126,7 +126,7 @@ def test_a_recording_that_begins_in_the_middle_is_not_replayed() -> None:
         next(replay(recording))
 
 
-def test_a_file_that_is_not_there_or_is_something_else_is_named(tmp_path: Path) -> None:
+def test_a_missing_file_and_a_file_of_another_kind_are_named(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=r"none\.npz: there is no such file"):
         load_recording(tmp_path / "none.npz")
     other = tmp_path / "other.npz"
@@ -148,7 +148,7 @@ def test_a_file_that_is_not_there_or_is_something_else_is_named(tmp_path: Path) 
         ("tick", "soon"),
     ],
 )
-def test_a_recording_of_no_possible_run_is_refused(saved: Path, what: str, change: object) -> None:
+def test_a_recording_that_no_run_can_produce_is_refused(saved: Path, what: str, change: object) -> None:
     with np.load(saved) as file:
         arrays = dict(file)
     header = json.loads(arrays["header"].tobytes())

@@ -43,7 +43,7 @@ def write(folder: Path, text: str | bytes) -> Path:
     return path
 
 
-def test_a_world_file_gives_every_thing_its_place_its_name_and_metres(tmp_path: Path) -> None:
+def test_each_object_of_a_world_file_has_place_name_and_metres(tmp_path: Path) -> None:
     world = load_world(write(tmp_path, GOOD))
     assert world.name == "test room"
     assert len(world.segments) == 2 + 4 + 4 + 3
@@ -62,7 +62,7 @@ def test_a_world_file_gives_every_thing_its_place_its_name_and_metres(tmp_path: 
     assert not world.segments.flags.writeable
 
 
-def test_a_world_needs_few_words(tmp_path: Path) -> None:
+def test_a_world_file_needs_only_one_wall(tmp_path: Path) -> None:
     world = load_world(write(tmp_path, "walls: [[0, 0, 1e0, 0]]\ngoals:\n"))
     assert (world.name, len(world.segments), len(world.starts)) == ("world", 1, 1)
 
@@ -163,7 +163,7 @@ BAD: list[tuple[str | bytes, int | None, str]] = [
 
 
 @pytest.mark.parametrize(("text", "line", "words"), BAD, ids=range(len(BAD)))
-def test_a_malformed_world_is_told_by_file_line_and_words(
+def test_a_malformed_world_is_reported_with_file_line_and_error(
     tmp_path: Path, text: str | bytes, line: int | None, words: str
 ) -> None:
     path = write(tmp_path, text)
@@ -175,7 +175,7 @@ def test_a_malformed_world_is_told_by_file_line_and_words(
     assert caught.value.remedy
 
 
-def test_a_file_that_is_not_there_or_too_large_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_or_too_large_file_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(WorldError, match=r"cannot be read .No such file"):
         load_world(tmp_path / "none.yaml")
     with pytest.raises(WorldError, match=r"cannot be read .Is a directory"):
@@ -185,7 +185,7 @@ def test_a_file_that_is_not_there_or_too_large_is_told(tmp_path: Path, monkeypat
         load_world(write(tmp_path, GOOD))
 
 
-def test_a_world_too_large_to_use_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_world_too_large_to_use_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sim.worldfile.MOST_THINGS", 5)
     with pytest.raises(WorldError, match=r"there are 8 walls in all\. Keep to 5"):
         load_world(write(tmp_path, "boxes:\n- {size: [1, 1]}\n- {size: [2, 2]}\n"))
@@ -215,7 +215,7 @@ def test_any_bytes_are_a_world_or_a_clear_error(tmp_path: Path, data: bytes) -> 
 @pytest.mark.fuzz
 @fuzz
 @given(st.integers(0, len(GOOD) - 1), st.integers(0, 20), st.text(max_size=6))
-def test_a_good_file_with_a_slip_is_a_world_or_a_clear_error(tmp_path: Path, at: int, cut: int, put: str) -> None:
+def test_a_good_file_with_an_error_is_a_world_or_a_clear_error(tmp_path: Path, at: int, cut: int, put: str) -> None:
     text = GOOD[:at] + put + GOOD[at + cut :]
     assert outcome(write(tmp_path, text.encode("utf-8", "surrogatepass"))).startswith(str(tmp_path))
 

@@ -51,7 +51,7 @@ def test_reset_forgets_commands_that_wait() -> None:
     assert sent.state.robots[0].command == Command()
 
 
-def test_the_same_commands_give_the_same_run_however_it_is_cut() -> None:
+def test_the_same_commands_give_the_same_run_in_steps_of_any_length() -> None:
     simulation = Simulation(World(), seed=3)
     whole, pieces = Driver(simulation), Driver(simulation)
     for driver in (whole, pieces):
@@ -60,7 +60,7 @@ def test_the_same_commands_give_the_same_run_however_it_is_cut() -> None:
     assert [sent.state for count in (1, 19, 20) for sent in pieces.run(count)] == states
 
 
-def test_due_is_true_once_a_period() -> None:
+def test_due_is_true_once_in_each_period() -> None:
     instants = list(range(0, 2_000_000_001, 30_000_000))
     happened = [due(before, now, 10.0) for before, now in pairwise(instants)]
     assert sum(happened) == 19
@@ -82,7 +82,7 @@ def until(condition: Callable[[], bool], bridge: Bridge) -> None:
         bridge.resume()  # takes as long as the thread needs to answer: no sleep
 
 
-def test_it_runs_pauses_steps_and_resets(bridge: Bridge) -> None:
+def test_the_bridge_runs_pauses_steps_and_resets(bridge: Bridge) -> None:
     until(lambda: bridge.driver.state.time_ns > 1_000_000_000, bridge)
     bridge.pause()
     paused = bridge.driver.state.time_ns
@@ -93,7 +93,7 @@ def test_it_runs_pauses_steps_and_resets(bridge: Bridge) -> None:
     assert bridge.driver.state.time_ns == 0
 
 
-def test_the_caller_s_rclpy_is_left_alone(bridge: Bridge) -> None:
+def test_a_bridge_does_not_use_the_default_rclpy_context(bridge: Bridge) -> None:
     assert bridge.running
     assert not rclpy.ok()
     rclpy.init()
@@ -101,7 +101,7 @@ def test_the_caller_s_rclpy_is_left_alone(bridge: Bridge) -> None:
     assert bridge.running
 
 
-def test_a_stopped_bridge_is_gone_and_says_so(bridge: Bridge) -> None:
+def test_a_stopped_bridge_raises_an_error_that_says_so(bridge: Bridge) -> None:
     bridge.stop()
     bridge.stop()
     assert not bridge.running
@@ -109,7 +109,9 @@ def test_a_stopped_bridge_is_gone_and_says_so(bridge: Bridge) -> None:
         bridge.reset()
 
 
-def test_the_live_view_looks_on_and_drives(bridge: Bridge, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_live_view_shows_and_drives_the_robot_of_the_bridge(
+    bridge: Bridge, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("AUTOGRADER_GRADING", raising=False)
 
     async def watch() -> LiveView:
@@ -143,7 +145,7 @@ def test_a_view_may_be_opened_long_after_the_bridge(bridge: Bridge, monkeypatch:
     assert view.time == pytest.approx(bridge.driver.state.time_ns / 1e9)
 
 
-def test_settings_that_make_no_sense_leave_nothing_behind(ros_domain: int) -> None:
+def test_invalid_settings_leave_nothing_behind(ros_domain: int) -> None:
     with pytest.raises(WorldError, match="nowhere"):
         Bridge("nowhere.yaml", domain_id=ros_domain)
     with pytest.raises(SpecError, match="choose one of lds_01"):

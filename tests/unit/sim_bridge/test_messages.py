@@ -54,7 +54,7 @@ def test_ranges_keep_their_bits(ranges: list[float]) -> None:
     assert scan_to_msg(given_scan).ranges.tobytes() == given_scan.ranges.tobytes()
 
 
-def test_the_frame_can_be_another() -> None:
+def test_the_frame_of_a_scan_can_be_chosen() -> None:
     assert scan_to_msg(scan([1.0]), "alpha/laser").header.frame_id == "alpha/laser"
 
 
@@ -85,7 +85,7 @@ def test_a_quaternion_turns_by_the_yaw_about_z_alone(yaw: float) -> None:
 
 
 @given(st.floats(-10, 10), st.floats(-10, 10))
-def test_a_command_survives_as_twist_and_as_twist_stamped(linear: float, angular: float) -> None:
+def test_a_command_is_the_same_after_a_way_through_twist_and_twist_stamped(linear: float, angular: float) -> None:
     command = Command(linear, angular)
     twist, stamped = Twist(), TwistStamped()
     twist.linear.x, twist.angular.z = linear, angular
@@ -93,7 +93,7 @@ def test_a_command_survives_as_twist_and_as_twist_stamped(linear: float, angular
     assert twist_to_command(twist) == twist_to_command(stamped) == command
 
 
-def test_what_a_differential_drive_cannot_do_is_left_out() -> None:
+def test_speeds_that_a_differential_drive_cannot_have_are_left_out() -> None:
     msg = Twist()
     msg.linear.y = msg.linear.z = msg.angular.x = 5.0
     assert twist_to_command(msg) == Command()

@@ -56,7 +56,7 @@ def test_plot_and_export_take_a_saved_recording(recording: Recording, tmp_path: 
         (["picture", str(ROOT / "LICENSE"), "out.png"], 1, "LICENSE"),
     ],
 )
-def test_misuse_is_named(
+def test_wrong_calls_of_the_command_line_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], code: int, message: str
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -37,7 +37,7 @@ def test_a_fast_gif_has_fewer_frames(recording: Recording, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(("speed", "fps"), [(0.0, 10.0), (1.0, 0.0), (math.nan, 10.0), (1.0, 100.0)])
-def test_a_gif_of_no_sense_is_refused(recording: Recording, tmp_path: Path, speed: float, fps: float) -> None:
+def test_an_invalid_gif_setting_is_refused(recording: Recording, tmp_path: Path, speed: float, fps: float) -> None:
     with pytest.raises(ExportError, match="makes no sense"):
         to_gif(recording, tmp_path / "run.gif", speed=speed, fps=fps)
 
@@ -106,7 +106,7 @@ def test_a_bag_holds_every_message_in_the_order_of_time(recording: Recording, tm
     assert {(command.linear.x, command.angular.z) for command in commands} == {(0.3, 0.2)}
 
 
-def test_a_bag_is_not_written_over(recording: Recording, tmp_path: Path) -> None:
+def test_an_existing_bag_is_not_overwritten(recording: Recording, tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     with pytest.raises(ExportError, match="run: there is something already"):
         to_mcap(recording, tmp_path / "run.mcap")
@@ -120,7 +120,7 @@ def test_without_rosbags_the_message_says_what_to_install(
         to_mcap(recording, tmp_path / "run.mcap")
 
 
-def test_the_ending_says_what_is_written(recording: Recording, tmp_path: Path) -> None:
+def test_the_ending_of_the_file_name_selects_the_format(recording: Recording, tmp_path: Path) -> None:
     assert export(recording, tmp_path / "a" / "run.html").is_file()
     assert (export(recording, tmp_path / "b" / "run.mcap") / "metadata.yaml").is_file()
     assert export(recording, tmp_path / "c" / "run.gif").is_file()

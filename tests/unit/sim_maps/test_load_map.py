@@ -100,7 +100,9 @@ def test_the_origin_moves_and_turns_it(tmp_path: Path) -> None:
         (255, {"mode": "raw"}, False),
     ],
 )
-def test_what_is_a_wall_follows_map_server(tmp_path: Path, shade: int, fields: dict[str, str], is_wall: bool) -> None:
+def test_the_threshold_of_a_wall_is_that_of_map_server(
+    tmp_path: Path, shade: int, fields: dict[str, str], is_wall: bool
+) -> None:
     raw = fields.get("mode") == "raw"
     free, wall = (0, 100) if raw else (254, 0)
     if fields.get("negate") == "1":
@@ -111,7 +113,7 @@ def test_what_is_a_wall_follows_map_server(tmp_path: Path, shade: int, fields: d
     assert len(world.segments) == (8 if is_wall else 4)
 
 
-def test_pgm_in_letters_pgm_in_16_bits_and_png_say_the_same(tmp_path: Path) -> None:
+def test_ascii_pgm_16_bit_pgm_and_png_give_the_same_map(tmp_path: Path) -> None:
     letters = b"P2 # a comment\n8 6\n255\n" + " ".join(map(str, ROOM.ravel())).encode()
     wide = b"P5\n8 6\n65535\n" + (ROOM.astype(">u2") * 257).tobytes()
     grey, colour = Image.fromarray(ROOM), Image.fromarray(ROOM).convert("RGB")
@@ -120,7 +122,7 @@ def test_pgm_in_letters_pgm_in_16_bits_and_png_say_the_same(tmp_path: Path) -> N
         assert np.array_equal(load_map(write(tmp_path, picture, name=name)).segments, expected)
 
 
-def test_in_the_mode_scale_what_is_transparent_is_unknown(tmp_path: Path) -> None:
+def test_transparent_pixels_are_unknown_in_the_mode_scale(tmp_path: Path) -> None:
     pixels = np.dstack([ROOM, ROOM, ROOM, np.full_like(ROOM, 255)])
     pixels[0, 0, 3] = 0
     path = write(tmp_path, png(Image.fromarray(pixels)), name="map.png", mode="scale")
@@ -135,7 +137,7 @@ def test_the_course_s_map_loads_and_tolerance_straightens_it() -> None:
     assert exact.bounds == pytest.approx(simpler.bounds, abs=0.05)
 
 
-def test_load_takes_worlds_too() -> None:
+def test_load_also_takes_worlds() -> None:
     assert load(ROOT / "assets" / "worlds" / "lab.yaml").name == "the lab"
 
 
@@ -219,7 +221,7 @@ def test_a_broken_picture_is_refused_by_name(tmp_path: Path, picture: bytes, mes
     assert str(tmp_path / "map.pgm") in str(caught.value)
 
 
-def test_noise_is_no_floor_plan(tmp_path: Path) -> None:
+def test_a_picture_of_noise_is_refused(tmp_path: Path) -> None:
     noise = np.indices((400, 600)).sum(axis=0) % 2 * 254
     with pytest.raises(WorldError, match="an outline of 480,000 edges is no floor plan"):
         load_map(write(tmp_path, pgm(noise.astype(np.uint8))))
@@ -241,21 +243,21 @@ def test_noise_is_no_floor_plan(tmp_path: Path) -> None:
         (b"a: !!python/object:os.system {}\n", "missing"),
     ],
 )
-def test_what_is_no_yaml_mapping_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
+def test_a_file_that_is_no_yaml_mapping_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "map.yaml").write_bytes(content)
     with pytest.raises(WorldError) as caught:
         load_map(tmp_path / "map.yaml")
     assert message in str(caught.value)
 
 
-def test_a_path_that_leads_nowhere_is_refused(tmp_path: Path) -> None:
+def test_a_map_path_that_is_missing_or_a_folder_is_refused(tmp_path: Path) -> None:
     for path in (tmp_path / "none.yaml", tmp_path):
         with pytest.raises(WorldError, match="can't be read"):
             load_map(path)
 
 
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
-def test_a_tolerance_that_makes_no_sense_is_refused(tmp_path: Path, tolerance: float) -> None:
+def test_an_invalid_tolerance_is_refused(tmp_path: Path, tolerance: float) -> None:
     with pytest.raises(WorldError, match="tolerance"):
         load_map(write(tmp_path), tolerance=tolerance)
 

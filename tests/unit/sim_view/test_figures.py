@@ -78,7 +78,7 @@ def test_a_track_says_how_long_it_is_and_what_happened(recording: Recording) -> 
     assert f"{collisions} collision" in picture.alt
 
 
-def test_the_heading_of_several_robots_has_no_room_for_what_was_nearest(recording: Recording) -> None:
+def test_the_heading_for_several_robots_omits_the_nearest_obstacle(recording: Recording) -> None:
     several, one = plot(recording), plot(recording, robot="two")
     nearest = "never nearer than"
     assert nearest not in " ".join(texts(several.figure.axes[0]))
@@ -113,7 +113,7 @@ def test_each_robot_has_the_colour_of_its_track(recording: Recording) -> None:
         )
 
 
-def test_a_mark_writes_the_instant_and_the_note(recording: Recording) -> None:
+def test_a_mark_shows_its_instant_and_its_note(recording: Recording) -> None:
     picture = plot(recording, mark=3.04, note="0.08 m from the north wall")
     assert "t = 3.0 s\n0.08 m from the north wall" in texts(picture.figure.axes[0])
     assert "Marked: t = 3.0 s, 0.08 m from the north wall" in picture.alt
@@ -141,9 +141,7 @@ def test_a_mark_outside_the_recording_takes_its_nearest_instant(recording: Recor
         ({"theme": "sepia"}, "no theme 'sepia': choose one of light, dark"),
     ],
 )
-def test_arguments_that_make_no_sense_are_named(
-    recording: Recording, arguments: dict[str, str | float], message: str
-) -> None:
+def test_invalid_arguments_are_named(recording: Recording, arguments: dict[str, str | float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         plot(recording, **arguments)  # type: ignore[arg-type]
 
@@ -177,7 +175,7 @@ def test_a_world_without_walls_can_be_shown() -> None:
     assert show(World()).png().startswith(b"\x89PNG")
 
 
-def test_furniture_is_solid_and_the_room_is_not(world: World) -> None:
+def test_furniture_is_filled_and_the_room_is_not(world: World) -> None:
     room, solid = outlines(world)
     assert np.ptp(room, axis=0).tolist() == [12.0, 8.0]
     assert len(solid) == 4
@@ -198,7 +196,7 @@ def test_text_has_the_contrast_that_wcag_asks_for(theme: object) -> None:
 
 
 @pytest.mark.slow
-def test_nothing_imports_pyplot_or_is_imported_by_the_core() -> None:
+def test_the_simulator_core_imports_no_drawing_library_and_the_view_no_pyplot() -> None:
     code = """
 import sys, sim
 assert not {"matplotlib", "rclpy", "ipywidgets", "numba", "PIL"} & set(sys.modules), sorted(sys.modules)

@@ -66,7 +66,7 @@ def widgets_of(view: LiveView) -> dict[str, Any]:
     return found
 
 
-def test_it_plays_on_the_loop_and_gives_it_back(world: World) -> None:
+def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> None:
     async def play() -> None:
         view = live(world, go)
         assert isinstance(view, LiveView)
@@ -99,7 +99,7 @@ def test_steps_are_exact(world: World) -> None:
     assert len(view.recording) == 31
 
 
-def test_the_past_can_be_visited_and_time_goes_on_from_there(world: World) -> None:
+def test_a_view_can_seek_to_the_past_and_go_on_from_there(world: World) -> None:
     view = paused(world, go)
     view.step(2.0)
     newest = widgets_of(view)["Image"].value
@@ -122,7 +122,7 @@ def test_reset_forgets_the_run(world: World) -> None:
     assert widgets_of(view)["Image"].value == first
 
 
-def test_the_pad_takes_over_until_the_code_gets_the_robot_back(world: World) -> None:
+def test_the_pad_drives_until_the_robot_is_given_back_to_the_callback(world: World) -> None:
     view = paused(world, go)
     view.step(1.0)
     pad = widgets_of(view)
@@ -137,7 +137,7 @@ def test_the_pad_takes_over_until_the_code_gets_the_robot_back(world: World) -> 
     assert view.recording.velocities[-1, 0].tolist() == pytest.approx([0.3, 0.0])
 
 
-def test_without_a_callback_there_is_nobody_to_give_the_robot_back_to(world: World) -> None:
+def test_without_a_callback_the_robot_cannot_be_given_back(world: World) -> None:
     assert "Let your code drive" not in widgets_of(paused(world))
 
 
@@ -157,13 +157,13 @@ def test_an_exception_of_the_callback_stops_time_and_is_shown_without_our_own_li
     assert widgets_of(view)["Output"].outputs == ()
 
 
-def test_a_callback_that_returns_something_else_hears_what_is_wanted(world: World) -> None:
+def test_a_callback_that_returns_another_type_is_an_error_with_the_right_type(world: World) -> None:
     view = paused(world, lambda scan: 0.3)
     view.step(1.0)
     assert "must return a Command or None, not float" in widgets_of(view)["Output"].outputs[0]["text"]
 
 
-def test_a_callback_hears_each_scan_once(world: World) -> None:
+def test_a_callback_gets_each_scan_once(world: World) -> None:
     stamps: list[int] = []
     view = paused(world, lambda scan: stamps.append(scan.stamp_ns))
     view.step(1.0)
@@ -180,7 +180,7 @@ def test_a_recording_is_played_by_the_page_alone(recording: Recording) -> None:
     assert shown["image/png"]
 
 
-def test_the_slider_seeks_while_time_stands_still(world: World) -> None:
+def test_the_slider_seeks_while_time_is_paused(world: World) -> None:
     view = paused(world, go)
     view.step(2.0)
     slider = widgets_of(view)["FloatSlider"]
@@ -189,7 +189,9 @@ def test_the_slider_seeks_while_time_stands_still(world: World) -> None:
     assert view.time == 1.0
 
 
-def test_it_is_silent_under_a_grader(world: World, recording: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_view_is_a_picture_while_a_notebook_is_graded(
+    world: World, recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("AUTOGRADER_GRADING", "1")
 
     async def make() -> list[Any]:
@@ -200,7 +202,7 @@ def test_it_is_silent_under_a_grader(world: World, recording: Recording, monkeyp
     assert all(isinstance(view, Picture) for view in elsewhere(asyncio.run, make()))
 
 
-def test_without_a_loop_it_stands_still(world: World) -> None:
+def test_without_an_event_loop_the_view_does_not_play(world: World) -> None:
     view = elsewhere(live, world, go)
     assert isinstance(view, LiveView)
     assert not view.playing
@@ -208,7 +210,7 @@ def test_without_a_loop_it_stands_still(world: World) -> None:
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), 1000.0])
-def test_a_speed_that_makes_no_sense_is_refused(world: World, speed: float) -> None:
+def test_an_invalid_speed_is_refused(world: World, speed: float) -> None:
     with pytest.raises(ValueError, match="makes no sense"):
         live(world, speed=speed)
 
@@ -218,7 +220,7 @@ def test_a_recording_takes_no_callback(recording: Recording) -> None:
         live(recording, go)
 
 
-def test_a_forgotten_run_ends() -> None:
+def test_a_session_stops_growing_at_its_longest_time() -> None:
     session = Session(Simulation(World(), tick=1.0))
     session.advance(LONGEST_NS + 5 * SECOND)
     assert session.end_ns == LONGEST_NS

@@ -30,7 +30,7 @@ def unpack(packed: dict[str, Any]) -> npt.NDArray[np.float64]:
     return whole
 
 
-def test_a_table_comes_back_rounded_to_its_steps() -> None:
+def test_a_decoded_table_is_rounded_to_its_steps() -> None:
     table = np.random.default_rng(7).normal(scale=40.0, size=(50, 3))
     assert unpack(pack(table, 0.001)) == pytest.approx(table, abs=0.00051)
     assert unpack(pack([2.5, -1.0], 0.5)).tolist() == [[2.5], [-1.0]]
@@ -55,7 +55,7 @@ def test_a_run_keeps_its_poses_scans_commands_and_collisions(recording: Recordin
     assert (shown["broken"], unpack(shown["values"])[:, 0].tolist()) == (1.0, [0.5, -1000.0])
 
 
-def test_a_minute_in_the_lab_is_small_and_a_fleet_for_an_hour_is_thinned_out() -> None:
+def test_the_data_of_a_minute_are_small_and_of_a_fleet_for_an_hour_are_thinned_out() -> None:
     world = load_world(ROOT / "assets" / "worlds" / "lab.yaml")
     minute = run(Simulation(world), lambda state, scans: Command(0.3, 0.2), 60.0)
     assert len(encode(minute, "")) < MOST_BYTES / 3
@@ -80,7 +80,7 @@ def said(text: str) -> list[tuple[float, str]]:
     return list(zip(unpack(data["times"])[:, 0].tolist(), texts, strict=True))
 
 
-def test_what_the_programs_wrote_comes_back_with_its_times(recording: Recording) -> None:
+def test_output_of_programs_is_decoded_with_its_times(recording: Recording) -> None:
     evil = "</script><script>alert(1)</script>"
     text = encode(replace(recording, said=((0.1, "near"), (1.5, evil))), "")
     assert said(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), evil)]
@@ -88,7 +88,7 @@ def test_what_the_programs_wrote_comes_back_with_its_times(recording: Recording)
     assert json.loads(encode(recording, ""))["said"] is None
 
 
-def test_a_flood_of_lines_that_nothing_makes_small_is_bounded(recording: Recording) -> None:
+def test_a_flood_of_lines_that_cannot_be_compressed_is_bounded(recording: Recording) -> None:
     draw = random.Random(1)
     flood = tuple((0.001 * n, "".join(chr(draw.randrange(0x4E00, 0x9FFF)) for _ in range(300))) for n in range(2001))
     text = encode(replace(recording, said=flood), "")

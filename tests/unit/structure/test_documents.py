@@ -53,20 +53,20 @@ def commands(document: str) -> list[list[str]]:
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
-def test_each_path_that_a_document_names_is_there(document: str) -> None:
+def test_each_path_that_a_document_names_exists(document: str) -> None:
     named = {path for path in paths(document) if not path.startswith(MADE) and path not in IN_A_CHAPTER}
     beside = (ROOT, (ROOT / document).parent)
     missing = {path for path in named if not any(any(folder.glob(path)) for folder in beside)}
     assert missing <= {"package.xml", "setup.py"}
 
 
-def test_the_documents_name_paths_at_all() -> None:
+def test_the_documents_name_paths() -> None:
     assert len(paths("CONTRIBUTING.md")) > 40
     assert len(commands("README.md")) > 4
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
-def test_each_command_that_a_document_names_is_there(document: str) -> None:
+def test_each_command_that_a_document_names_exists(document: str) -> None:
     for words in commands(document):
         command: click.Command = group
         context = click.Context(group)
@@ -79,7 +79,7 @@ def test_each_command_that_a_document_names_is_there(document: str) -> None:
         assert given <= options, f"{document}: {command.name} has no {given - options}"
 
 
-def test_each_make_target_that_a_document_names_is_there() -> None:
+def test_each_make_target_that_a_document_names_exists() -> None:
     listed = subprocess.run(["make", "-s", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     targets = {*re.findall(r"make ([a-z-]+)", listed), "lint"}
     for document in DOCUMENTS:
@@ -94,7 +94,7 @@ def table(heading: str) -> list[list[str]]:
     return rows[2:]
 
 
-def test_a_wish_needs_at_most_two_files() -> None:
+def test_each_row_of_i_want_to_names_at_most_two_files() -> None:
     rows = table("I want to ...")
     assert len(rows) > 8
     for wish, opened in rows:
@@ -102,7 +102,7 @@ def test_a_wish_needs_at_most_two_files() -> None:
         assert 1 <= len(files) <= 2, wish
 
 
-def test_the_fixtures_are_those_of_the_plug_in() -> None:
+def test_the_listed_fixtures_are_those_of_the_plug_in() -> None:
     source = (ROOT / "autograder/grading/plugin.py").read_text(encoding="utf-8")
     fixtures = set(re.findall(r"@pytest\.fixture.*\n    def (\w+)", source))
     assert {row[0].strip("`") for row in table("Fixtures")} == fixtures != set()

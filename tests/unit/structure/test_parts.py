@@ -32,7 +32,7 @@ def graph() -> grimp.ImportGraph:
     return grimp.build_graph("autograder", "sim", cache_dir=None)
 
 
-def test_the_picture_is_that_of_its_source() -> None:
+def test_the_picture_is_drawn_from_its_source() -> None:
     drawn = runpy.run_path(str(FIGURES / "parts.py"))["svg"](SOURCE)
     assert (FIGURES / "parts.svg").read_text() == drawn, "run `python assets/figures/parts.py`"
 
@@ -49,14 +49,14 @@ def test_each_arrow_is_an_import(graph: grimp.ImportGraph, arrow: str) -> None:
     assert graph.direct_import_exists(importer=importer, imported=imported, as_packages=True)
 
 
-def test_what_the_picture_puts_in_the_sandbox_is_kept_from_the_trusted_side() -> None:
+def test_modules_that_the_picture_puts_in_the_sandbox_may_not_be_imported_by_trusted_code() -> None:
     (contract,) = (contract for contract in CONTRACTS if contract["id"] == "sandboxed")
     drawn = {f"{module(name)}.{host}" for name, part in SOURCE["packages"].items() for host in part.get("sandbox", ())}
     assert drawn
     assert drawn <= set(contract["protected_modules"])
 
 
-def test_each_step_of_the_way_stands_on_a_part() -> None:
+def test_each_step_of_a_submission_is_drawn_at_a_part() -> None:
     placed = {step for part in SOURCE["packages"].values() for step in part.get("steps", ())}
     placed |= {number for number, step in enumerate(SOURCE["way"], start=1) if step.get("module") in SOURCE["modules"]}
     assert placed == set(range(1, len(SOURCE["way"]) + 1))

@@ -5,14 +5,14 @@ from __future__ import annotations
 from autograder.talk import MOST_LETTERS, MOST_ROWS, Row, Talk
 
 
-def test_rows_are_taken_once() -> None:
+def test_rows_of_talk_are_returned_once() -> None:
     talk = Talk()
     talk.add(0.12345, "asked", "/enable", "data: True")
     assert talk.take() == (Row(0.123, "asked", "/enable", "data: True"),)
     assert talk.take() == ()
 
 
-def test_of_too_many_the_first_and_the_last_are_kept_and_a_long_or_foul_text_is_not() -> None:
+def test_the_first_and_last_of_too_many_rows_are_kept_and_texts_are_cut_and_cleaned() -> None:
     talk = Talk()
     for number in range(1000):
         talk.add(number, "feedback", "/drive" * 1000, f"{number} \x1b[2J\u202e" + "x" * 100_000)

@@ -35,7 +35,7 @@ def test_programs_in_real_time_are_named_with_the_reason(reasons: dict[str, str]
     assert (record.time, record.explain()) == (REAL, sentence)
 
 
-def test_a_reason_stays_when_the_program_runs_beside_another_one_later() -> None:
+def test_a_reason_is_kept_if_the_program_later_runs_with_another_one() -> None:
     record = TimeRecord()
     record.add_real_time(["a"], {"a": "sleep"})
     record.add_real_time(["a", "b"], {"b": "clock"})
@@ -49,7 +49,7 @@ def test_the_longest_wait_is_kept() -> None:
     assert record.longest_wait == 0.5
 
 
-def test_copies_of_a_workspace_share_the_record_and_two_workspaces_do_not(tmp_path: Path) -> None:
+def test_copies_of_a_workspace_share_its_record_and_other_workspaces_do_not(tmp_path: Path) -> None:
     first, second = (Workspace(tmp_path, environment.find(), tmp_path) for _ in range(2))
     assert replace(first, domain=7).time_record is first.time_record
     assert first.time_record is not second.time_record

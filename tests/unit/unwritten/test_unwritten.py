@@ -58,7 +58,7 @@ def test_a_stub_in_a_package_that_it_depends_on_explains_a_failed_build(tmp_path
     assert explain(FAILED, tmp_path, "robot").sentence.startswith("src/interfaces/CMakeLists.txt is still")
 
 
-def test_other_packages_and_modules_explain_nothing(tmp_path: Path) -> None:
+def test_stubs_of_other_packages_and_modules_do_not_explain_a_failed_build(tmp_path: Path) -> None:
     write(tmp_path, robot__robot__node_py=CODE_STUB, other__setup_py=CODE_STUB)
     assert explain(FAILED, tmp_path, "robot") is FAILED
 

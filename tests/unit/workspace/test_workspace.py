@@ -26,7 +26,7 @@ def test_an_installed_executable_is_found(workspace: Workspace) -> None:
 
 
 @pytest.mark.parametrize(("package", "found"), [("pkg", "what it installs is node"), ("msgs", "it installs none")])
-def test_a_missing_executable_is_told_with_what_is_installed_instead(
+def test_a_missing_executable_is_reported_with_the_installed_ones(
     workspace: Workspace, package: str, found: str
 ) -> None:
     with pytest.raises(StudentError, match=f"The package {package} installs no program robot; {found}") as caught:
