@@ -1,4 +1,4 @@
-"""What grading the capstone costs: core-seconds of one grading of the reference, caches warm, on an idle machine."""
+"""Measures the core-seconds of one grading of the capstone's reference, with warm caches, on an idle machine."""
 
 from __future__ import annotations
 

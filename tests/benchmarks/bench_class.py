@@ -1,4 +1,4 @@
-"""How fast this machine grades a class: answers to 02 and 08, no two of them equal, caches warm."""
+"""Measures how fast this machine grades a class: answers to 02 and 08, no two of them equal, caches warm."""
 
 from __future__ import annotations
 

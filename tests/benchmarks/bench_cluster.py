@@ -1,4 +1,4 @@
-"""What a cluster costs beside the gradings: each is replaced by a pause and an answer of usual size."""
+"""Measures what a cluster costs beside the gradings. A pause and a reply of usual size replace each grading."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What it costs to make a loadable package of a message, a service and an action: built, cached, and by colcon."""
+"""Measures the cost of a loadable package of a message, a service and an action: built, cached, and by colcon."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reference of the capstone graded again and again: all points each time, and the same traces to the last bit?
+"""Grades the reference of the capstone many times: each grading must have all points and the same traces, bit for bit.
 
     make capstones TIMES=1000
 

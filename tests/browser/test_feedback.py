@@ -1,4 +1,4 @@
-"""The feedback as a student sees it: opened in a real browser."""
+"""The feedback page of a student, opened in a real browser."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def test_each_glossary_term_is_linked_at_most_once_in_a_chapter(site: Path) -> N
 
 
 def test_each_internal_link_of_the_site_has_a_target(site: Path) -> None:
-    """Sphinx holds the links of pages to pages. Raw HTML and the outputs of notebooks have links of their own."""
+    """Sphinx checks links from page to page. It does not check those of raw HTML and of notebook outputs."""
     for path in site.rglob("*.html"):
         for link in LINK.findall(path.read_text(encoding="utf-8")):
             target = urlsplit(link)

@@ -1,4 +1,4 @@
-"""The course as a new student takes it: a chapter's release in JupyterLab, the answer typed in, the check turned green.
+"""A chapter's release is opened in JupyterLab, the answers are typed in, and the check passes.
 
 `make test` takes one chapter, with a robot that drives; `make tour` and `make nightly` take them all.
 Screenshots of each chapter's pictures and of its check stay in `.build/screenshots`.

@@ -1,4 +1,4 @@
-"""What a student does in JupyterLab: nothing that was written is lost, and no button praises what is unsolved."""
+"""JupyterLab keeps all that a student wrote, and has no button that calls an unsolved notebook correct."""
 
 from __future__ import annotations
 

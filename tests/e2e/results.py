@@ -1,4 +1,4 @@
-"""What two gradings of a submission have in common: all of a result but its times."""
+"""A result without its times, to compare two gradings of a submission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Notebooks that never end, flood, ask or die, in the sandboxed kernel."""
+"""Notebooks that do not end, print without end, ask for input or end their kernel, in the sandboxed kernel."""
 
 from __future__ import annotations
 

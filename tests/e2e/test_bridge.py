@@ -1,4 +1,4 @@
-"""The simulator as a ROS 2 robot: its own process, met over DDS, as a student's node meets it."""
+"""The simulator as a ROS 2 robot in its own process: it sends and receives over DDS, as for a student's node."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ def test_several_robots_live_in_their_namespaces(listener: Listener, simulator: 
     assert {scans[name][0].header.frame_id for name in scans} == {"alpha/laser", "beta/laser", "gamma/laser"}
     assert list(scans["alpha"][0].ranges) != list(scans["beta"][0].ranges)
 
-    listener.wait(publisher.get_subscription_count, "beta's ears")
+    listener.wait(publisher.get_subscription_count, "beta's subscription")
     command = Twist()
     command.linear.x = 0.2
     publisher.publish(command)

@@ -1,4 +1,4 @@
-"""Where a build may fail, colcon's verdict on each package is seen, and harms no other package."""
+"""Where a build may fail, each package has colcon's result, and a failed package does not change that of another."""
 
 from __future__ import annotations
 

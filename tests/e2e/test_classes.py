@@ -1,4 +1,4 @@
-"""A class of five hands in each chapter: nbgrader's gradebook and `autograder grade`, by one and by two, agree.
+"""A class of five hands in each chapter. nbgrader's gradebook agrees with `autograder grade`, run with one job and two.
 
 Right answers, flawed ones and none are files; a student hands them in as a notebook that writes them. `make classes`
 and `make nightly` take every chapter.

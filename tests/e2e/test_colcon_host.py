@@ -1,4 +1,4 @@
-"""A colcon that is forked builds what colcon builds, and a setup.py sees and says the same in both."""
+"""A forked colcon builds what a started one builds, and a setup.py sees and prints the same in both."""
 
 from __future__ import annotations
 

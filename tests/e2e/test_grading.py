@@ -1,4 +1,4 @@
-"""Grading for real: what is right gets everything, what is wrong is named, and the grader's own failure is no zero."""
+"""Real gradings: a right submission has every point, errors are named, and a failure of the grader is no zero."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Attackers in a class change nobody else's result, and nothing of them stays on the machine."""
+"""Attackers in a class do not change the results of others, and leave nothing on the machine."""
 
 from __future__ import annotations
 

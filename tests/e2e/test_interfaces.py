@@ -1,4 +1,4 @@
-"""A package that the grader built from texts talks with a node whose package colcon built from the same texts."""
+"""A package that the grader built from texts exchanges messages with a node whose package colcon built from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a publisher keeps for subscriptions that join late, over DDS."""
+"""A probe counts the messages that a publisher keeps for subscriptions that join late, over DDS."""
 
 from __future__ import annotations
 

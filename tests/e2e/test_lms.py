@@ -1,4 +1,4 @@
-"""From the zip that Moodle hands over to the worksheet that it takes back, by two commands."""
+"""Two commands turn the zip of Moodle into the worksheet that Moodle imports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A program that cannot be stepped is met in real time: the same verdicts, and the result says so."""
+"""A program that cannot be stepped runs in real time: its checks have the same results, and the result says so."""
 
 from __future__ import annotations
 

@@ -154,12 +154,12 @@ def test_students_fetch_their_feedback(graded: Classroom) -> None:
 def test_results_graded_before_in_parallel_are_recorded(graded: Classroom, results: dict[str, Result]) -> None:
     stored = graded.place / "results"
     before = (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns
-    booked_before = graded.grades("flawed")
+    recorded_before = graded.grades("flawed")
     options = (f"--SandboxedGrade.results={stored}", "--student=flawed", "--force")
     graded.nbgrader("autograde", *options)
     assert (stored / ASSIGNMENT / "flawed" / "result.json").stat().st_mtime_ns == before
-    assert graded.grades("flawed") == booked_before
-    assert sum(points for points, _, _ in booked_before.values()) == pytest.approx(results["flawed"].score)
+    assert graded.grades("flawed") == recorded_before
+    assert sum(points for points, _, _ in recorded_before.values()) == pytest.approx(results["flawed"].score)
 
 
 def test_a_restored_exercise_cell_earns_no_points(graded: Classroom) -> None:

@@ -1,4 +1,4 @@
-"""A new chapter works as it is, and what the tutorial says about it is what happens."""
+"""A new chapter works without changes, and the tutorial's commands print what the tutorial says."""
 
 from __future__ import annotations
 

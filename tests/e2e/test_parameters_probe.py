@@ -1,4 +1,4 @@
-"""A node's parameters are asked for over its own services; a node that has none, or does not answer, is told so."""
+"""A node's parameters are read over its services. A node without these services, or without a reply, is reported."""
 
 from __future__ import annotations
 

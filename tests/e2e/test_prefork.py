@@ -1,4 +1,4 @@
-"""A program that is forked into its sandbox is where, what and as little as one that is started there."""
+"""A program that is forked into its sandbox has the same surroundings and rights as one that is started there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A Python program that a forked program starts, and that is forked for it, is what a started one would be."""
+"""A Python program that a forked program starts is forked, too, and has the same surroundings as a started one."""
 
 from __future__ import annotations
 

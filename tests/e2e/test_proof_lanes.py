@@ -1,4 +1,4 @@
-"""Many submissions in one cell, one after another: each has the result that a cell of its own gives it."""
+"""Many submissions are graded in one cell, and each has the result that a cell of its own gives it."""
 
 from __future__ import annotations
 

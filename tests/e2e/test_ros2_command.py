@@ -1,4 +1,4 @@
-"""What `ros2` does with numbers, signals and two ends: what the records of single commands do not show.
+"""The `ros2` command with signals, measurements and two commands at once, which the records do not show.
 
 What each verb prints is in `tests/e2e/ros2_records`.
 """

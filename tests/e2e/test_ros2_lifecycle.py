@@ -1,4 +1,4 @@
-"""`ros2 lifecycle` says of real nodes what it says on a real Jazzy."""
+"""`ros2 lifecycle` prints for real nodes what it prints on a real Jazzy."""
 
 from __future__ import annotations
 

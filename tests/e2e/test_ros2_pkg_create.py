@@ -1,4 +1,4 @@
-"""What `ros2 pkg create` writes is built, tested, linted, run and launched, as a user would do it."""
+"""Packages of `ros2 pkg create` are built, tested, linted, run and launched, as a user would do it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sandbox in a cell, for real: what code in it sees, reaches and leaves, started there or forked into it."""
+"""The real sandbox in a cell: what its code can see, reach and leave behind, started there or forked into it."""
 
 from __future__ import annotations
 
@@ -264,7 +264,7 @@ ORDINARY = 4711  # a user of no name
 @pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
 @pytest.mark.parametrize("way", ["started"], indirect=True)  # the doctor tries both
 def test_sandboxes_of_an_ordinary_user_block_what_those_of_root_block() -> None:
-    """But for what a control group alone bounds, where an ordinary user can make none."""
+    """The exception is what only a control group limits, if an ordinary user can make none."""
     if not all(path.stat().st_mode & 1 for path in (Path(__file__), *Path(__file__).parents) if path.is_dir()):
         pytest.skip("an ordinary user cannot read this folder")
     home = Path(tempfile.mkdtemp(dir="/tmp"))

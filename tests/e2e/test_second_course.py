@@ -1,4 +1,4 @@
-"""A course that lies elsewhere is kept, proved, graded and released by the same commands, and hides what it has to."""
+"""The same commands check, verify, grade and release a course in another folder, and hide its answers."""
 
 from __future__ import annotations
 

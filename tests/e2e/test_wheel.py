@@ -1,4 +1,4 @@
-"""The students' half is a wheel: where pip has installed it, `autograder check` runs in a chapter's folder."""
+"""The students' modules are a wheel: where pip has installed it, `autograder check` runs in a chapter's folder."""
 
 from __future__ import annotations
 

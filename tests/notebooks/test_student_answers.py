@@ -1,6 +1,6 @@
-"""Three students go through a chapter as the bundle has it: what `check` says takes each of them to the end.
+"""Three students answer a chapter of the release, and `check` leads each of them to the end.
 
-One answers everything right at once. One hands `check` a typical mistake first, and mends it. One writes an exercise
+One answers everything right at once. One hands `check` a typical mistake first, and corrects it. One writes an exercise
 after another, and opens the hints of what fails. Their answers go into the cells of the release, in a real kernel.
 """
 

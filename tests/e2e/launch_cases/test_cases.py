@@ -1,6 +1,6 @@
 """The stand-ins for launch do what the real packages do: the same launch descriptions, with the same records.
 
-`records.yaml` was written with the real packages by `runner.py`. With them installed, this test holds them to it, too.
+`records.yaml` was written with the real packages by `runner.py`. With them installed, this test compares them, too.
 """
 
 from __future__ import annotations

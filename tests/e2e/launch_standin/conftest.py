@@ -1,9 +1,9 @@
 """A package with nodes and launch files, and `ros2 launch` as a process whose output can be waited for.
 
-Each launch has a network of its own, so that nodes of tests that run at the same time do not meet. All
+Each launch has a network of its own, so that nodes of tests that run at the same time do not discover each other. All
 processes of a launch inherit a mark in their environment, by which those that are left over are found.
 
-With the real launch installed, the tests hold that one, but for those in differences.yaml.
+With the real launch installed, the tests run that one, except those in differences.yaml.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Launch files as students write them: what comes up, what is said, how it ends, and that nothing is left."""
+"""Launch files as students write them: the started processes, the output, the end, and no process that is left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The harness for launch files: what they start is seen from outside, and what they leave behind too."""
+"""The harness for launch files sees from outside what they start, and what they leave running."""
 
 from __future__ import annotations
 

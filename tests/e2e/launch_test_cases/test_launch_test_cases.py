@@ -1,6 +1,6 @@
 """The stand-in for launch_testing runs launch tests as the real package does, by `launch_test` and by pytest.
 
-`records.yaml` was written with the real packages by `runner.py`. With them installed, this test holds them to it, too.
+`records.yaml` was written with the real packages by `runner.py`. With them installed, this test compares them, too.
 """
 
 from __future__ import annotations

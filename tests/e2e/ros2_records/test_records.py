@@ -1,6 +1,6 @@
 """The stand-in for `ros2` prints what the real command prints, and ends as it does: the same commands, the same nodes.
 
-`records.yaml` was written with the real ros2cli by `runner.py`. With it installed, this test holds it to them, too.
+`records.yaml` was written with the real ros2cli by `runner.py`. With it installed, this test compares it, too.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What pip cannot give is installed with apt where that needs no question, and named elsewhere."""
+"""Packages that pip does not have are installed with apt if no password is needed. Otherwise they are named."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a package must have before colcon is tried, and what a build may leave."""
+"""A package needs certain files before colcon is run, and its build may leave no links to other places."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def test_only_files_and_lines_of_the_student_are_shown(log: str, shown: str, err
 
 @pytest.mark.parametrize("part", ["a/", "Error processing '", "\n", "--- stderr: x\n\n", f"{SETUP}{SYNTAX}"])
 def test_the_start_and_the_end_of_a_long_log_are_read(part: str) -> None:
-    """Each part, a million characters of it, would take minutes where a pattern looks back."""
+    """A million characters of each part would take minutes if a pattern backtracked."""
     log = f"{SETUP}{SYNTAX}{part * (1_000_000 // len(part))}\nthe end"
     assert first_error(log) == "setup.py, line 8: SyntaxError: invalid syntax"
     assert readable(log).endswith("the end")

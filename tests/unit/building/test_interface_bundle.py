@@ -1,4 +1,4 @@
-"""Which packages make the bundle, what it is kept under, and how its scripts find their new place."""
+"""An interface bundle: its packages, its key in the cache, and the folder that its scripts name."""
 
 from __future__ import annotations
 

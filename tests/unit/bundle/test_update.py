@@ -1,4 +1,4 @@
-"""An update writes a later release, and loses nothing that the student wrote."""
+"""An update writes a later release, and keeps all that the student wrote."""
 
 from __future__ import annotations
 

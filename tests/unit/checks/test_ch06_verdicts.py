@@ -1,4 +1,4 @@
-"""What runs of a student's tests mean, in sentences: for a right version, a hard one, and faulty ones."""
+"""Runs of a student's tests are explained in sentences: runs on a right version, a hard one, and faulty ones."""
 
 from __future__ import annotations
 

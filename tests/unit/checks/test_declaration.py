@@ -1,4 +1,4 @@
-"""The contract of a check."""
+"""The rules for the declaration of a check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which runs of a student's tests are made for which checks."""
+"""The examination makes the runs of a student's tests that the checks need."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
 
 @pytest.mark.parametrize("kind", [suites.VISIBLE, suites.HIDDEN])
 def test_every_module_with_checks_is_named_in_modules(kind: str) -> None:
-    """A module that MODULES leaves out would never be run, and nobody would hear of it."""
+    """A module that MODULES leaves out would never be run, and no error would say so."""
     home = suites.__package__
     for assignment in suites.names(home, kind):
         package = importlib.import_module(f"{home}.ch{assignment}.{kind}")

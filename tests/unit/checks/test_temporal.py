@@ -1,4 +1,4 @@
-"""Temporal logic over traces: how well it holds, and the instant at which it does not."""
+"""Temporal logic over traces: the robustness of a formula, and the instant at which it is violated."""
 
 from __future__ import annotations
 

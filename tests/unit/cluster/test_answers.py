@@ -1,4 +1,4 @@
-"""A worker's answer is taken in as that of a stranger: whatever does not hold is refused, and nothing is written."""
+"""A worker's reply is checked as untrusted input: an invalid one is refused, and nothing is written."""
 
 from __future__ import annotations
 

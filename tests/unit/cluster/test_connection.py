@@ -1,4 +1,4 @@
-"""Who may grade with whom, and how they connect."""
+"""Machines of a cluster fit each other, and connect by TLS unless they are the same machine."""
 
 from __future__ import annotations
 

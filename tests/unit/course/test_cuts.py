@@ -1,4 +1,4 @@
-"""What a student writes in a file without functions is hidden between two named lines."""
+"""A cut hides the part of a file that a student writes between two named lines."""
 
 from __future__ import annotations
 

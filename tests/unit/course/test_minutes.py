@@ -1,4 +1,4 @@
-"""The time that a chapter promises is counted from what there is to read, run and write."""
+"""The time that a chapter states is counted from what there is to read, run and write."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A release keeps the contracts and loses the answers."""
+"""A release keeps the docstrings and loses the answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the course has to hold is found in the notebooks, or named as missing."""
+"""Each item of the syllabus is found in the notebooks, or named as missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a solution cell holds and what solutions/ holds is one text."""
+"""A solution cell and its file in solutions/ have the same text."""
 
 from __future__ import annotations
 

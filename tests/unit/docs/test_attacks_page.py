@@ -1,4 +1,4 @@
-"""Each attack has something that holds it, and what the page names is there."""
+"""Each attack has a test, and each submission and test that the page names exists."""
 
 from __future__ import annotations
 

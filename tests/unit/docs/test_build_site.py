@@ -1,4 +1,4 @@
-"""What of the site is made: the chapters with their outputs, and how much proves each suite."""
+"""The generated parts of the site: outputs of the chapters, links to the glossary, and the table of the proof."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page about the platform holds what the lock installs, and each version that is another one has its reason."""
+"""The page about the platform has what the lock installs, and a reason for each version that differs."""
 
 from __future__ import annotations
 

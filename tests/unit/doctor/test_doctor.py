@@ -1,4 +1,4 @@
-"""Each finding is seen on a machine that lacks the thing, and carries the command that mends it."""
+"""Each finding is seen on a machine that lacks the thing, and has the command that fixes it."""
 
 from __future__ import annotations
 

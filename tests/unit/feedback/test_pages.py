@@ -1,4 +1,4 @@
-"""Feedback pages: what they say, what they keep to themselves, and that nothing gets out of its quotes."""
+"""Feedback pages: what they show, what they leave out, and that all text is escaped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a class's results say of the class and of the checks."""
+"""Statistics of a class: its marks, its checks and the most frequent reasons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What checks show is kept with its fingerprint, or not at all where nobody will look."""
+"""A gallery keeps the pictures of checks with their fingerprints. A closed gallery keeps none."""
 
 from __future__ import annotations
 

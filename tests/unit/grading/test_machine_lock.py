@@ -1,4 +1,4 @@
-"""Gradings beside each other, and one that has the machine to itself."""
+"""Gradings share the machine, and an exclusive grading has it alone."""
 
 from __future__ import annotations
 

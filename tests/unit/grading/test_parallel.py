@@ -1,4 +1,4 @@
-"""Doing one thing for many: results in order, and nothing more begun once it is broken off."""
+"""Items are processed in parallel: results keep their order, and no item is started after an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who lost a point in real time while the machine was busy is met once more, alone."""
+"""A submission that lost a point in real time on a busy machine is graded once more, alone."""
 
 from __future__ import annotations
 

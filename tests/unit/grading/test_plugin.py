@@ -1,4 +1,4 @@
-"""A suite's tests become check results, and nothing else becomes anything."""
+"""The tests of a suite become check results. The plug-in ignores everything else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A submitted notebook gets back what a student may not change."""
+"""Cells that a student may not change are restored in a submitted notebook."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A harness that chooses its time has what harnesses have, and says so when it is used too early."""
+"""A harness that chooses its time has the attributes of a harness. Using it too early is an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a busy machine does to programs is seen, and what it did not do is not."""
+"""The time for which a busy machine kept programs from running is measured."""
 
 from __future__ import annotations
 

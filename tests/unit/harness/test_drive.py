@@ -1,4 +1,4 @@
-"""A drive hears what the programs write, line by line, at the step in which they write it."""
+"""A drive reads the output of programs, line by line, at the step in which they write it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When everyone in a harness has matched everyone."""
+"""Programs and grader are connected when each has discovered all endpoints that it is joined to."""
 
 from __future__ import annotations
 

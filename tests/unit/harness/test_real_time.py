@@ -1,4 +1,4 @@
-"""How often something happens, told on a machine that is busy with other things, too."""
+"""The usual rate of messages is right on a busy machine, too."""
 
 from __future__ import annotations
 

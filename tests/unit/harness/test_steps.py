@@ -1,4 +1,4 @@
-"""How long a step of ROS time is."""
+"""The length of a step of ROS time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A message in words, whatever a student's node puts into it."""
+"""A message of a student's node is formatted as one short line, whatever it contains."""
 
 from __future__ import annotations
 

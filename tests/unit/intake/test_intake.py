@@ -1,4 +1,4 @@
-"""What may be handed in, and what is refused with a sentence."""
+"""Submissions are read, or refused with a sentence."""
 
 from __future__ import annotations
 

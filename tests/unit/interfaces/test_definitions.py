@@ -1,4 +1,4 @@
-"""Interface texts: what is read, and what each mistake is told."""
+"""Interface definitions are read, and each error in them is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a course is stands in its course.yaml, and nowhere in the autograder."""
+"""A course is described by its course.yaml, and no code of the autograder describes it."""
 
 from __future__ import annotations
 

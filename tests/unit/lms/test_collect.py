@@ -1,4 +1,4 @@
-"""Downloads as learning management systems name them: whose each is, which one counts, and what fits nobody."""
+"""Downloads with the names of learning management systems: the student of each file, and the file that counts."""
 
 from __future__ import annotations
 

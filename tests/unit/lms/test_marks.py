@@ -1,4 +1,4 @@
-"""Marks in the tables that Moodle and Canvas import: the cells of the marks are filled, and all else stays."""
+"""Marks in the tables that Moodle and Canvas import: the mark cells are filled, and the other cells stay."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A hint of similar submissions: renaming hides nothing, what the course gives counts for nothing."""
+"""Similar submissions are found although names differ, and code that the course gives is ignored."""
 
 from __future__ import annotations
 

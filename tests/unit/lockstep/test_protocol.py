@@ -1,4 +1,4 @@
-"""What the host says is bounded, and refused where it is of the wrong type."""
+"""Messages of the host are bounded, and refused if they have the wrong type."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The trusted end of the pipes against programs that lie, hang or fall silent."""
+"""The grader's end of the pipes against programs that send false messages, hang or send nothing."""
 
 from __future__ import annotations
 

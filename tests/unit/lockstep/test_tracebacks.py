@@ -1,4 +1,4 @@
-"""Of a traceback the student sees the own files, under the paths that the student knows."""
+"""A student sees in a traceback only the student's own files, under the paths that the student knows."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ class Course:
         return nbformat.read(self.root / "autograded" / student / ASSIGNMENT / f"{ASSIGNMENT}.ipynb", as_version=4)
 
     def grades(self, student: str) -> dict[str, tuple[float | None, float, bool]]:
-        """Return (booked, maximum, needs an eye) by grade cell."""
+        """Return (recorded points, maximum, whether a person has to grade it) by grade cell."""
         with Gradebook(f"sqlite:///{self.root}/gradebook.db") as gradebook:
             submission = gradebook.find_submission_notebook(ASSIGNMENT, ASSIGNMENT, student)
             return {g.name: (g.auto_score, g.max_score, g.needs_manual_grade) for g in submission.grades}

@@ -1,4 +1,4 @@
-"""Autograding through nbgrader: what is booked, what is shown, and what a hostile notebook changes about it."""
+"""Autograding through nbgrader: the recorded scores, the feedback, and notebooks that try to change them."""
 
 from __future__ import annotations
 

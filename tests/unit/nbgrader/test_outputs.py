@@ -1,4 +1,4 @@
-"""Outputs below the cells of an autograded notebook, and what nbgrader makes of them."""
+"""Outputs below the cells of an autograded notebook, and the points that nbgrader reads from them."""
 
 from __future__ import annotations
 

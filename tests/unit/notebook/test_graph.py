@@ -1,4 +1,4 @@
-"""The picture of the running system: who publishes, who subscribes, and nothing of what every node has."""
+"""The graph of the running system shows publishers and subscriptions, without the topics that every node has."""
 
 from __future__ import annotations
 

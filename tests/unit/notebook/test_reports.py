@@ -1,4 +1,4 @@
-"""What a student sees in the notebook: plain sentences, escaped, and nothing run while it is graded."""
+"""Reports in the notebook are plain, escaped sentences, and no program runs while the notebook is graded."""
 
 from __future__ import annotations
 

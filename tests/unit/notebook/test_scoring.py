@@ -1,4 +1,4 @@
-"""Scores of drives to a goal: what counts, in which order, and what is kept of them."""
+"""Scores of drives to a goal: their order, and the table that is kept."""
 
 from __future__ import annotations
 

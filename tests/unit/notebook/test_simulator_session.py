@@ -1,4 +1,4 @@
-"""The simulator beside a notebook: its robots' runs are recorded, and mistakes are told plainly."""
+"""The simulator beside a notebook records the runs of its robots, and reports wrong settings in plain words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`source`: a workspace's interfaces, built beside the kernel, can be imported and sent; mistakes are told plainly."""
+"""`source` makes the interfaces of a workspace importable in the kernel, and reports mistakes in plain words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands in a notebook: they print what they say, they end, and what they start ends with them."""
+"""Commands in a notebook: their output, their end, and the end of the programs that they started."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The course's `%%writefile` never destroys what a student wrote."""
+"""The course's `%%writefile` keeps what a student wrote."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What untrusted code wrote is read only where it is a plain, small file."""
+"""A file of untrusted code is read only if it is a plain, small file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a package imports is read from its text, and held against what it declares."""
+"""Imports of a package are read from its text and compared with its declared dependencies."""
 
 from __future__ import annotations
 

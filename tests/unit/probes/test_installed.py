@@ -1,4 +1,4 @@
-"""What colcon installed is seen as `ros2` would see it, and nothing is followed or imported."""
+"""Installed files are found as `ros2` finds them. No link is followed, and nothing is imported."""
 
 from __future__ import annotations
 

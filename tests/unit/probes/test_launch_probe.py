@@ -1,4 +1,4 @@
-"""What checks make of the words of `ros2 launch`, without running it."""
+"""The output of `ros2 launch` is read for the checks. These tests do not run it."""
 
 from __future__ import annotations
 

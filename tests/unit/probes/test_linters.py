@@ -1,4 +1,4 @@
-"""The linters' word on a package, whatever the student's tests of that name do."""
+"""Linters check a package, whatever the student's tests with the names of linters do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of a node's parameters and of parameter files."""
+"""Sentences about a node's parameters and about parameter files."""
 
 from __future__ import annotations
 

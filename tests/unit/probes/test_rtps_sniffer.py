@@ -1,4 +1,4 @@
-"""Ears in DDS domains."""
+"""A sniffer listens in a DDS domain and returns the announcements of participants."""
 
 from __future__ import annotations
 

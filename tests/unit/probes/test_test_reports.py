@@ -1,4 +1,4 @@
-"""Reports of test runs are read with bounds, whoever wrote them."""
+"""Reports of test runs are read within bounds, even if a student's program wrote them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of a student's tests: what they claim of a version, and what they cannot do to the run."""
+"""Runs of a student's tests report the outcomes for a version, and the tests cannot change the run."""
 
 from __future__ import annotations
 

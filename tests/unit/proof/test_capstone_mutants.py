@@ -1,4 +1,4 @@
-"""How deep the capstone's checks are proved."""
+"""Each check of the capstone has three mutants that fail it by itself."""
 
 from __future__ import annotations
 

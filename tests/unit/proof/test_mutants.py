@@ -1,4 +1,4 @@
-"""The file of mutants is read whole, or refused by name."""
+"""The file of mutants is read as a whole, or refused with the reason."""
 
 from __future__ import annotations
 

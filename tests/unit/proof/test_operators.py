@@ -1,4 +1,4 @@
-"""Operators make one slip at one place, and leave what only people read."""
+"""Each operator makes one mutation at one place, and does not change text for people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The population of mutants is the same each time, and what becomes of it is counted."""
+"""The population of mutants is the same each time, and its outcomes are counted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the submissions of a proof come to be graded: all lanes at work, and every result in its own place."""
+"""The submissions of a proof are graded by all lanes at once, and each result has its own place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a proof comes to, and when it stands."""
+"""The summary of a proof, and when a proof succeeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wheels' files are mended once and whole, CMake's to this interpreter's own folders."""
+"""The wheels' files are patched once and completely, CMake's with the folders of this interpreter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line: which words lead where, what is not covered, and what comes back."""
+"""The command line of `ros2`: its verbs, what it does not cover, and its exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditions: which texts hold, which do not, and which are no conditions."""
+"""Conditions: texts that are true, texts that are false, and texts that are refused."""
 
 from __future__ import annotations
 

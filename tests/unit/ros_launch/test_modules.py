@@ -1,4 +1,4 @@
-"""What stands in a public module of the real packages can be imported from there, or the error says what is missing."""
+"""Each public name of the real packages can be imported from the stand-ins, or the error says that it is missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a grader that was killed has left, and what it has not."""
+"""Folders of cells that a killed grader left are removed, and no others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What students' programs inherit from whoever starts them."""
+"""Students' programs receive Ctrl-C, even if the grader was started in the background."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A watched process: bounded, measured, and gone when it should be."""
+"""A watched process is limited, measured, and ended with its block."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_a_program_that_ends_by_itself_leaves_its_status_and_output() -> None:
 
 
 def test_output_of_a_program_can_be_read_at_once() -> None:
-    """A program that says that it has written something has: nobody need wait for the watcher."""
+    """What a program has written is in the output at once, without a wait for the watcher."""
     code = "import os, sys\nfor n in range(3000):\n    print(n, flush=True); os.write(int(sys.argv[1]), b'x')"
     said, tell = os.pipe()
     try:

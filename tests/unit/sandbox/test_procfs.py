@@ -1,4 +1,4 @@
-"""What /proc says of one process: when the kernel started it."""
+"""The start time of a process is read from /proc."""
 
 from __future__ import annotations
 

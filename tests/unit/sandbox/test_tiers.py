@@ -1,4 +1,4 @@
-"""Which isolation a machine can give, and what is said when it cannot."""
+"""The tier of isolation that a machine can give is found, or the reason why it cannot give one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a lidar must measure, worked out by brute force and written without a look at the engines.
+"""Computes by brute force what a lidar must measure, written without reference to the engines.
 
 `extended` solves every beam against every wall and circle in numpy's long double; `rational` in fractions, exactly.
 Both take the beams' origins and directions as the doubles that the engines use.

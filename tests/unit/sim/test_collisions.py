@@ -1,4 +1,4 @@
-"""Contacts: nothing is driven through or into, whatever the speed, the shape and the wall."""
+"""Contacts: no robot drives through a wall or into an obstacle, at any speed and with any shape."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_a_sliding_robot_keeps_the_part_of_its_motion_along_the_wall(engine: str
 def test_no_robot_enters_or_jumps_a_wall_at_any_speed(
     seed: int, v: float, w: float, slide: bool, polygon: bool
 ) -> None:
-    """At 20 m/s a tick is 0.4 m long, and a wall has no thickness: whoever only looks at the ends jumps it."""
+    """At 20 m/s a tick is 0.4 m long, and a wall has no thickness. A test of the end points alone misses the wall."""
     random = np.random.default_rng(seed)
     world = random_world(seed, walls=12, size=5.0, pillars=2)
     spec = RobotSpec(**FAST, on_collision="slide" if slide else "stop", footprint=SQUARE if polygon else None)

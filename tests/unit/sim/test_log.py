@@ -1,4 +1,4 @@
-"""What programs wrote is kept with its times; a flood is not."""
+"""Lines of programs are kept with their times. Of a flood, only the first and the last lines are kept."""
 
 from __future__ import annotations
 

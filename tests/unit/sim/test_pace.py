@@ -1,4 +1,4 @@
-"""Simulated time follows real time: by small parts, so that commands are seen in between, and without leaps."""
+"""Simulated time follows real time in small parts, so that commands are seen in between."""
 
 from __future__ import annotations
 

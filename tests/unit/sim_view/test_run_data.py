@@ -1,4 +1,4 @@
-"""A run as the player reads it: what comes out is what went in, rounded, and it is small."""
+"""A run is encoded for the player: rounded, small, and decoded to the same values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every path, command and make target that the documents name is there."""
+"""Every path, command and make target that the documents name exists."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contracts of `pyproject.toml` hold, and each of them fails when a module breaks it."""
+"""The import contracts of `pyproject.toml` are kept, and each of them fails when a module breaks it."""
 
 from __future__ import annotations
 

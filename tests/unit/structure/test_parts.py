@@ -1,4 +1,4 @@
-"""The picture of the parts is drawn from its source, and its source says what the code is."""
+"""The picture of the parts is drawn from its source, and its source agrees with the code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The grader unpickles nothing that a student could have written."""
+"""The grader unpickles no data that a student could have written."""
 
 from __future__ import annotations
 

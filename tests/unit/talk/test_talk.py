@@ -1,4 +1,4 @@
-"""What was asked and answered is kept for one check, in a bounded number of rows."""
+"""Requests and responses are kept for one check, in a bounded number of rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a grading learns about time, and how the result says it."""
+"""A time record collects which programs ran in real time, and writes the note of the result."""
 
 from __future__ import annotations
 

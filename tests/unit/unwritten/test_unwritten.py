@@ -1,4 +1,4 @@
-"""A package that does not build because its files are still to be written is said to be so."""
+"""A package that does not build because its files are unwritten is reported as unwritten."""
 
 from __future__ import annotations
 
