@@ -14,7 +14,7 @@ from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 from autograder.course.tables import PAGE, course_page, titles
-from autograder.proof import guide
+from autograder.proof import checks_page
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
 
@@ -59,5 +59,5 @@ def tables() -> None:
     page, problems = course_page()
     for finding in problems:
         click.echo(str(finding))
-    for path, text in {**titles(), PAGE: page, guide.PAGE: guide.guide()}.items():
+    for path, text in {**titles(), PAGE: page, checks_page.PAGE: checks_page.checks_page()}.items():
         path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""`autograder verify`: the grader proves itself."""
+"""`autograder verify`: grades submissions whose marks are known, and compares the results with these marks."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
 from autograder.proof.cases import cases
 from autograder.proof.claims import CaseKind, Claim
-from autograder.proof.lanes import Lanes
+from autograder.proof.mutation_run import MutantResult, run_mutants
 from autograder.proof.population import Slipped, population
 from autograder.proof.prove import prove
 from autograder.proof.summary import summary
-from autograder.proof.survey import Fate, survey
-from autograder.proof.survivors import Surveyed, holds, mutant_counts, reasons, report
+from autograder.proof.survivors import ChapterMutationResult, holds, mutant_counts, reasons, report
+from autograder.proof.worker_pool import WorkerPool
 from autograder.result import write_atomically, write_json
 from autograder.sandbox import Tier
 
@@ -40,7 +40,8 @@ HEADINGS = ("submission", "marks", "claim")
 @click.option(
     "--quick",
     is_flag=True,
-    help="Take one named mutant for each check, no other mutants and no attacks. This is for every change.",
+    help="Grade only the reference, the release, the variants and one named mutant for each check. "
+    "Use it after every change.",
 )
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Grade only these submissions or mutants.")
 @click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the populations of mutants.")
@@ -68,13 +69,13 @@ def verify(
     """Prove the grader by submissions whose mark is known.
 
     The reference and right answers in another style have every point. The untouched release has none. Each named
-    mutant loses the checks that it names, and no other. No attack gains a point. Then come the mutants of every kind
-    in everything that students write. Of those that somebody could tell from the reference, 97 in 100 lose a point, and
-    every other one has a reason. One that has a reason is graded only if it is named. A run that was stopped goes on
-    with what is left: a result counts as long as the checks, the grader, and the submission are the same. mutants.md,
-    in the folder for the results, has the table.
+    mutant loses the checks that it names, and no other. No attack gains a point. Of the generated mutants that are not
+    equivalent to the reference, at least 95 in 100 of each chapter and 97 in 100 of all chapters lose a check. Every
+    other one has a reason in survivors.yaml. A mutant with a reason is graded only if --only names it. A stopped run
+    continues: a result counts as long as the checks, the grader and the submission are the same. The file mutants.md in
+    the folder for the results has the table.
 
-    The exit status is 0 when all of this holds, and 1 otherwise.
+    The exit status is 0 when all of this is true, and 1 otherwise.
     """
     began = time.monotonic()
     chapters = assignments or tuple(suites.graded())
@@ -87,41 +88,49 @@ def verify(
     }
     if not chosen and not any(mutants.values()):
         raise click.UsageError(f"the proof has no submission called {' or '.join(names)}")
-    with Progress(len(chosen)) as progress, Lanes(Tier(isolation), jobs) as lanes:
+    with Progress(len(chosen)) as progress, WorkerPool(Tier(isolation), jobs) as workers:
 
         def show(claim: Claim) -> None:
             progress.show(claim.result, _name(claim))
 
-        claims = prove(chosen, seed=seed, out=out, lanes=lanes, on_claim=show)
-        surveyed = [
-            _survey(Surveyed(name, each, reasons(name, each)), mutants[name], bool(names), lanes, seed, out)
+        claims = prove(chosen, seed=seed, out=out, workers=workers, on_claim=show)
+        chapter_results = [
+            _run_mutants(
+                ChapterMutationResult(name, each, reasons(name, each)), mutants[name], bool(names), workers, seed, out
+            )
             for name, each in populations.items()
             if mutants[name]
         ]
     click.echo("\n" + table([(_name(claim), marks(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
     click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
-    plain = {"summary": counted, "claims": [_plain(claim) for claim in claims], "mutants": mutant_counts(surveyed)}
+    plain = {
+        "summary": counted,
+        "claims": [_plain(claim) for claim in claims],
+        "mutants": mutant_counts(chapter_results),
+    }
     for path in filter(None, (out / "verify.json", json_file)):
         write_json(path, plain)
-    write_atomically(out / "mutants.md", report(surveyed).encode())
-    sys.exit(0 if all(claim.holds for claim in claims) and holds(surveyed) else 1)
+    write_atomically(out / "mutants.md", report(chapter_results).encode())
+    sys.exit(0 if all(claim.holds for claim in claims) and holds(chapter_results) else 1)
 
 
-def _survey(chapter: Surveyed, mutants: Sequence[Slipped], named: bool, lanes: Lanes, seed: int, out: Path) -> Surveyed:
+def _run_mutants(
+    chapter: ChapterMutationResult, mutants: Sequence[Slipped], named: bool, workers: WorkerPool, seed: int, out: Path
+) -> ChapterMutationResult:
     """Grade the mutants of a chapter. One that may survive is graded only if it is `named`."""
 
-    def show(fate: Fate) -> None:
-        if not fate.killed:
-            click.echo(f"{chapter.assignment} mutant {fate.id} {fate.killer or 'survives'}")
+    def show(result: MutantResult) -> None:
+        if not result.killed:
+            click.echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
 
     kept = out / chapter.assignment / "mutants.jsonl"
     excused = {} if named else chapter.reasons
     asked = [mutant for mutant in mutants if mutant.id not in excused]
-    fates = survey(chapter.assignment, asked, lanes, seed=seed, kept=kept, on_fate=show)
-    survivors = tuple(Fate(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in excused)
-    found = replace(chapter, fates=fates + survivors)
-    killed = sum(fate.killed for fate in found.fates)
+    results = run_mutants(chapter.assignment, asked, workers, seed=seed, kept=kept, on_result=show)
+    survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in excused)
+    found = replace(chapter, results=results + survivors)
+    killed = sum(result.killed for result in found.results)
     click.echo(
         f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(found.unexplained)} without a reason"
     )

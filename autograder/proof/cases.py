@@ -15,13 +15,13 @@ from autograder.course.release import write_released
 from autograder.course.sync import Chapter
 from autograder.grading.job import Scope
 from autograder.proof.claims import Attack, CaseKind, verify_full_marks, verify_mutant, verify_zero
+from autograder.proof.equivalent_rewrites import rewrites
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
 from autograder.proof.population import written_by_students
-from autograder.proof.rewritings import styles
 from autograder.result import Result
 
 Verifier = Callable[[Result], str]
-UNSEEN = Scope(pictures=False)
+WITHOUT_PICTURES = Scope(pictures=False)
 
 
 @dataclass(frozen=True)
@@ -36,14 +36,14 @@ class Case:
     name: str
     write: Callable[[Path], None]
     verify: Verifier
-    scope: Scope = UNSEEN
+    scope: Scope = WITHOUT_PICTURES
 
 
 def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     """Return an assignment's proof: all of it, or the part for each change.
 
-    The quick part has one mutant a check, graded by the checks that it stands for. It has no attacks, and no answers
-    that programs have written anew.
+    The quick part has one mutant for each check, graded by the checks that it stands for. It has no attacks and no
+    answers that `equivalent_rewrites` made.
     """
     sources, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     found = [
@@ -52,18 +52,18 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
         *_variants(assignment, sources),
     ]
     if quick:
-        found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_a_check(assignment)]
+        found += [_mutant(assignment, mutant, sources, only) for mutant, only in one_mutant_per_check(assignment)]
     else:
         found += [_mutant(assignment, mutant, sources) for mutant in mutants(assignment)]
         found += [_attack(assignment, attack) for attack in attacks(assignment)]
-        found += written_anew(assignment)
+        found += rewritten_cases(assignment)
     return tuple(found)
 
 
-def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
+def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
     """Return few mutants that fail every check, each with the checks that it stands for and those that these need.
 
-    Where a mutant fails a check by itself, and not merely for want of one that it depends on, such a one is taken.
+    A mutant that fails the check itself is preferred to one that only fails a check on which this one depends.
     """
     suite = suites.hidden(assignment)
     depends = {check.id: frozenset(check.depends) for check in suite.checks}
@@ -84,7 +84,7 @@ def one_a_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
 
 def _mutant(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
     write, verify = partial(write_mutant, mutant, sources), partial(verify_mutant, mutant, only=frozenset(only))
-    return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, scope=replace(UNSEEN, only=only))
+    return Case(assignment, CaseKind.MUTANT, mutant.id, write, verify, scope=replace(WITHOUT_PICTURES, only=only))
 
 
 def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
@@ -99,8 +99,8 @@ def _variants(assignment: str, sources: tuple[str, ...]) -> Iterator[Case]:
         yield Case(assignment, CaseKind.VARIANT, variant.name, write, verify_full_marks)
 
 
-def written_anew(assignment: str) -> list[Case]:
-    """Return the right answers that programs have made from the reference, one in each style."""
+def rewritten_cases(assignment: str) -> list[Case]:
+    """Return the answers that `equivalent_rewrites` makes from the reference, one for each way."""
     sources = suites.hidden(assignment).sources
 
     def write(target: Path, restyled: Callable[[str], str]) -> None:
@@ -112,7 +112,7 @@ def written_anew(assignment: str) -> list[Case]:
 
     return [
         Case(assignment, CaseKind.VARIANT, style, partial(write, restyled=restyled), verify_full_marks)
-        for style, restyled in styles().items()
+        for style, restyled in rewrites().items()
     ]
 
 

@@ -2,9 +2,10 @@
 
     python -m autograder.proof.fork_server SCRATCH DESCRIPTOR
 
-Starting a worker costs about a core-second, as much as many a submission's checks. The proof grades hundreds of
-submissions of its own, so it lets each lane's share one cell, one after another. Whoever grades students' submissions
-gives each a cell of its own (`pipeline.in_own_cell`); the sandboxes around students' code are the same in both.
+Starting a worker costs about a core-second, as much as the checks of many a submission. The proof grades thousands of
+submissions, which the course itself wrote. So one worker in one cell grades many of them, one after another. The
+submission of a student always gets a new worker in a new cell (`pipeline.in_own_cell`). The sandboxes around students'
+code are the same in both.
 
 It receives jobs. A reply is the child's exit status and what it wrote. All are JSON; nothing is unpickled.
 """
@@ -28,32 +29,32 @@ from autograder.grading.job import Job
 from autograder.prefork.profiles import PROFILES
 from autograder.sandbox.launcher import warm_up
 
-OUTPUT = 1024 * 1024  # bytes of a child's words that are replied, the last ones
+OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the reply
 
 
 def serve(scratch: Path, client: Connection) -> None:
     """Do jobs until the client ends, each in a child of its own that leaves no file."""
-    said = scratch / "said.log"
+    log_file = scratch / "output.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
         suite = suites.hidden(job.assignment)
         assert suite.version  # read once for all, too
         child = os.fork()
         if child == 0:
-            _work(job, suite, said)
+            _work(job, suite, log_file)
         _, status = os.waitpid(child, 0)
-        output = said.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if said.is_file() else ""
+        output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
         reply = {"status": os.waitstatus_to_exitcode(status), "output": output}
         for left in scratch.iterdir():
             subprocess.run(["rm", "-rf", "--", left], check=True)
         client.send_bytes(json.dumps(reply).encode())
 
 
-def _work(job: Job, suite: Suite, said: Path) -> None:
-    """Be the child: grade one submission, and end as a worker that was started for it alone does."""
+def _work(job: Job, suite: Suite, log_file: Path) -> None:
+    """Grade one submission in the child process, and exit: with status 0, or with 1 after an exception."""
     status = 1
     try:
-        log = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        log = os.open(log_file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1)
         os.dup2(log, 2)
         worker.work(job, suite)

@@ -96,7 +96,7 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
     text = path.read_text()
     if text.count(edit.find) != 1:
         occurs = f"{edit.find!r} occurs {text.count(edit.find)} times in {edit.file}"
-        raise GraderError(f"mutant {mutant.id}: {occurs}: mend the edit in mutants.yaml")
+        raise GraderError(f"mutant {mutant.id}: {occurs}: correct the edit in mutants.yaml")
     path.write_text(text.replace(edit.find, edit.replace))
 
 
@@ -112,7 +112,8 @@ def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
     loses = known if entry["loses"] == "all" else frozenset(entry["loses"])
     if not loses <= known:
         raise GraderError(
-            f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}: mend `loses` in mutants.yaml"
+            f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}: "
+            "correct `loses` in mutants.yaml"
         )
     return Mutant(
         id=entry["id"],

@@ -14,8 +14,8 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course.cells import is_solution, origin
 from autograder.course.sync import Chapter
-from autograder.proof.operators import Slip, Source, Spot, classic, left_out, places, replaced
-from autograder.proof.slips import is_queue_length, robotic, wall_time, wide
+from autograder.proof.python_operators import Slip, Source, Spot, classic, left_out, nodes_in_context, replaced
+from autograder.proof.ros_operators import is_queue_length, multi_node_mutations, ros_mutations, wall_time
 from autograder.proof.text_operators import text_slips
 
 PAIRS = 20  # mutants of second order in a chapter
@@ -62,7 +62,7 @@ class Slipped:
 
 @dataclass(frozen=True)
 class Population:
-    """A chapter's mutants, those of second order last, and how many were left out as equivalent or as twins."""
+    """A chapter's mutants, those of second order last, and how many were left out as equivalent or duplicate."""
 
     mutants: tuple[Slipped, ...]
     left_out: int
@@ -90,7 +90,7 @@ def population(assignment: str) -> Population:
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
-    """Yield (path, functions, given lines) of each file that students write or mend; no functions means all of them."""
+    """Yield (path, functions, given lines) of each file that students write or correct; no functions means all."""
     packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
     copies = [(cell, copied) for cell in chapter.read().cells if (copied := origin(cell))]
     for cell, copied in copies:
@@ -98,7 +98,7 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
             yield str(copied.source), frozenset(copied.hide) if copied.hide else None, frozenset()
     given = chapter.folder / "ws" / "src"
     written = {copied.source.parts[0] for _, copied in copies}
-    for package in set(packages) - written:  # it is given with faults, and there to be mended
+    for package in set(packages) - written:  # students get it with faults, and correct it
         for path in sorted((given / package).rglob("*")):
             right = layout.SOLUTIONS / path.relative_to(given)
             if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
@@ -112,11 +112,13 @@ def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tu
         return
     source = Source(text)
     nodes: list[ast.AST] = []
-    for function, place in places(source, functions):
-        nodes.append(place.node)
-        simple = itertools.chain(() if is_queue_length(place) else classic(source, place), robotic(source, place))
+    for function, context in nodes_in_context(source, functions):
+        nodes.append(context.node)
+        simple = itertools.chain(
+            () if is_queue_length(context) else classic(source, context), ros_mutations(source, context)
+        )
         yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
-        wider = itertools.chain(left_out(source, place.node), wide(source, place))
+        wider = itertools.chain(left_out(source, context.node), multi_node_mutations(source, context))
         yield from ((function, slip) for slip in wider)
     yield from (("", slip) for slip in wall_time(source, nodes))
 
@@ -124,14 +126,14 @@ def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tu
 def _named(file: str, function: str, operator: str, spots: tuple[Spot, ...], text: str) -> Slipped:
     """Name a mutant by what stands around its change, so that it keeps its name when other lines move."""
     data = text.encode()
-    said = hashlib.sha256(f"{file} {function} {operator}".encode())
+    name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
     for start, end, new in spots:
         begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
         before, old = data[begin:start], data[start:end]
-        said.update(b"\0".join((before, old, new.encode(), data[end:stop])))
-        said.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
+        name_digest.update(b"\0".join((before, old, new.encode(), data[end:stop])))
+        name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
     where = ".".join(filter(None, (file.rpartition("/")[2], function)))
-    return Slipped(f"{where} {operator} {said.hexdigest()[:6]}", operator, function, ((file, spots),))
+    return Slipped(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, spots),))
 
 
 def _pairs(mutants: list[Slipped]) -> Iterator[Slipped]:

@@ -12,7 +12,7 @@ from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
-from autograder.proof.lanes import Lanes
+from autograder.proof.worker_pool import WorkerPool
 from autograder.result import Status
 
 SUBMISSION = "submission"
@@ -20,16 +20,21 @@ PART = "part"  # the folder of a result for which not the whole suite was run
 
 
 def prove(
-    proof: Sequence[Case], *, seed: int, out: Path, lanes: Lanes, on_claim: Callable[[Claim], None] = lambda claim: None
+    proof: Sequence[Case],
+    *,
+    seed: int,
+    out: Path,
+    workers: WorkerPool,
+    on_claim: Callable[[Claim], None] = lambda claim: None,
 ) -> tuple[Claim, ...]:
-    """Grade the submissions of a proof on all lanes.
+    """Grade the submissions of a proof with all workers of a pool.
 
     Args:
         proof: submissions of one or several assignments, from `cases`.
         seed: seed of every hidden input.
         out: folder of the results; each submission's result goes to `out`/ASSIGNMENT/NAME. A result that lies there
             counts if the same submission, suite and seed made it, and the whole suite was run.
-        lanes: workers that grade.
+        workers: the pool that grades.
         on_claim: function that is called with each claim as soon as it is known, in any order.
 
     Returns:
@@ -40,21 +45,21 @@ def prove(
         with tempfile.TemporaryDirectory(prefix="proof-") as name:
             path, place = _write(case, Path(name) / case.name), out / case.assignment / case.name
             whole = not case.scope.only
-            request = Request(case.name, path, case.assignment, seed, lanes.tier, place, resume=whole)
+            request = Request(case.name, path, case.assignment, seed, workers.tier, place, resume=whole)
             result = request.stored() or grade_submission(
                 path,
                 case.assignment,
                 student=case.name,
                 seed=seed,
                 out=place if whole else place / PART,
-                isolation=lanes.tier,
+                isolation=workers.tier,
                 scope=case.scope,
-                run_job=lanes,
+                run_job=workers,
             )
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         return Claim(case.assignment, case.kind, case.name, result, mismatch)
 
-    claims = map_parallel(graded, _interleaved(proof), jobs=lanes.count, on_done=on_claim)
+    claims = map_parallel(graded, _interleaved(proof), jobs=workers.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}
     return tuple(found[case.assignment, case.name] for case in proof)
 

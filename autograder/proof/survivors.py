@@ -1,8 +1,8 @@
-"""Counts what became of the populations of mutants, and says of each survivor why it may live, or that nothing does.
+"""Counts and reports the results of the mutants. Each mutant that no check finds needs a reason in `survivors.yaml`.
 
-`survivors.yaml` of a suite has the reasons. There are two kinds:
+The report lists these mutants with their reasons, and says where there is none. There are two kinds of reasons:
 
-    - equivalent: why nobody could tell the mutants from the reference
+    - equivalent: why no input can show a difference from the reference
       mutants: [the ids]
     - outside: what the contract leaves free
       mutants: [the ids]
@@ -19,8 +19,8 @@ import yaml
 from autograder.checks import suites
 from autograder.course.markdown_table import table
 from autograder.exceptions import GraderError
+from autograder.proof.mutation_run import FAILED, MutantResult
 from autograder.proof.population import Population
-from autograder.proof.survey import FAILED, Fate
 
 KINDS = ("equivalent", "outside")
 LEAST_KILLED, LEAST_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
@@ -28,37 +28,37 @@ HEAD = """# The mutants
 
 Every slip of every operator in what students write, graded up to the first check that it loses. A cell is
 `killed/all`. The score is killed / (all - equivalent); mutants outside of the contract count as not killed.
-Left out as equivalent or as twins before grading: """
+Left out before grading, as equivalent or duplicate mutants: """
 
 
 @dataclass(frozen=True)
-class Surveyed:
-    """A chapter's population, why some of it may survive, and what became of it."""
+class ChapterMutationResult:
+    """A chapter's population, the reasons of its survivors, and the results of its mutants."""
 
     assignment: str
     population: Population
     reasons: Mapping[str, str]
-    fates: tuple[Fate, ...] = ()
+    results: tuple[MutantResult, ...] = ()
 
     @property
     def survivors(self) -> dict[str, str]:
         """The ids of the mutants that no check killed, each with its reason or ""."""
-        return {fate.id: self.reasons.get(fate.id, "") for fate in self.fates if not fate.killed}
+        return {result.id: self.reasons.get(result.id, "") for result in self.results if not result.killed}
 
     @property
     def killed(self) -> int:
         """How many mutants a check killed."""
-        return len(self.fates) - len(self.survivors)
+        return len(self.results) - len(self.survivors)
 
     @property
     def killable(self) -> int:
         """How many mutants were graded, without the survivors that are equivalent to the reference."""
-        return len(self.fates) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
+        return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
     def unexplained(self) -> list[str]:
         """The survivors that have no reason, and the mutants on which the grader failed."""
-        failed = {fate.id for fate in self.fates if fate.killer == FAILED}
+        failed = {result.id for result in self.results if result.killer == FAILED}
         return [name for name, reason in self.survivors.items() if not reason or name in failed]
 
 
@@ -74,7 +74,7 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
     for entry in entries:
         kinds = [kind for kind in KINDS if entry.get(kind)]
         if len(kinds) != 1 or found.keys() & entry["mutants"]:
-            raise GraderError(f"{path}: each mutant has one reason, which is {' or '.join(KINDS)}: mend {entry}")
+            raise GraderError(f"{path}: each mutant has one reason, which is {' or '.join(KINDS)}: correct {entry}")
         found |= dict.fromkeys(entry["mutants"], f"{kinds[0]}: {entry[kinds[0]]}")
     for pair in (mutant.id for mutant in population.mutants if mutant.operator == "pair"):
         halves = [found[name] for name in pair.split(" + ") if name in found]
@@ -85,50 +85,50 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
     return found
 
 
-def holds(surveyed: Sequence[Surveyed]) -> bool:
+def holds(chapters: Sequence[ChapterMutationResult]) -> bool:
     """Return whether enough mutants were killed, of each chapter and of all, and every other one has a reason."""
-    killed, killable = sum(each.killed for each in surveyed), sum(each.killable for each in surveyed)
-    enough = all(each.killed >= LEAST_KILLED * each.killable for each in surveyed)
+    killed, killable = sum(each.killed for each in chapters), sum(each.killable for each in chapters)
+    enough = all(each.killed >= LEAST_KILLED * each.killable for each in chapters)
     enough = enough and killed >= LEAST_KILLED_OF_ALL * killable
-    return enough and not any(each.unexplained for each in surveyed)
+    return enough and not any(each.unexplained for each in chapters)
 
 
-def mutant_counts(surveyed: Iterable[Surveyed]) -> dict[str, dict[str, list[int]]]:
+def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
     """Return [killed, all] of each chapter by operator."""
     found: dict[str, dict[str, list[int]]] = {}
-    for each in surveyed:
+    for each in chapters:
         operators = {mutant.id: mutant.operator for mutant in each.population.mutants}
         rows = found[each.assignment] = defaultdict(lambda: [0, 0])
-        for fate in each.fates:
-            for row in (rows[operators[fate.id]], rows["all"]):
-                row[0] += fate.killed
+        for result in each.results:
+            for row in (rows[operators[result.id]], rows["all"]):
+                row[0] += result.killed
                 row[1] += 1
     return found
 
 
-def report(surveyed: Sequence[Surveyed]) -> str:
+def report(chapters: Sequence[ChapterMutationResult]) -> str:
     """Return the table chapter x operator, and all survivors with their places, as Markdown."""
-    left_out = sum(each.population.left_out for each in surveyed)
-    return "\n".join([f"{HEAD}{left_out}.\n", *_table(surveyed), *_survivors(surveyed)])
+    left_out = sum(each.population.left_out for each in chapters)
+    return "\n".join([f"{HEAD}{left_out}.\n", *_table(chapters), *_survivors(chapters)])
 
 
-def _table(surveyed: Sequence[Surveyed]) -> Iterator[str]:
-    found = mutant_counts(surveyed)
+def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
+    found = mutant_counts(chapters)
     operators = sorted({name for rows in found.values() for name in rows}, key=lambda name: (name == "all", name))
     rows = []
     for operator in operators:
         cells = [chapter.get(operator, [0, 0]) for chapter in found.values()]
         both = [[sum(cell[i] for cell in cells) for i in (0, 1)], *cells]
         rows.append((operator, *(f"{killed}/{every}" if every else "" for killed, every in both)))
-    scores = [(each.killed, each.killable) for each in surveyed]
+    scores = [(each.killed, each.killable) for each in chapters]
     scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
     rows.append(("without the equivalent", *(f"{killed}/{killable}" for killed, killable in scores)))
     yield from table(("operator", "all", *(name[:2] for name in found)), rows)
 
 
-def _survivors(surveyed: Iterable[Surveyed]) -> Iterator[str]:
-    for each in surveyed:
+def _survivors(chapters: Iterable[ChapterMutationResult]) -> Iterator[str]:
+    for each in chapters:
         mutants = {mutant.id: mutant for mutant in each.population.mutants}
-        yield f"## {each.assignment}: {len(each.survivors)} of {len(each.fates)} survive\n"
+        yield f"## {each.assignment}: {len(each.survivors)} of {len(each.results)} survive\n"
         for name, reason in each.survivors.items():
             yield f"`{name}`: {reason or '**no reason**'}\n\n```diff\n{mutants[name].diff()}\n```\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from autograder.proof.operators import Slip, numbers
+from autograder.proof.python_operators import Slip, numbers
 
 TYPES = {
     "float64": "float32",

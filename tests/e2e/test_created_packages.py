@@ -15,9 +15,9 @@ import yaml
 from autograder.checks import suites
 from autograder.proof.cases import Case
 from autograder.proof.claims import CaseKind, verify_full_marks
-from autograder.proof.lanes import Lanes
 from autograder.proof.mutants import write_reference
 from autograder.proof.prove import prove
+from autograder.proof.worker_pool import WorkerPool
 from autograder.sandbox import Tier
 from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
 from tests.sampling import sample, unless
@@ -34,9 +34,9 @@ GIVEN = {"06_testing": ("speed_guard",)}
 
 
 @pytest.fixture(scope="module")
-def lanes() -> Iterator[Lanes]:
-    with Lanes(Tier.BUBBLEWRAP, 1) as lane:
-        yield lane
+def workers() -> Iterator[WorkerPool]:
+    with WorkerPool(Tier.BUBBLEWRAP, 1) as worker:
+        yield worker
 
 
 def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
@@ -48,7 +48,9 @@ def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "assignment", [pytest.param(one, marks=unless(one in now)) for now in [sample(list(MADE), 4)] for one in MADE]
 )
-def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(assignment: str, lanes: Lanes, tmp_path: Path) -> None:
+def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(
+    assignment: str, workers: WorkerPool, tmp_path: Path
+) -> None:
     def write(folder: Path) -> None:
         write_reference(suites.hidden(assignment).sources, folder)
         for package in MADE[assignment]:
@@ -57,5 +59,5 @@ def test_no_check_takes_a_point_for_a_file_that_pkg_create_wrote(assignment: str
             assert written(made) <= written(folder / "src" / package)
 
     case = Case(assignment, CaseKind.VARIANT, "created", write, verify_full_marks)
-    (claim,) = prove([case], seed=2026, out=tmp_path / "proof", lanes=lanes)
+    (claim,) = prove([case], seed=2026, out=tmp_path / "proof", workers=workers)
     assert claim.holds, "\n".join(f"{one.id}: {one.points:g} points. {one.message}" for one in claim.result.checks)

@@ -13,20 +13,20 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
-from autograder.proof.cases import Case, cases, written_anew
+from autograder.proof.cases import Case, cases, rewritten_cases
 from autograder.proof.claims import CaseKind
-from autograder.proof.lanes import Lanes
+from autograder.proof.mutation_run import prepared_run
 from autograder.proof.population import population
 from autograder.proof.prove import prove
-from autograder.proof.survey import surveying
 from autograder.proof.survivors import reasons
+from autograder.proof.worker_pool import WorkerPool
 from autograder.sandbox import Tier
 from tests.sampling import commit, sample, unless
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
     for name in suites.graded()
-    for case in (*cases(name, quick=True), *written_anew(name))
+    for case in (*cases(name, quick=True), *rewritten_cases(name))
 }
 # Chapters of which the whole population was graded, and every survivor has a reason.
 SURVEYED = [name for name in suites.graded() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
@@ -53,17 +53,17 @@ def test_the_samples_of_many_commits_contain_all_cases() -> None:
 
 
 @pytest.fixture(scope="session")
-def lanes() -> Iterator[Lanes]:
-    with Lanes(Tier.BUBBLEWRAP, 1) as lane:
-        yield lane
+def workers() -> Iterator[WorkerPool]:
+    with WorkerPool(Tier.BUBBLEWRAP, 1) as worker:
+        yield worker
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "case", [pytest.param(PROOF[id], id=id, marks=unless(id in now)) for now in [chosen()] for id in PROOF]
 )
-def test_a_submission_gets_its_expected_result(case: Case, lanes: Lanes, tmp_path: Path) -> None:
-    (claim,) = prove([case], seed=2026, out=tmp_path, lanes=lanes)
+def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:
+    (claim,) = prove([case], seed=2026, out=tmp_path, workers=workers)
     log = tmp_path / case.assignment / case.name / "grader.log"
     messages = [f"{check.id}: {check.points:g} points. {check.message}" for check in claim.result.checks]
     details = [claim.mismatch, *messages, log.read_text() if log.is_file() else ""]
@@ -74,21 +74,21 @@ def test_a_submission_gets_its_expected_result(case: Case, lanes: Lanes, tmp_pat
 @pytest.mark.parametrize(
     "assignment", [pytest.param(name, marks=unless(name in now)) for now in [sample(SURVEYED, 4)] for name in SURVEYED]
 )
-def test_each_sampled_mutant_of_the_population_is_killed_or_has_a_reason(assignment: str, lanes: Lanes) -> None:
+def test_each_sampled_mutant_of_the_population_is_killed_or_has_a_reason(assignment: str, workers: WorkerPool) -> None:
     found = population(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
     chosen = sample(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
-    with surveying(assignment, lanes, 2026) as survey:
-        fates = [survey.fate(mutants[name]) for name in sorted(chosen)]
-    print(*fates, sep="\n")
-    assert not [mutants[fate.id].diff() for fate in fates if not fate.killed]
+    with prepared_run(assignment, workers, 2026) as run:
+        results = [run.run_mutant(mutants[name]) for name in sorted(chosen)]
+    print(*results, sep="\n")
+    assert not [mutants[result.id].diff() for result in results if not result.killed]
 
 
 @pytest.mark.slow
-def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(lanes: Lanes) -> None:
+def test_a_patched_build_of_the_reference_is_graded_like_a_real_build(workers: WorkerPool) -> None:
     found = [mutant for mutant in population("02_nodes").mutants if mutant.operator == "no publish"]
-    with surveying("02_nodes", lanes, 2026) as survey:
-        assert survey.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
-        patched = [survey.fate(mutant).killer for mutant in found]
-        survey.ways = {"patched": frozenset(), "unbuilt": frozenset()}
-        assert [survey.fate(mutant).killer for mutant in found] == patched
+    with prepared_run("02_nodes", workers, 2026) as run:
+        assert run.ways["patched"] == {check.id for check in suites.hidden("02_nodes").checks}
+        patched = [run.run_mutant(mutant).killer for mutant in found]
+        run.ways = {"patched": frozenset(), "unbuilt": frozenset()}
+        assert [run.run_mutant(mutant).killer for mutant in found] == patched

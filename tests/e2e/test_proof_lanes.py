@@ -17,8 +17,8 @@ from autograder.diagnosis import Kind
 from autograder.grading import grade_submission
 from autograder.grading.job import ALL, Scope
 from autograder.grading.pipeline import LOG, RunJob, in_own_cell
-from autograder.proof.lanes import Lanes
 from autograder.proof.mutants import write_reference
+from autograder.proof.worker_pool import WorkerPool
 from autograder.result import Result, Status
 from autograder.sandbox import Tier
 
@@ -44,8 +44,10 @@ def half(reference: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _grade(path: Path, out: Path, lanes: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
-    return grade_submission(path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=lanes)
+def _grade(path: Path, out: Path, workers: RunJob, scope: Scope = ALL, tier: Tier = Tier.BUBBLEWRAP) -> Result:
+    return grade_submission(
+        path, ASSIGNMENT, student="s", seed=3, out=out, isolation=tier, scope=scope, run_job=workers
+    )
 
 
 def _verdicts(result: Result) -> list[tuple[object, ...]]:
@@ -65,7 +67,7 @@ def _running() -> set[int]:
 
 @pytest.fixture
 def servers() -> Servers:
-    """Return a function that gives the fork servers started by the test; those of other tests' lanes do not count."""
+    """Return a function that gives the fork servers started by the test; those of other tests' workers do not count."""
     before = _running()
     return lambda: sorted(_running() - before)
 
@@ -73,8 +75,8 @@ def servers() -> Servers:
 def test_a_shared_cell_gives_the_same_results_as_a_cell_for_each_submission(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
-    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
-        shared = [_grade(path, tmp_path / "shared", lanes, SOME) for path in (reference, half, reference)]
+    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
+        shared = [_grade(path, tmp_path / "shared", workers, SOME) for path in (reference, half, reference)]
         assert len(servers()) == 1
     assert servers() == []
     alone = [_grade(path, tmp_path / "alone", in_own_cell, SOME) for path in (reference, half)]
@@ -83,14 +85,14 @@ def test_a_shared_cell_gives_the_same_results_as_a_cell_for_each_submission(
     assert shared[1].diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
 
 
-def test_a_lane_can_be_used_after_the_thread_that_used_it_first_has_ended(
+def test_a_worker_can_be_used_after_the_thread_that_used_it_first_has_ended(
     half: Path, servers: Servers, tmp_path: Path
 ) -> None:
     seen = []
-    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
+    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
         for name in ("one", "two"):
             with ThreadPoolExecutor(1) as thread:
-                graded = thread.submit(_grade, half, tmp_path / name, lanes).result()
+                graded = thread.submit(_grade, half, tmp_path / name, workers).result()
             assert graded.diagnosis.kind is Kind.HALF_WRITTEN_PACKAGE
             seen.append(servers())
     assert len(seen[0]) == 1
@@ -100,9 +102,9 @@ def test_a_lane_can_be_used_after_the_thread_that_used_it_first_has_ended(
 def test_a_failed_grading_reports_the_reason_and_does_not_change_the_next_one(
     reference: Path, half: Path, servers: Servers, tmp_path: Path
 ) -> None:
-    with Lanes(Tier.BUBBLEWRAP, 1) as lanes:
-        failed = _grade(reference, tmp_path / "failed", lanes, Scope(only=("no_such_check",)))
-        graded = _grade(half, tmp_path / "graded", lanes)
+    with WorkerPool(Tier.BUBBLEWRAP, 1) as workers:
+        failed = _grade(reference, tmp_path / "failed", workers, Scope(only=("no_such_check",)))
+        graded = _grade(half, tmp_path / "graded", workers)
         assert len(servers()) == 1
     assert failed.status is Status.NOT_GRADED
     assert "no record of no_such_check" in (tmp_path / "failed" / LOG).read_text()
@@ -113,12 +115,12 @@ def test_a_fork_server_that_ends_is_replaced_and_leaves_nothing(
     half: Path, servers: Servers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    with Lanes(Tier.PROCESS, 1) as lanes:
-        assert _grade(half, tmp_path / "one", lanes, tier=Tier.PROCESS).status is Status.GRADED
+    with WorkerPool(Tier.PROCESS, 1) as workers:
+        assert _grade(half, tmp_path / "one", workers, tier=Tier.PROCESS).status is Status.GRADED
         (cell,) = tmp_path.glob("autograder-cell-*")
         assert list(cell.iterdir()) == []
         (server,) = servers()
         os.kill(server, signal.SIGKILL)
-        assert _grade(half, tmp_path / "two", lanes, tier=Tier.PROCESS).status is Status.GRADED
+        assert _grade(half, tmp_path / "two", workers, tier=Tier.PROCESS).status is Status.GRADED
         assert servers() not in ([], [server])
     assert list(tmp_path.glob("autograder-cell-*")) == []

@@ -8,7 +8,7 @@ from autograder.checks import Check, Visibility
 from autograder.course.minutes import Effort
 from autograder.course.syllabus import Location, Syllabus, find_coverage
 from autograder.course.tables import PAGE, course_page, page
-from autograder.proof import guide
+from autograder.proof import checks_page
 
 from .notebooks import code, notebook, prose
 
@@ -72,7 +72,7 @@ def test_the_page_has_a_row_for_each_and_keeps_to_markdown() -> None:
 def test_the_course_covers_the_syllabus_and_its_pages_are_up_to_date() -> None:
     written, findings = course_page()
     assert [str(finding) for finding in findings] == []
-    for path, text in ((PAGE, written), (guide.PAGE, guide.guide())):
+    for path, text in ((PAGE, written), (checks_page.PAGE, checks_page.checks_page())):
         assert path.read_text(encoding="utf-8") == text, f"{path.name} is out of date: run `autograder course tables`"
 
 

@@ -11,9 +11,9 @@ from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.exceptions import GraderError
 from autograder.proof import survivors
+from autograder.proof.mutation_run import FAILED, MutantResult
 from autograder.proof.population import Population, population
-from autograder.proof.survey import FAILED, Fate
-from autograder.proof.survivors import Surveyed, holds, mutant_counts, reasons, report
+from autograder.proof.survivors import ChapterMutationResult, holds, mutant_counts, reasons, report
 
 ASSIGNMENT = "02_nodes"
 
@@ -40,14 +40,16 @@ def test_the_name_of_a_mutant_does_not_change_with_other_code(monkeypatch: pytes
     assert before.id == after.id
 
 
-def surveyed(*killers: str) -> Surveyed:
+def chapter_result(*killers: str) -> ChapterMutationResult:
     """Return what became of a chapter's first mutants."""
     mutants = population(ASSIGNMENT).mutants[: len(killers)]
-    fates = tuple(Fate(mutant.id, killer, 1.0, "") for mutant, killer in zip(mutants, killers, strict=True))
-    return Surveyed(ASSIGNMENT, Population(mutants, 2), {}, fates)
+    results = tuple(MutantResult(mutant.id, killer, 1.0, "") for mutant, killer in zip(mutants, killers, strict=True))
+    return ChapterMutationResult(ASSIGNMENT, Population(mutants, 2), {}, results)
 
 
-def with_reason(found: Surveyed, monkeypatch: pytest.MonkeyPatch, text: str, folder: Path) -> Surveyed:
+def with_reason(
+    found: ChapterMutationResult, monkeypatch: pytest.MonkeyPatch, text: str, folder: Path
+) -> ChapterMutationResult:
     """Return the same with the reasons of a file with this text."""
     real = suites.hidden(ASSIGNMENT)
     twin = replace(real, files=tuple(folder / "hidden" / path.name for path in real.files))
@@ -58,8 +60,8 @@ def with_reason(found: Surveyed, monkeypatch: pytest.MonkeyPatch, text: str, fol
 
 
 def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = surveyed(*["starts"] * 39, "")
-    survivor = found.fates[-1].id
+    found = chapter_result(*["starts"] * 39, "")
+    survivor = found.results[-1].id
     found = with_reason(found, monkeypatch, "[]", tmp_path)
     assert found.unexplained == [survivor]
     assert not holds([found])
@@ -77,8 +79,8 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
 def test_the_score_leaves_out_the_equivalent_and_counts_those_outside_of_the_contract(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: str, killable: int, enough: bool
 ) -> None:
-    found = surveyed(*["starts"] * 38, "", "")
-    names = [fate.id for fate in found.fates[-2:]]
+    found = chapter_result(*["starts"] * 38, "", "")
+    names = [result.id for result in found.results[-2:]]
     found = with_reason(found, monkeypatch, f"- {{{kind}: so it is, mutants: {names}}}", tmp_path)
     assert found.unexplained == []
     assert (found.killed, found.killable) == (38, killable)
@@ -89,14 +91,14 @@ def test_a_pair_of_mutants_has_the_reason_of_its_two_parts(monkeypatch: pytest.M
     pair = next(mutant.id for mutant in population(ASSIGNMENT).mutants if mutant.operator == "pair")
     one, other = pair.split(" + ")
     text = f"- {{outside: who cares, mutants: ['{one}']}}\n- {{equivalent: the same, mutants: ['{other}']}}"
-    found = Surveyed(ASSIGNMENT, population(ASSIGNMENT), {})
+    found = ChapterMutationResult(ASSIGNMENT, population(ASSIGNMENT), {})
     assert with_reason(found, monkeypatch, text, tmp_path).reasons[pair] == "outside: who cares"
 
 
 def test_a_mutant_that_was_not_graded_makes_the_proof_fail(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = surveyed(*["starts"] * 39, FAILED)
+    found = chapter_result(*["starts"] * 39, FAILED)
     found = with_reason(
-        found, monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.fates[-1].id}']}}", tmp_path
+        found, monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.results[-1].id}']}}", tmp_path
     )
     assert not holds([found])
 
@@ -113,4 +115,4 @@ def test_a_reason_that_matches_no_mutant_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, said: str
 ) -> None:
     with pytest.raises(GraderError, match=said):
-        with_reason(Surveyed(ASSIGNMENT, population(ASSIGNMENT), {}), monkeypatch, text, tmp_path)
+        with_reason(ChapterMutationResult(ASSIGNMENT, population(ASSIGNMENT), {}), monkeypatch, text, tmp_path)

@@ -1,4 +1,4 @@
-"""The submissions of a proof are graded by all lanes at once, and each result has its own place."""
+"""The submissions of a proof are graded by all workers at once, and each result has its own place."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.job import Job, Scope
 from autograder.grading.pipeline import refused
 from autograder.intake import read_submission
-from autograder.proof.cases import UNSEEN, Case
+from autograder.proof.cases import WITHOUT_PICTURES, Case
 from autograder.proof.claims import CaseKind, verify_full_marks
-from autograder.proof.lanes import Lanes
 from autograder.proof.prove import prove
+from autograder.proof.worker_pool import WorkerPool
 from autograder.result import write_json
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import CellReport
 from autograder.sandbox.process import Ending
 
-LANES = 3
+WORKERS = 3
 CHAPTERS = ("01_package_structure", "02_nodes", "03_interfaces")
 
 
 class NoGrader:
-    """Lanes in which every grading fails, and none before as many as there are lanes have begun."""
+    """A pool in which every grading fails, and none before as many as there are workers have begun."""
 
-    tier, count = Tier.PROCESS, LANES
+    tier, count = Tier.PROCESS, WORKERS
 
     def __init__(self) -> None:
-        self._together = threading.Barrier(LANES, timeout=60.0)
+        self._together = threading.Barrier(WORKERS, timeout=60.0)
 
     def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
         self._together.wait()
@@ -42,7 +42,7 @@ class NoGrader:
 
 
 class OneByOne(NoGrader):
-    """One lane."""
+    """One worker."""
 
     count = 1
 
@@ -51,7 +51,7 @@ class OneByOne(NoGrader):
 
 
 class Recorder(OneByOne):
-    """One lane that records a result without points, and counts how often it is asked to."""
+    """One worker that records a result without points, and counts how often it is asked to."""
 
     count, asked = 1, 0
 
@@ -68,7 +68,7 @@ def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
 
 
 def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
-    claims = prove(proof, seed=1, out=out, lanes=cast(Lanes, NoGrader()), **options)
+    claims = prove(proof, seed=1, out=out, workers=cast(WorkerPool, NoGrader()), **options)
     return [claim.mismatch for claim in claims]
 
 
@@ -92,7 +92,7 @@ def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Pa
         return replace(case(assignment, write), name=name)
 
     proof = [*(named("01_package_structure", name) for name in "abcd"), *(named("02_nodes", name) for name in "ab")]
-    claims = prove(proof, seed=1, out=tmp_path, lanes=cast(Lanes, OneByOne()))
+    claims = prove(proof, seed=1, out=tmp_path, workers=cast(WorkerPool, OneByOne()))
     assert [(claim.assignment, claim.name) for claim in claims] == [(case.assignment, case.name) for case in proof]
     assert made == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
 
@@ -106,18 +106,20 @@ def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None
 
 
 def test_a_result_counts_again_only_for_the_same_submission_and_the_whole_suite(tmp_path: Path) -> None:
-    lane = Recorder()
+    worker = Recorder()
 
-    def asked(text: str, scope: Scope = UNSEEN, seed: int = 1) -> int:
+    def asked(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
         def write(folder: Path) -> None:
             (folder / "src").mkdir(parents=True)
             (folder / "src" / "package.xml").write_text(text)
 
-        before = lane.asked
-        prove([replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, lanes=cast(Lanes, lane))
-        return lane.asked - before
+        before = worker.asked
+        prove(
+            [replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, workers=cast(WorkerPool, worker)
+        )
+        return worker.asked - before
 
-    part = replace(UNSEEN, only=("found",))
+    part = replace(WITHOUT_PICTURES, only=("found",))
     assert [asked("one"), asked("one")] == [1, 0]
     assert [asked("one", seed=2), asked("two"), asked("two")] == [1, 1, 0]
     assert [asked("two", part), asked("two", part), asked("two")] == [1, 1, 0]

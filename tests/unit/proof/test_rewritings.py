@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from autograder.proof.rewritings import LONGEST_LINE, formatted, rewritten
+from autograder.proof.equivalent_rewrites import LONGEST_LINE, formatted, rewritten
 
 MODULE = '''"""A robot that measures."""
 import math

@@ -1,6 +1,6 @@
 """Rewrites right answers as other people would write them: they do the same, and have to keep every point.
 
-As the operators do, a rewriting changes the text at the positions that `ast` gives.
+Like the operators, a rewriting changes the text at the positions that `ast` gives.
 """
 
 from __future__ import annotations
@@ -16,7 +16,15 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from importlib.util import find_spec
 
-from autograder.proof.operators import FUNCTIONS, SYMBOLS, Place, Source, Spot, places, replaced
+from autograder.proof.python_operators import (
+    FUNCTIONS,
+    SYMBOLS,
+    NodeInContext,
+    Source,
+    Spot,
+    nodes_in_context,
+    replaced,
+)
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 # Operands that bind tighter than a comparison.
@@ -34,7 +42,7 @@ def rewritten(text: str) -> str:
     """
     for rewriting in REWRITINGS:
         source = Source(text)
-        found = [place for _, place in places(source, None)]
+        found = [context for _, context in nodes_in_context(source, None)]
         text = replaced(source.data, tuple(rewriting(source, found))).decode()
     return text
 
@@ -46,18 +54,18 @@ def formatted(text: str) -> str:
     return subprocess.run(command, input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
-def styles() -> Mapping[str, Callable[[str], str]]:
-    """Return the ways to write an answer anew. Only who develops a course has ruff, which formats."""
+def rewrites() -> Mapping[str, Callable[[str], str]]:
+    """Return the ways to rewrite an answer. `formatted` needs ruff, which only the developers of a course have."""
     return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
 
 
 def _where_it_fits(
-    rewriting: Callable[[Source, list[Place]], Iterator[Spot]],
-) -> Callable[[Source, list[Place]], Iterator[Spot]]:
+    rewriting: Callable[[Source, list[NodeInContext]], Iterator[Spot]],
+) -> Callable[[Source, list[NodeInContext]], Iterator[Spot]]:
     """Keep of a rewriting what lies in no other replacement, and in one line, which it does not make too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, found: list[Place]) -> Iterator[Spot]:
+    def fitting(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
         reached = -1
         for start, end, new in sorted(rewriting(source, found), key=lambda spot: (spot[0], -spot[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
@@ -70,10 +78,10 @@ def _where_it_fits(
 
 
 @_where_it_fits
-def mirrored_comparisons(source: Source, found: list[Place]) -> Iterator[Spot]:
+def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield `b > a` for `a < b`, unless both sides call something: the order of the calls may matter."""
-    for place in found:
-        node = place.node
+    for context in found:
+        node = context.node
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
             sides = (node.left, node.comparators[0])
             symbol = MIRRORED.get(SYMBOLS[type(node.ops[0])])
@@ -83,31 +91,31 @@ def mirrored_comparisons(source: Source, found: list[Place]) -> Iterator[Spot]:
 
 
 @_where_it_fits
-def turned_conditions(source: Source, found: list[Place]) -> Iterator[Spot]:
+def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield `b if not c else a` for `a if c else b`."""
-    for place in found:
-        node = place.node
+    for context in found:
+        node = context.node
         if isinstance(node, ast.IfExp):
             body, test, other = (_operand(source, part) for part in (node.body, node.test, node.orelse))
             yield (*source.span(node), f"{other} if not {test} else {body}")
 
 
 @_where_it_fits
-def written_out_sums(source: Source, found: list[Place]) -> Iterator[Spot]:
+def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield `x = x + 1` for `x += 1`: of numbers only, as a list would become another list."""
-    for place in found:
-        node = place.node
+    for context in found:
+        node = context.node
         if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
             target = source.text(node.target)
             yield (*source.span(node), f"{target} = {target} + {source.text(node.value)}")
 
 
-def renamed_variables(source: Source, found: list[Place]) -> Iterator[Spot]:
+def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield another name for each local variable, of the same length, so that continued lines stay in their columns."""
     taken = set(re.findall(r"\w+", source.data.decode()))
-    for place in found:
-        function = place.node
-        if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in place.around):
+    for context in found:
+        function = context.node
+        if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
             continue
         names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
         once = {name for name, count in Counter(names.values()).items() if count == 1} - taken
@@ -116,9 +124,9 @@ def renamed_variables(source: Source, found: list[Place]) -> Iterator[Spot]:
                 yield (*source.span(node), names[node.id])
 
 
-def reordered_methods(source: Source, found: list[Place]) -> Iterator[Spot]:
+def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield the methods of each class in the opposite order, after `__init__`."""
-    for node in (place.node for place in found if isinstance(place.node, ast.ClassDef)):
+    for node in (context.node for context in found if isinstance(context.node, ast.ClassDef)):
         methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
         names = {each.name for each in methods}
         decorators = [ast.walk(decorator) for each in methods for decorator in each.decorator_list]
@@ -130,9 +138,9 @@ def reordered_methods(source: Source, found: list[Place]) -> Iterator[Spot]:
 
 
 @_where_it_fits
-def return_types(source: Source, found: list[Place]) -> Iterator[Spot]:
+def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield `-> None` for each function that returns nothing."""
-    for node in (place.node for place in found if isinstance(place.node, FUNCTIONS)):
+    for node in (context.node for context in found if isinstance(context.node, FUNCTIONS)):
         inside = list(ast.walk(node))
         gives = any(isinstance(each, ast.Return) and each.value for each in inside)
         if (
@@ -144,7 +152,7 @@ def return_types(source: Source, found: list[Place]) -> Iterator[Spot]:
             yield colon, colon, " -> None"
 
 
-def postponed_annotations(source: Source, found: list[Place]) -> Iterator[Spot]:
+def postponed_annotations(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
     """Yield `from __future__ import annotations` below the module's docstring."""
     body = source.tree.body
     if found and ast.get_docstring(source.tree) and "__future__" not in source.data.decode():

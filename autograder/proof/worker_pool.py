@@ -1,4 +1,4 @@
-"""The trusted end of fork servers: one a lane, started when it is needed, and again when it has failed."""
+"""A pool of grading workers. Each is a fork server in a cell; it starts on first use, and again after a failure."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from autograder.sandbox.limits import GRADING_CELL, PROOF_CELL
 from autograder.sandbox.process import Ending
 from autograder.sandbox.tiers import Tier, require
 
-_TICK = 0.25  # s between two looks at whether a silent server still lives
+_TICK = 0.25  # s between two tests whether a silent server still runs
 
 
-class Lanes:
-    """Grades submissions in a few cells that are used again and again; a context manager.
+class WorkerPool:
+    """Grades submissions with a few workers, each in one cell for many submissions; a context manager.
 
     It is called as `pipeline.in_own_cell` is. For submissions that are the course's own, see `fork_server`.
 
     Args:
-        tier: how strongly a cell is kept apart.
-        count: how many there are, for as many calls at once.
+        tier: the isolation of each worker's cell.
+        count: number of workers; as many submissions can be graded at once.
 
     Raises:
         IsolationError: this machine cannot give the tier.
@@ -36,36 +36,36 @@ class Lanes:
 
     def __init__(self, tier: Tier, count: int) -> None:
         self.tier, self.count = require(tier), count
-        # The kernel ends a cell with the thread that started it. This one lives as long as the lanes do.
+        # The kernel ends a cell with the thread that started it. This one lives as long as the workers do.
         self._starter = ThreadPoolExecutor(1)
-        self._idle: queue.SimpleQueue[_Lane | None] = queue.SimpleQueue()
+        self._idle: queue.SimpleQueue[_Worker | None] = queue.SimpleQueue()
         for _ in range(count):
             self._idle.put(None)
 
-    def __enter__(self) -> Lanes:
+    def __enter__(self) -> WorkerPool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for lane in [self._idle.get() for number in range(self.count)]:
-            if lane is not None:
-                lane.close()
+        for worker in [self._idle.get() for number in range(self.count)]:
+            if worker is not None:
+                worker.close()
         self._starter.shutdown()
 
     def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
         """Grade one submission; `job_in` makes its job from a scratch folder."""
-        lane = self._idle.get()
+        worker = self._idle.get()
         try:
-            lane = lane or self._starter.submit(_Lane, self.tier).result()
-            report = lane.grade(job_in(lane.scratch / "job"))
+            worker = worker or self._starter.submit(_Worker, self.tier).result()
+            report = worker.grade(job_in(worker.scratch / "job"))
             if report.ending is not Ending.EXITED:
-                lane.close()
-                lane = None
+                worker.close()
+                worker = None
             return report
         finally:
-            self._idle.put(lane)
+            self._idle.put(worker)
 
 
-class _Lane:
+class _Worker:
     """A fork server in a cell."""
 
     def __init__(self, tier: Tier) -> None:
@@ -81,18 +81,18 @@ class _Lane:
             self._process, self.scratch = self._stack.enter_context(cell)
 
     def grade(self, job: Job) -> CellReport:
-        """Order one job and wait for its end; any ending but `exited` is the server's, which is of no more use."""
+        """Send one job and wait for its result. If the ending is not `exited`, the worker cannot be used again."""
         deadline = time.monotonic() + GRADING_CELL.wall_seconds
         try:
             self._server.send_bytes(job.to_json().encode())
             while not self._server.poll(_TICK):
                 if self._process.ending is not None or time.monotonic() > deadline:
                     return self._dead()
-            said = json.loads(self._server.recv_bytes())
+            reply = json.loads(self._server.recv_bytes())
         except (EOFError, OSError):  # the server is no more
             self._process.wait(GRADING_CELL.wall_seconds)
             return self._dead()
-        return CellReport(Ending.EXITED, said["status"], said["output"])
+        return CellReport(Ending.EXITED, reply["status"], reply["output"])
 
     def _dead(self) -> CellReport:
         self._process.kill()

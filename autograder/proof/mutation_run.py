@@ -1,4 +1,4 @@
-"""Grades a chapter's population of mutants, each up to the first check that it loses, and keeps what came out.
+"""Grades the mutants of a chapter's population, each up to the first check that it loses, and stores the results.
 
 A mutant costs a second, because of three things. Where colcon would only copy the changed file, the built reference is
 patched. Where checks look at the sources alone, they are asked before anything is built. And the checks that killed the
@@ -25,9 +25,9 @@ from autograder.fingerprint import digest
 from autograder.grading.job import Scope
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
-from autograder.proof.lanes import Lanes
 from autograder.proof.mutants import write_reference
 from autograder.proof.population import Slipped
+from autograder.proof.worker_pool import WorkerPool
 from autograder.result import Result, Status
 from autograder.ros import activate
 from autograder.workspace import Workspace
@@ -39,8 +39,8 @@ FAILED = "not graded"
 
 
 @dataclass(frozen=True)
-class Fate:
-    """What became of a mutant: the check that killed it, "" if it survived, or that the grader failed on it."""
+class MutantResult:
+    """The result of a mutant. `killer` is the check that it lost, "" if it lost none, FAILED if the grader failed."""
 
     id: str
     killer: str
@@ -53,18 +53,18 @@ class Fate:
         return self.killer not in ("", FAILED)
 
 
-class Survey:
+class MutationRun:
     """Grades mutants of one chapter.
 
     Args:
         assignment: the chapter.
-        lanes: workers that grade.
+        workers: the pool that grades.
         seed: seed of every hidden input.
-        folder: the folder that holds the built reference, and nothing of which is kept.
+        folder: a temporary folder, which gets the built reference.
     """
 
-    def __init__(self, assignment: str, lanes: Lanes, seed: int, folder: Path) -> None:
-        self._suite, self._lanes, self._seed, self._folder = suites.hidden(assignment), lanes, seed, folder
+    def __init__(self, assignment: str, workers: WorkerPool, seed: int, folder: Path) -> None:
+        self._suite, self._workers, self._seed, self._folder = suites.hidden(assignment), workers, seed, folder
         self._killers: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
         self._ids = tuple(check.id for check in self._suite.checks)
         for name in ("patched", "unbuilt"):
@@ -79,14 +79,14 @@ class Survey:
         result = self._grade({}, Scope(pictures=False, built=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
-    def fate(self, mutant: Slipped, version: str = "") -> Fate:
+    def run_mutant(self, mutant: Slipped, version: str = "") -> MutantResult:
         """Grade a mutant up to the first check that it loses."""
         began = time.monotonic()
         killer = next(filter(None, self._stages(mutant)), "")
         if killer:
             for place in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[place][killer] += 1
-        return Fate(mutant.id, killer, round(time.monotonic() - began, 2), version)
+        return MutantResult(mutant.id, killer, round(time.monotonic() - began, 2), version)
 
     def _stages(self, mutant: Slipped) -> Iterator[str]:
         """Yield the killer of each stage, or "": first what is quick, and what is likely to kill."""
@@ -129,54 +129,58 @@ class Survey:
                 student="mutant",
                 seed=self._seed,
                 out=folder / "out",
-                isolation=self._lanes.tier,
+                isolation=self._workers.tier,
                 scope=scope,
-                run_job=self._lanes,
+                run_job=self._workers,
             )
 
 
-def survey(
+def run_mutants(
     assignment: str,
     mutants: Iterable[Slipped],
-    lanes: Lanes,
+    workers: WorkerPool,
     *,
     seed: int,
     kept: Path,
-    on_fate: Callable[[Fate], None] = lambda fate: None,
-) -> tuple[Fate, ...]:
-    """Grade mutants of a chapter, and return what became of them.
+    on_result: Callable[[MutantResult], None] = lambda result: None,
+) -> tuple[MutantResult, ...]:
+    """Grade mutants of a chapter, and return their results.
 
-    `kept` is a file of fates. One that the same suite and reference made counts, so that a run that was stopped goes on
-    where it was. Each new one is added.
+    `kept` is a file of results. A result in it counts if suite and reference are the same, so that a stopped run can
+    continue. Each new result is added to it.
     """
     version, chosen = _version(assignment), list(mutants)
     lines = kept.read_text(encoding="utf-8").splitlines() if kept.is_file() else []
-    known = {fate.id: fate for fate in (Fate(**json.loads(line)) for line in lines) if fate.version == version}
+    known = {
+        result.id: result
+        for result in (MutantResult(**json.loads(line)) for line in lines)
+        if result.version == version
+    }
     missing = [mutant for mutant in chosen if mutant.id not in known]
     kept.parent.mkdir(parents=True, exist_ok=True)
     with kept.open("a", encoding="utf-8") as file:
 
-        def keep(fate: Fate) -> None:
-            if fate.killer != FAILED:
-                file.write(json.dumps(asdict(fate)) + "\n")
+        def keep(result: MutantResult) -> None:
+            if result.killer != FAILED:
+                file.write(json.dumps(asdict(result)) + "\n")
                 file.flush()
-            on_fate(fate)
+            on_result(result)
 
-        made: tuple[Fate, ...] = ()
+        made: tuple[MutantResult, ...] = ()
         if missing:
-            with surveying(assignment, lanes, seed) as surveyor:
+            with prepared_run(assignment, workers, seed) as run:
                 made = map_parallel(
-                    lambda mutant: surveyor.fate(mutant, version), missing, jobs=lanes.count, on_done=keep
+                    lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=keep
                 )
-    known |= {fate.id: fate for fate in made}
+    known |= {result.id: result for result in made}
     return tuple(known[mutant.id] for mutant in chosen)
 
 
 @contextmanager
-def surveying(assignment: str, lanes: Lanes, seed: int) -> Iterator[Survey]:
-    """Yield a survey of a chapter, in a folder of its own."""
-    with tempfile.TemporaryDirectory(prefix="survey-") as name:
-        yield Survey(assignment, lanes, seed, Path(name))
+def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[MutationRun]:
+    """Yield a mutation run of a chapter, with a temporary folder."""
+    with tempfile.TemporaryDirectory(prefix="mutation-run-") as name:
+        yield MutationRun(assignment, workers, seed, Path(name))
 
 
 def _version(assignment: str) -> str:

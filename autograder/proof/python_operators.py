@@ -1,8 +1,8 @@
 """Mutation operators for Python. Each makes one slip at one place, or one kind of slip at all its places.
 
 They change the text at the positions that `ast` gives, so that the rest of the text stays the same. cosmic-ray and
-mutmut have the classic ones only, and bring a parser and a dozen packages with them; the slips of robots, `slips.py`,
-need the positions of `ast` in any case.
+mutmut have the classic ones only, and bring a parser and a dozen packages with them; the slips of robots,
+`ros_operators.py`, need the positions of `ast` in any case.
 """
 
 from __future__ import annotations
@@ -61,15 +61,15 @@ def replaced(data: bytes, spots: Iterable[Spot]) -> bytes:
 
 
 @dataclass(frozen=True)
-class Place:
-    """A node with what stands around it: the innermost first, and the function that holds it, if one does."""
+class NodeInContext:
+    """A node, the nodes that contain it (the innermost first), and the function that it belongs to, or None."""
 
     node: ast.AST
-    around: tuple[ast.AST, ...]
+    ancestors: tuple[ast.AST, ...]
     function: ast.FunctionDef | ast.AsyncFunctionDef | None
 
 
-def places(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[str, Place]]:
+def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[str, NodeInContext]]:
     """Yield the nodes that students write, each with the name of its function, "" at the top of the module.
 
     Args:
@@ -77,15 +77,15 @@ def places(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[s
         functions: the qualified names of the functions that students write. None stands for all.
     """
 
-    def walk(node: ast.AST, name: str, place: Place) -> Iterator[tuple[str, Place]]:
-        inner = Place(node, (place.node, *place.around), place.function)
+    def walk(node: ast.AST, name: str, context: NodeInContext) -> Iterator[tuple[str, NodeInContext]]:
+        inner = NodeInContext(node, (context.node, *context.ancestors), context.function)
         if isinstance(node, (*FUNCTIONS, ast.ClassDef)):
             name = f"{name}.{node.name}".lstrip(".")
             function = node if isinstance(node, FUNCTIONS) else None
-            inner = Place(node, inner.around, function or place.function)
+            inner = NodeInContext(node, inner.ancestors, function or context.function)
             if function and functions is not None and not any(f"{name}.".startswith(f"{own}.") for own in functions):
                 return
-        elif _is_silent(node, place):
+        elif _is_silent(node, context):
             return
         yield name, inner
         for field, value in ast.iter_fields(node):
@@ -95,10 +95,10 @@ def places(source: Source, functions: frozenset[str] | None) -> Iterator[tuple[s
                         yield from walk(child, name, inner)
 
     for statement in source.tree.body:
-        yield from walk(statement, "", Place(source.tree, (), None))
+        yield from walk(statement, "", NodeInContext(source.tree, (), None))
 
 
-def _is_silent(node: ast.AST, place: Place) -> bool:
+def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
     """Return whether a node is no part of what runs, or only words for people."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
@@ -108,16 +108,16 @@ def _is_silent(node: ast.AST, place: Place) -> bool:
         return True
     if isinstance(node, ast.keyword) and node.arg in FOR_PEOPLE:
         return True
-    outer = place.node
+    outer = context.node
     if isinstance(outer, ast.Call) and isinstance(outer.func, ast.Attribute) and outer.func.attr in LEVELS:
         return node in outer.args
     return isinstance(node, ast.Constant | ast.Call) and isinstance(outer, ast.Raise | ast.Assert)
 
 
-def classic(source: Source, place: Place) -> Iterator[Simple]:
+def classic(source: Source, context: NodeInContext) -> Iterator[Simple]:
     """Yield the classic mutations of a node."""
     for made in _OPERATORS:
-        yield from made(source, place.node)
+        yield from made(source, context.node)
 
 
 def _operators(source: Source, node: ast.AST) -> Iterator[Simple]:

@@ -1,11 +1,11 @@
-"""Mutation operators for slips that robots' programs know: quality of service, time, parameters, exceptions, units."""
+"""Mutation operators for slips in programs of robots: quality of service, time, parameters, exceptions, units."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 
-from autograder.proof.operators import Place, Simple, Slip, Source
+from autograder.proof.python_operators import NodeInContext, Simple, Slip, Source
 
 QOS_AT = {"create_publisher": 2, "create_subscription": 3}
 QOS = "__import__('rclpy.qos').qos."
@@ -24,30 +24,30 @@ SWAPPED = dict(zip(_PAIRS.split()[::2], _PAIRS.split()[1::2], strict=True))
 SWAPPED |= {right: left for left, right in SWAPPED.items()}
 
 
-def robotic(source: Source, place: Place) -> Iterator[Simple]:
+def ros_mutations(source: Source, context: NodeInContext) -> Iterator[Simple]:
     """Yield the mutations of a node that are about robots."""
-    node = place.node
+    node = context.node
     if isinstance(node, ast.Attribute | ast.Name):
-        yield from _names(source, node, place)
+        yield from _names(source, node, context)
     elif isinstance(node, ast.Call):
-        yield from _calls(source, node, place)
+        yield from _calls(source, node, context)
     elif isinstance(node, ast.Assign) and len(node.targets) == 1:
-        arguments = [each.arg for each in place.function.args.args[1:]] if place.function else []
+        arguments = [each.arg for each in context.function.args.args[1:]] if context.function else []
         if source.text(node.value) == "self.get_clock().now()" and len(arguments) == 1:
             yield "stamp", node.value, FROM_HEADER.format(arguments[0])
 
 
-def _names(source: Source, node: ast.Attribute | ast.Name, place: Place) -> Iterator[Simple]:
+def _names(source: Source, node: ast.Attribute | ast.Name, context: NodeInContext) -> Iterator[Simple]:
     name = node.attr if isinstance(node, ast.Attribute) else node.id
     text = source.text(node)
-    called = isinstance(place.around[0], ast.Call) and place.around[0].func is node
+    called = isinstance(context.ancestors[0], ast.Call) and context.ancestors[0].func is node
     if name in SWAPPED and (isinstance(node, ast.Attribute) or called):
         yield "swapped", node, text[: -len(name)] + SWAPPED[name]
     if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
         return
     if text.endswith(".header.stamp"):
         yield "stamp", node, NOW
-    elif name == "header" and isinstance(place.around[0], ast.keyword | ast.Assign):
+    elif name == "header" and isinstance(context.ancestors[0], ast.keyword | ast.Assign):
         yield "stamp", node, f"type({text})(stamp={NOW}, frame_id={text}.frame_id)"
     if name == "value" and isinstance(node.value, ast.Call) and getattr(node.value.func, "attr", "") == "get_parameter":
         assert isinstance(node.value.func, ast.Attribute)
@@ -55,7 +55,7 @@ def _names(source: Source, node: ast.Attribute | ast.Name, place: Place) -> Iter
         yield "read once", node, f"{owner}.__dict__.setdefault(('once', {key}), {text})"
 
 
-def _calls(source: Source, node: ast.Call, place: Place) -> Iterator[Simple]:
+def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[Simple]:
     name, text = getattr(node.func, "attr", getattr(node.func, "id", "")), source.text(node)
     if name in ("radians", "degrees") and len(node.args) == 1:
         yield "units", node, f"({source.text(node.args[0])})"
@@ -71,18 +71,18 @@ def _calls(source: Source, node: ast.Call, place: Place) -> Iterator[Simple]:
         yield "stamp", node, ZERO
 
 
-def is_queue_length(place: Place) -> bool:
+def is_queue_length(context: NodeInContext) -> bool:
     """Return whether a node is the length of a queue, of which `qos` makes what matters."""
-    outer = place.around[0]
+    outer = context.ancestors[0]
     if isinstance(outer, ast.keyword):
         return outer.arg == "depth"
     at = QOS_AT.get(getattr(getattr(outer, "func", None), "attr", ""), -1)
-    return isinstance(outer, ast.Call) and len(outer.args) > at >= 0 and outer.args[at] is place.node
+    return isinstance(outer, ast.Call) and len(outer.args) > at >= 0 and outer.args[at] is context.node
 
 
-def wide(source: Source, place: Place) -> Iterator[Slip]:
+def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Slip]:
     """Yield the mutations that replace more than one node: a handler's body, a decorator."""
-    node = place.node
+    node = context.node
     if isinstance(node, ast.ExceptHandler):
         start, end = source.span(node.body[0], node.body[-1])
         for name, body in (("let through", "raise"), ("swallowed", "pass")):

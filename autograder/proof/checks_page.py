@@ -1,4 +1,4 @@
-"""Writes the instructors' guide: the contract, the hidden checks, and the mutants that fail them."""
+"""Writes `docs/checks.md` for instructors: the contract, the hidden checks, and the mutants that fail them."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ COLUMNS = ("check", "points", "the student reads", "fails in a version that")
 CONTRACT = ("the notebook says", "held by", "broken by")
 
 
-def guide() -> str:
-    """Return the guide as Markdown."""
+def checks_page() -> str:
+    """Return the page as Markdown."""
     return HEAD + "".join("\n".join(["", f"## {name}", "", *_chapter(name)]) for name in suites.graded())
 
 
