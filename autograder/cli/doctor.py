@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 from pathlib import Path
 
@@ -10,17 +9,26 @@ import click
 
 from autograder.cli.options import json_option
 from autograder.doctor import System, examine, healthy, render, security
-from autograder.doctor.finding import VERDICTS
+from autograder.doctor.finding import VERDICTS, Finding
 from autograder.result import write_json
 
 
 @click.command()
-@click.option("--security", "escapes", is_flag=True, help="Try to get out of a sandbox, and say what held.")
+@click.option(
+    "--security",
+    "try_escapes",
+    is_flag=True,
+    help="Run programs that try to get out of a sandbox, and say which succeed.",
+)
 @json_option
-def doctor(escapes: bool, json_file: Path | None) -> None:
-    """Say what this machine has, what it lacks, and the one command that mends it."""
-    findings = security.examine() if escapes else examine(System())
-    click.echo(render(findings, verdicts=security.VERDICTS if escapes else VERDICTS))
+def doctor(try_escapes: bool, json_file: Path | None) -> None:
+    """Say what this machine has, what it lacks, and the one command that fixes it."""
+    findings = security.examine() if try_escapes else examine(System())
+    click.echo(render(findings, verdicts=security.VERDICTS if try_escapes else VERDICTS))
     if json_file is not None:
-        write_json(json_file, [dataclasses.asdict(finding) for finding in findings])
+        write_json(json_file, [_plain(finding) for finding in findings])
     sys.exit(0 if healthy(findings) else 1)
+
+
+def _plain(finding: Finding) -> dict[str, str]:
+    return {"name": finding.name, "status": finding.status.value, "found": finding.found, "mend": finding.fix}

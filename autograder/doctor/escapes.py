@@ -1,6 +1,7 @@
-"""Ways out of a sandbox, as programs: each says what it got hold of in a line that begins with `OUT`.
+"""Programs that try to get out of a sandbox. Each prints a line that begins with `OUT` for everything that it reached.
 
-A program that runs wild has to be ended: how, says its `ending`. What goes beyond a limit without being ended is out.
+`endings` says how a program may end. A program that goes on without end has to be stopped by a limit of the sandbox. If
+it uses more than a limit allows and is not stopped, it has got out, too.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from autograder.sandbox.limits import GIB, MIB
 CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
 LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)
 _SHORT, _HUGE = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
-_ROOMY = replace(LIMITS, memory=600 * MIB)  # what its processes have mapped is less
+_MORE_MEMORY = replace(LIMITS, memory=600 * MIB)  # what its processes have mapped is less
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class Escape:
     """One program that tries to get out; the tests and `autograder doctor --security` run it."""
 
     id: str
-    tries: str  # in words, behind "a program cannot"
+    description: str  # what it tries: the rest of a sentence that begins with "a program cannot"
     code: str
     limits: Limits = LIMITS
     network: bool = False
@@ -131,7 +132,7 @@ for folder in ("/tmp", "/dev/shm"):
         pass
 """
 _FILES = "import itertools\nfor n in itertools.count(): open(f'/tmp/{n}', 'w').close()"
-_EATER = "held = []\nwhile True: held.append(bytearray(b'x') * (1 << 20))"
+_USE_MEMORY = "held = []\nwhile True: held.append(bytearray(b'x') * (1 << 20))"
 _UNMAPPED = """
 import mmap, os, ctypes
 try:
@@ -179,7 +180,7 @@ for child in children: os.kill(child, 9)
 """
 _FORKS = "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass"
 _THREADS = "import threading\nwhile True: threading.Thread(target=threading.Event().wait).start()"
-_DEAF = """
+_IGNORE_SIGNALS = """
 import signal
 for n in range(1, 65):
     try: signal.signal(n, signal.SIG_IGN)
@@ -205,13 +206,13 @@ ESCAPES = (
     Escape("calls", "make namespaces or mounts, use keys, trace, load programs into the kernel", _CALLS),
     Escape("disk", "fill more than its own /tmp and /dev/shm", _FILL),
     Escape("inodes", "make files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),
-    Escape("memory eater", "use memory without end", _EATER, endings=(Ending.MEMORY,)),
+    Escape("memory eater", "use memory without end", _USE_MEMORY, endings=(Ending.MEMORY,)),
     Escape("unmapped memory", "hold memory that belongs to no process", _UNMAPPED),
-    Escape("socket buffers", "hold memory in buffers of sockets", _SOCKETS, _ROOMY, endings=(Ending.MEMORY,)),
+    Escape("socket buffers", "hold memory in buffers of sockets", _SOCKETS, _MORE_MEMORY, endings=(Ending.MEMORY,)),
     Escape("fork bomb", "start processes without end", _FORKS, _HUGE, endings=(Ending.THREADS,)),
     Escape("thread bomb", "start threads without end", _THREADS, endings=(Ending.THREADS,)),
     Escape("output", "print without end", "while True: print('x' * 99)", endings=(Ending.OUTPUT,)),
     Escape("endless loop", "run without end", "while True: pass", _SHORT, endings=(Ending.WALL_TIME,)),
-    Escape("deaf", "live on because it ignores every signal", _DEAF, _SHORT, endings=(Ending.WALL_TIME,)),
+    Escape("deaf", "live on because it ignores every signal", _IGNORE_SIGNALS, _SHORT, endings=(Ending.WALL_TIME,)),
     Escape("daemon", "live on by setsid and two forks", _DAEMON),
 )

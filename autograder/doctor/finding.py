@@ -25,7 +25,7 @@ class Finding:
     name: str
     status: Status
     found: str  # what was found, in a sentence without its full stop
-    mend: str = ""  # the one command that mends it; empty when nothing has to be mended
+    fix: str = ""  # the one command that fixes it; empty if there is nothing to fix
 
 
 def healthy(findings: Sequence[Finding]) -> bool:
@@ -34,16 +34,16 @@ def healthy(findings: Sequence[Finding]) -> bool:
 
 
 def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str, str] = VERDICTS) -> str:
-    """Return the findings as aligned lines, the command that mends a lack under it, and a closing sentence."""
+    """Return the findings as aligned lines, the command that fixes a lack under it, and a closing sentence."""
     longest = max(len(finding.name) for finding in findings)
     lines = []
     for finding in findings:
         head = f"{finding.status.value:8} {finding.name:{longest}}  "
         indent = " " * len(head)
         lines += textwrap.wrap(finding.found, width, initial_indent=head, subsequent_indent=indent)
-        if finding.mend:
+        if finding.fix:
             # Never wrapped: it is there to be copied.
-            lines.append(f"{indent}mend: {finding.mend}")
+            lines.append(f"{indent}fix: {finding.fix}")
     count = {status: sum(finding.status is status for finding in findings) for status in Status}
     verdict = verdicts[0] if healthy(findings) else verdicts[1]
     return "\n".join(

@@ -43,14 +43,14 @@ _CONTAINER_OPTIONS = (
 
 
 def python(system: System) -> Finding:
-    """Look at the interpreter and the platform: ROS 2 Jazzy's wheels serve some only."""
+    """Look at the interpreter and the platform: ROS 2 Jazzy's wheels support only some."""
     version = ".".join(map(str, system.python))
     name, machine = system.platform
     if system.platform != ("Linux", "x86_64"):
         found = f"{name} {machine}: the course runs on Linux x86-64; use a container or a JupyterHub"
         return Finding("Python", Status.MISSING, found, "devcontainer up --workspace-folder .")
     if not (3, 10) <= system.python[:2] <= (3, 13):
-        found = f"Python {version}: ROS 2 Jazzy is there for Python 3.10 to 3.13"
+        found = f"Python {version}: ROS 2 Jazzy supports Python 3.10 to 3.13"
         return Finding("Python", Status.MISSING, found, "make setup PYTHON=python3.12")
     return Finding("Python", Status.OK, f"Python {version} on {name} {machine}")
 
@@ -112,9 +112,9 @@ def isolation(system: System) -> Finding:
         return Finding("isolation", Status.MISSING, found, "sudo apt-get install bubblewrap")
     failure, bounds = system.namespaces_failure(), system.bounds()
     if failure is not None:
-        why, mend = _forbidden(system)
+        why, fix = _forbidden(system)
         found = f"bubblewrap cannot make namespaces, one inside the other ({failure.splitlines()[-1]}): {why}"
-        return Finding("isolation", Status.WEAK, f"{found}; grading offers its weaker tier only", mend)
+        return Finding("isolation", Status.WEAK, f"{found}; grading offers its weaker tier only", fix)
     if "pids" not in bounds:
         found = "root's processes can be bounded by control groups only, and none can be made: a fork bomb stops it all"
         return Finding("isolation", Status.WEAK, found, "adduser grader && su grader")
@@ -129,9 +129,9 @@ def isolation(system: System) -> Finding:
 
 
 def _forbidden(system: System) -> tuple[str, str]:
-    for setting, value, why, mend in _FORBIDDING:
+    for setting, value, why, fix in _FORBIDDING:
         if (system.read(_SYSCTL / setting.replace(".", "/")) or "").strip() == value:
-            return why, mend
+            return why, fix
     if any(system.read(mark) is not None for mark in _CONTAINER_MARKS):
         return "this container's security profile forbids it", _CONTAINER_OPTIONS
     return "the kernel or a security module forbids it", "sudo dmesg | tail"
@@ -166,8 +166,8 @@ def browser(system: System) -> Finding:
     """Look for a browser that the browser tests can drive; nothing else needs it."""
     for command in ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"):
         if system.which(command) is not None:
-            ran = system.run([command, "--version"], {})
-            if ran.status == 0:
-                return Finding("browser", Status.OK, ran.last_line)
+            result = system.run([command, "--version"], {})
+            if result.status == 0:
+                return Finding("browser", Status.OK, result.last_line)
     found = "no Chromium that starts: only the tests that drive a browser need it"
     return Finding("browser", Status.WEAK, found, "sudo apt-get install chromium")

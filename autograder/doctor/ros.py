@@ -73,8 +73,8 @@ def _manifest(prefix: Path) -> Path:
 
 
 def cmake_files(system: System, ros: RosEnvironment) -> Finding:
-    """Look at whether the wheels' CMake files were mended; message packages do not compile before."""
-    count = len(system.baked_files(ros.prefixes[0]))
+    """Look at whether the wheels' CMake files were corrected; message packages do not compile before."""
+    count = len(system.unpatched_cmake_files(ros.prefixes[0]))
     if count:
         found = f"{count} CMake files of the wheels name folders of another machine: no message package compiles"
         return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.mend")
@@ -98,11 +98,11 @@ def start(system: System, ros: RosEnvironment) -> Finding:
     environment = ros.variables()
     if "ROS_LOG_DIR" in system.environ:
         environment["ROS_LOG_DIR"] = system.environ["ROS_LOG_DIR"]
-    ran = system.run([sys.executable, "-c", _PROBE], environment)
-    if ran.status == 0:
+    result = system.run([sys.executable, "-c", _PROBE], environment)
+    if result.status == 0:
         return Finding("rclpy", Status.OK, "a node starts, publishes and stops")
-    mend = "make setup" if ros.kind == "wheels" else "source /opt/ros/jazzy/setup.bash"
-    return Finding("rclpy", Status.MISSING, f"a node does not start: {ran.last_line}", mend)
+    fix = "make setup" if ros.kind == "wheels" else "source /opt/ros/jazzy/setup.bash"
+    return Finding("rclpy", Status.MISSING, f"a node does not start: {result.last_line}", fix)
 
 
 def variables(system: System) -> Finding:

@@ -1,4 +1,4 @@
-"""`autograder doctor --security`: tries the ways out of a sandbox on this machine, and says which are held."""
+"""`autograder doctor --security`: runs programs that try to get out of a sandbox, and says which of them succeed."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ def examine() -> tuple[Finding, ...]:
 
 def _finding(escape: Escape, out: str) -> Finding:
     if out:
-        return Finding(escape.id, Status.MISSING, f"not held, a program can {escape.tries}: {out}")
-    return Finding(escape.id, Status.OK, f"held: a program cannot {escape.tries}")
+        return Finding(escape.id, Status.MISSING, f"not held, a program can {escape.description}: {out}")
+    return Finding(escape.id, Status.OK, f"held: a program cannot {escape.description}")
 
 
 def main() -> None:

@@ -19,11 +19,11 @@ from autograder.ros.mend import baked_files
 from autograder.sandbox import cgroup
 from autograder.sandbox.tiers import namespaces_failure
 
-PATIENCE_SECONDS = 60.0
+COMMAND_TIMEOUT_SECONDS = 60.0
 
 
 @dataclass(frozen=True)
-class Ran:
+class CommandResult:
     """How a command ended: its exit status and what it wrote, both streams in one."""
 
     status: int
@@ -50,7 +50,7 @@ class System:
         self.tmp = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
         self.disk_usage = shutil.disk_usage
         self.find_ros = find
-        self.baked_files = baked_files
+        self.unpatched_cmake_files = baked_files
         self.namespaces_failure = namespaces_failure
         self.bounds = cgroup.bounds
 
@@ -59,7 +59,7 @@ class System:
         own = str(Path(sys.prefix) / "bin")
         return shutil.which(command, path=os.pathsep.join([own, os.environ.get("PATH", os.defpath)]))
 
-    def run(self, command: Sequence[str], variables: Mapping[str, str]) -> Ran:
+    def run(self, command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
         """Run a command to its end, with variables added to the environment."""
         try:
             done = subprocess.run(
@@ -70,14 +70,14 @@ class System:
                 stderr=subprocess.STDOUT,
                 text=True,
                 errors="replace",
-                timeout=PATIENCE_SECONDS,
+                timeout=COMMAND_TIMEOUT_SECONDS,
                 check=False,
             )
         except OSError as error:
-            return Ran(127, f"{command[0]}: {error.strerror}")
+            return CommandResult(127, f"{command[0]}: {error.strerror}")
         except subprocess.TimeoutExpired:
-            return Ran(124, f"{command[0]} did not end within {PATIENCE_SECONDS:g} s")
-        return Ran(done.returncode, done.stdout)
+            return CommandResult(124, f"{command[0]} did not end within {COMMAND_TIMEOUT_SECONDS:g} s")
+        return CommandResult(done.returncode, done.stdout)
 
     def read(self, path: Path) -> str | None:
         """Return a small file's text, or None when there is none."""

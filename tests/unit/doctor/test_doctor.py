@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from autograder.doctor import Finding, Ran, Status, System, examine, healthy, render
+from autograder.doctor import CommandResult, Finding, Status, System, examine, healthy, render
 from autograder.layout import ROOT
 from autograder.ros import RosEnvironment, RosNotFoundError, WrongDistroError
 from autograder.ros.platform_versions import PACKAGES
@@ -31,11 +31,12 @@ VERSIONS: dict[str, str] = {package.name: package.version for package in PACKAGE
 DENIED = "bwrap: setting up uid map: Permission denied"
 
 
-def answers(failing: Mapping[str, Ran]) -> Callable[[Sequence[str], Mapping[str, str]], Ran]:
+def answers(failing: Mapping[str, CommandResult]) -> Callable[[Sequence[str], Mapping[str, str]], CommandResult]:
     """Return a `run` under which everything works but the commands that hold one of the given words."""
 
-    def run(command: Sequence[str], _: Mapping[str, str]) -> Ran:
-        return next((ran for words, ran in failing.items() if words in " ".join(command)), Ran(0, f"{command[0]} 1.0"))
+    def run(command: Sequence[str], _: Mapping[str, str]) -> CommandResult:
+        fine = CommandResult(0, f"{command[0]} 1.0")
+        return next((result for words, result in failing.items() if words in " ".join(command)), fine)
 
     return run
 
@@ -62,7 +63,7 @@ GOOD: dict[str, Any] = dict(
     writable=lambda path: True,
     package=lambda name: VERSIONS.get(name, "1.2"),
     find_ros=lambda: WHEELS,
-    baked_files=lambda prefix: [],
+    unpatched_cmake_files=lambda prefix: [],
     namespaces_failure=lambda: None,
     bounds=lambda: frozenset({"pids", "memory"}),
 )
@@ -90,7 +91,7 @@ def finding(name: str, **lack: Any) -> Finding:
 def test_a_complete_machine_is_healthy_and_has_nothing_to_fix() -> None:
     findings = examine(good())
     assert {found.status for found in findings} == {Status.OK}, findings
-    assert [found.mend for found in findings if found.mend] == []
+    assert [found.fix for found in findings if found.fix] == []
     assert healthy(findings)
 
 
@@ -147,7 +148,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     "half an installation": ("ROS 2", {"read": {}.get}, Status.MISSING, "no package.xml", "make setup"),
     "CMake files not mended": (
         "CMake files",
-        {"baked_files": lambda prefix: 15 * [prefix]},
+        {"unpatched_cmake_files": lambda prefix: 15 * [prefix]},
         Status.MISSING,
         "15 CMake files",
         "-m autograder.ros.mend",
@@ -168,14 +169,18 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "an rclpy that does not start": (
         "rclpy",
-        {"run": answers({"import rclpy": Ran(1, "Traceback\n  File\nImportError: librcl.so: no such file\n\n")})},
+        {
+            "run": answers(
+                {"import rclpy": CommandResult(1, "Traceback\n  File\nImportError: librcl.so: no such file\n\n")}
+            )
+        },
         Status.MISSING,
         "a node does not start: ImportError: librcl.so: no such file",
         "make setup",
     ),
     "a sourced rclpy that does not start": (
         "rclpy",
-        {"find_ros": lambda: SOURCED, "run": answers({"import rclpy": Ran(-11, "")})},
+        {"find_ros": lambda: SOURCED, "run": answers({"import rclpy": CommandResult(-11, "")})},
         Status.MISSING,
         "exit status -11",
         "source /opt/ros/jazzy/setup.bash",
@@ -210,14 +215,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "no C++ compiler": (
         "compiler",
-        {"run": answers({"g++": Ran(127, "")})},
+        {"run": answers({"g++": CommandResult(127, "")})},
         Status.MISSING,
         "g++ not found",
         "sudo apt-get install g++",
     ),
     "no compiler at all": (
         "compiler",
-        {"run": answers({"g++": Ran(127, ""), "gcc": Ran(127, "")})},
+        {"run": answers({"g++": CommandResult(127, ""), "gcc": CommandResult(127, "")})},
         Status.MISSING,
         "gcc and g++ not found",
         "sudo apt-get install g++",
@@ -333,7 +338,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
     ),
     "a browser that does not start": (
         "browser",
-        {"run": answers({"--version": Ran(1, "snap needed")})},
+        {"run": answers({"--version": CommandResult(1, "snap needed")})},
         Status.WEAK,
         "no Chromium that starts",
         "sudo apt-get install chromium",
@@ -341,14 +346,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
 }
 
 
-@pytest.mark.parametrize(("name", "lack", "status", "found", "mend"), LACKS.values(), ids=LACKS.keys())
+@pytest.mark.parametrize(("name", "lack", "status", "found", "fix"), LACKS.values(), ids=LACKS.keys())
 def test_a_missing_thing_is_named_with_the_command_that_fixes_it(
-    name: str, lack: dict[str, Any], status: Status, found: str, mend: str
+    name: str, lack: dict[str, Any], status: Status, found: str, fix: str
 ) -> None:
     seen = finding(name, **lack)
     assert seen.status is status
     assert found in seen.found
-    assert mend in seen.mend
+    assert fix in seen.fix
     assert not seen.found.endswith(".")
 
 
@@ -373,9 +378,9 @@ def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
 def test_rclpy_is_started_with_the_log_folder_that_the_user_chose() -> None:
     seen: list[Mapping[str, str]] = []
 
-    def run(command: Sequence[str], variables: Mapping[str, str]) -> Ran:
+    def run(command: Sequence[str], variables: Mapping[str, str]) -> CommandResult:
         seen.append(variables)
-        return Ran(0, "fine")
+        return CommandResult(0, "fine")
 
     examine(good(run=run, environ={"ROS_LOG_DIR": "/mine"}))
     started = next(variables for variables in seen if variables)
@@ -392,8 +397,8 @@ def test_the_report_aligns_findings_and_never_breaks_a_command() -> None:
     lines = render(findings, width=60).splitlines()
     assert lines[0] == "ok       Python     Python 3.12.1"
     assert lines[1].startswith("missing  isolation  a long story")
-    assert " " * 20 + f"mend: {command}" in lines
-    assert max(len(line) for line in lines if "mend:" not in line) <= 60
+    assert " " * 20 + f"fix: {command}" in lines
+    assert max(len(line) for line in lines if "fix:" not in line) <= 60
     assert lines[-1] == "Something needed is missing. 1 ok, 1 weak, 1 missing."
     assert render(findings[:1]).endswith("Everything needed is here. 1 ok, 0 weak, 0 missing.")
 
@@ -419,7 +424,7 @@ def test_the_real_probes_report_lacks_instead_of_raising(tmp_path: Path, monkeyp
 
 
 def test_a_command_that_does_not_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autograder.doctor.system.PATIENCE_SECONDS", 0.2)
+    monkeypatch.setattr("autograder.doctor.system.COMMAND_TIMEOUT_SECONDS", 0.2)
     ran = System().run([sys.executable, "-c", "import threading; threading.Event().wait()"], {})
     assert (ran.status, ran.last_line) == (124, f"{sys.executable} did not end within 0.2 s")
 
@@ -440,7 +445,7 @@ def test_a_bubblewrap_that_is_denied_namespaces_is_detected_on_this_machine(
     denied.chmod(denied.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     seen = next(found for found in examine(System()) if found.name == "isolation")
-    assert (seen.status, DENIED in seen.found, bool(seen.mend)) == (Status.WEAK, True, True)
+    assert (seen.status, DENIED in seen.found, bool(seen.fix)) == (Status.WEAK, True, True)
 
 
 def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path) -> None:
@@ -461,13 +466,13 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
 
 
 @pytest.mark.parametrize(
-    ("bounds", "told", "mend"),
+    ("bounds", "told", "fix"),
     [
         (set(), "a fork bomb stops it all", "adduser grader && su grader"),
         ({"pids"}, "buffers of sockets and inodes are not", "systemd-run --user --scope autograder doctor"),
     ],
 )
-def test_a_limit_without_a_control_group_is_reported(bounds: set[str], told: str, mend: str) -> None:
+def test_a_limit_without_a_control_group_is_reported(bounds: set[str], told: str, fix: str) -> None:
     found = finding("isolation", bounds=lambda: frozenset(bounds))
-    assert (found.status, found.mend) == (Status.WEAK, mend)
+    assert (found.status, found.fix) == (Status.WEAK, fix)
     assert told in found.found
