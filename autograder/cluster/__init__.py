@@ -13,7 +13,7 @@ from typing import Any
 
 from autograder.cluster.machine import resources
 
-DEATHS = 2  # workers that a submission may take with it
+MAX_WORKER_DEATHS = 2  # workers that may die while they grade one submission
 
 
 def dask_setup(server: Any) -> None:
@@ -23,7 +23,7 @@ def dask_setup(server: Any) -> None:
     died with it; Dask's own default is four.
     """
     if hasattr(server, "allowed_failures"):
-        server.allowed_failures = DEATHS - 1
+        server.allowed_failures = MAX_WORKER_DEATHS - 1
         return
     if server.nanny:
         # Ctrl-C in a terminal reaches all processes. The nanny decides what its worker does then.

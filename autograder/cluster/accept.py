@@ -1,4 +1,4 @@
-"""Takes in a worker's answer as that of a stranger: nothing of it is written before all of it holds."""
+"""Checks a worker's answer, which the client does not trust. It writes nothing before every check has passed."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def give_up(request: Request, why: str, log: str) -> Result:
 
 
 def write(result: Result, request: Request) -> Result:
-    """Write the result, with the student's name, which workers are not told."""
+    """Write the result with the student's name, which is not sent to workers."""
     named = replace(result, student=request.student)
     write_json(request.out / RESULT, named.to_json())
     return named
@@ -71,7 +71,7 @@ def _result(data: bytes, request: Request, sha256: str) -> Result:
     told = (result.assignment, result.suite_version, result.seed, result.isolation, result.max_score)
     asked = (request.assignment, suite.version, request.seed, request.isolation.value, suite.max_score)
     if told != asked or (graded and result.submission_sha256 not in (sha256, "0" * 64)):
-        raise AnswerError(f"a worker's answer is about something else: {told} instead of {asked}")
+        raise AnswerError(f"a worker graded {(*told, result.submission_sha256)} instead of {(*asked, sha256)}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]
     if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
         raise AnswerError("a worker's answer does not hold the checks of the suite")

@@ -19,7 +19,7 @@ from autograder.exceptions import UsageError
 CERTIFICATE, KEY = "cluster.pem", "cluster.key"
 LOCAL = "local"
 PRELOAD = "autograder.cluster"
-PATIENCE = 30  # s, for the first answer of a scheduler
+CONNECT_TIMEOUT_SECONDS = 30  # real time, for the first answer of a scheduler
 
 
 @contextlib.contextmanager
@@ -44,14 +44,14 @@ def connected(scheduler: str, jobs: int, certificates: Path) -> Iterator[Client]
     require_address(scheduler)
     security = _security(certificates) if scheduler.startswith("tls://") else Security(require_encryption=False)
     try:
-        client = Client(scheduler, security=security, timeout=PATIENCE, set_as_default=False)
+        client = Client(scheduler, security=security, timeout=CONNECT_TIMEOUT_SECONDS, set_as_default=False)
     except OSError as error:
         raise ClusterError(f"no scheduler answers at {scheduler}: {error}") from None
     try:
         yield client
     finally:
         with contextlib.suppress(OSError):  # the scheduler may be gone
-            client.close(timeout=PATIENCE)
+            client.close(timeout=CONNECT_TIMEOUT_SECONDS)
 
 
 def require_address(scheduler: str) -> None:
@@ -91,7 +91,7 @@ def _security(folder: Path) -> Security:
 
 
 def _local(jobs: int) -> LocalCluster:
-    # One process with a thread a grading: a thread only waits for the grading's own process.
+    # One process with a thread for each grading: a thread only waits for the grading's own process.
     return LocalCluster(
         n_workers=1,
         threads_per_worker=jobs,

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from distributed import Client, Future
 
 from autograder.checks import suites
-from autograder.cluster import DEATHS, work
+from autograder.cluster import MAX_WORKER_DEATHS, work
 from autograder.cluster.accept import accept, give_up, write
 from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.machine import difference, resource
@@ -29,15 +29,15 @@ from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout, read_files
 
 TICK = 0.5  # s between two looks at the workers
-PATIENCE = 120.0  # s without any worker that fits
+NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time without a worker that can grade this
 TRIES = 2  # answers that are asked for before a submission is given up
 
 Grade = Callable[[bytes], bytes]
 
 
 @dataclass(frozen=True)
-class _Sent:
-    """A submission that is under way, its digest, and how often it was sent."""
+class _Pending:
+    """A submission that a worker grades, its digest, and how often it was sent."""
 
     request: Request
     sha256: str
@@ -55,13 +55,13 @@ def grade_on(
 ) -> None:
     """Grade submissions of one assignment on a cluster.
 
-    After Ctrl-C nothing more is sent, and what is under way is taken in. A second Ctrl-C leaves that, too.
+    After Ctrl-C nothing more is sent, and the results of what was sent are stored. A second Ctrl-C drops these, too.
 
     Args:
         client: the connection to the scheduler.
         requests: what is asked for, with one assignment and tier.
         on_result: called for each result as it comes, in any order.
-        say: is told which workers are refused, and why.
+        say: called with a sentence for each worker that is refused, which says why.
         grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
 
     Raises:
@@ -99,7 +99,7 @@ def _first_interrupt() -> Iterator[threading.Event]:
 
 
 class _Dispatch:
-    """One class on its way."""
+    """The state of grading one class on the cluster."""
 
     def __init__(
         self, client: Client, requests: Sequence[Request], on_result: OnResult, say: Callable[[str], None], grade: Grade
@@ -111,7 +111,7 @@ class _Dispatch:
         self._looked = float("-inf")
         self._fitted = time.monotonic()
         self._parcels = self._packed(requests)
-        self._under_way: dict[Future, _Sent] = {}
+        self._under_way: dict[Future, _Pending] = {}
         self._ended: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
     def run(self, interrupted: threading.Event) -> None:
@@ -120,11 +120,11 @@ class _Dispatch:
         while left or self._under_way:
             left = left and not interrupted.is_set()
             while left and len(self._under_way) < self._fitting_threads():
-                sent = next(self._parcels, None)
-                if sent is None:
+                pending = next(self._parcels, None)
+                if pending is None:
                     left = False
                 else:
-                    self._send(sent)
+                    self._send(pending)
             self._take()
 
     def forget(self) -> None:
@@ -140,15 +140,15 @@ class _Dispatch:
             self._looked = now
             if self._threads:
                 self._fitted = now
-            elif now - self._fitted > PATIENCE:
+            elif now - self._fitted > NO_WORKER_TIMEOUT_SECONDS:
                 raise ClusterError(
-                    f"for {PATIENCE:.0f} s there was no worker that can grade this: start one with "
+                    f"for {NO_WORKER_TIMEOUT_SECONDS:.0f} s there was no worker that can grade this: start one with "
                     "`dask worker ADDRESS --preload autograder.cluster`"
                 )
         return self._threads
 
     def _look(self) -> None:
-        """Count the threads of the workers that fit; say once of each other why it is refused."""
+        """Count the threads of the workers that fit; report once of each other why it is refused."""
         try:
             workers = self._client.scheduler_info()["workers"]
         except (OSError, RuntimeError, TimeoutError) as error:
@@ -162,8 +162,8 @@ class _Dispatch:
                 self._refused.add(address)
                 self._say(f"The worker {address} is refused: {why}.")
 
-    def _packed(self, requests: Sequence[Request]) -> Iterator[_Sent]:
-        """Yield what has to be sent; tell the results of the rest."""
+    def _packed(self, requests: Sequence[Request]) -> Iterator[_Pending]:
+        """Yield what has to be sent; report the results of the rest."""
         for request in requests:
             stored = request.stored()
             if stored is not None:
@@ -178,13 +178,13 @@ class _Dispatch:
                 self._on_result(write(result, request))
                 continue
             parcel = Parcel(request.assignment, request.seed, request.isolation, tuple(files))
-            yield _Sent(request, sha256, parcel.pack())
+            yield _Pending(request, sha256, parcel.pack())
 
-    def _send(self, sent: _Sent) -> None:
+    def _send(self, pending: _Pending) -> None:
         future = self._client.submit(
-            self._grade, sent.parcel, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
+            self._grade, pending.parcel, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
-        self._under_way[future] = sent
+        self._under_way[future] = pending
         future.add_done_callback(self._ended.put)
 
     def _take(self) -> None:
@@ -194,18 +194,18 @@ class _Dispatch:
         except queue.Empty:
             self._fitting_threads()  # has the scheduler or the last worker gone?
             return
-        sent = self._under_way.pop(future)
+        pending = self._under_way.pop(future)
         if future.status == "cancelled":
             raise ClusterError("the connection to the scheduler was lost")
         if future.status == "error":
-            why = f"The {DEATHS} workers that had this submission died."
-            self._on_result(give_up(sent.request, why, f"{future.exception()!r}\n"))
+            why = f"The {MAX_WORKER_DEATHS} workers that had this submission died."
+            self._on_result(give_up(pending.request, why, f"{future.exception()!r}\n"))
             return
         try:
-            self._on_result(accept(future.result(), sent.request, sent.sha256))
+            self._on_result(accept(future.result(), pending.request, pending.sha256))
         except AnswerError as error:
-            if sent.tries < TRIES:
-                self._send(replace(sent, tries=sent.tries + 1))
+            if pending.tries < TRIES:
+                self._send(replace(pending, tries=pending.tries + 1))
                 return
             why = f"Workers failed on this submission {TRIES} times."
-            self._on_result(give_up(sent.request, why, f"{error}\n"))
+            self._on_result(give_up(pending.request, why, f"{error}\n"))

@@ -10,4 +10,4 @@ class ClusterError(GraderError):
 
 
 class AnswerError(ClusterError):
-    """A worker's answer breaks a bound or the schema, or is about something else than what was asked."""
+    """A worker's answer breaks a bound or the schema, or its result is not of the submission that was sent."""

@@ -1,4 +1,4 @@
-"""What a machine grades with. Only machines that agree in it give the same results, so only these work together.
+"""The versions with which a machine grades. Only machines with the same versions give the same results.
 
 A worker offers a resource of Dask for each pair of assignment and tier. Its name also holds the version of the suite,
 the digest of the pinned packages and the version of Python. A submission asks for one such resource, so the scheduler
@@ -43,5 +43,5 @@ def difference(wanted: str, offered: Iterable[str]) -> str:
         if their != our:
             return f"its {what} is {their}, and here it is {our}: give both the same version of the course"
     if wanted.split() not in found:
-        return f"it cannot isolate submissions by {tier}: `autograder doctor` there says what mends it"
+        return f"it cannot isolate submissions by {tier}: `autograder doctor` there says what fixes it"
     return ""

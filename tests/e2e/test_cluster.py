@@ -151,7 +151,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).version, "another")
     with connected(LOCAL, 1, tmp_path) as client:
         monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
-        monkeypatch.setattr(dispatch, "PATIENCE", 0.0)
+        monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="there was no worker that can grade this"):
             grade_on(client, requests, pytest.fail, say=said.append, grade=answered)
     (sentence,) = said
