@@ -22,7 +22,7 @@ from autograder.exceptions import UsageError
 from autograder.result import write_atomically, write_json
 
 MANIFEST = "release.json"
-CHAPTERS = "chapters"  # where students write; the rest of a bundle is the course's
+STUDENT_FOLDER = "chapters"  # where students write; all other files of a bundle are the course's
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
         changed = there not in (None, old.files.get(name))
         if there == digest:
             continue
-        if changed and not name.startswith(f"{CHAPTERS}/"):
+        if changed and not name.startswith(f"{STUDENT_FOLDER}/"):
             done.set_aside[name] = str(_set_aside(target).relative_to(bundle))
         elif changed and name.endswith(".ipynb"):
             merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
@@ -109,8 +109,10 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)
         done.written.append(name)
-    chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{CHAPTERS}/")}
-    others = {name for name in old.files if name.startswith(f"{CHAPTERS}/") and name.split("/")[1] not in chapters}
+    chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{STUDENT_FOLDER}/")}
+    others = {
+        name for name in old.files if name.startswith(f"{STUDENT_FOLDER}/") and name.split("/")[1] not in chapters
+    }
     for name in old.files.keys() - new.files.keys() - others:
         if (bundle / name).is_file() and _digest((bundle / name).read_bytes()) == old.files[name]:
             (bundle / name).unlink()
