@@ -39,7 +39,7 @@ class SetUpError(Exception):
     """The set-up cannot be done here; the message says why and what to do."""
 
 
-def say(line: str) -> None:
+def print_progress(line: str) -> None:
     """Show one line of progress."""
     print(f"set-up: {line}", flush=True)
 
@@ -61,10 +61,10 @@ class Interpreter:
 
 
 def check_machine(version: tuple[int, int], system: str, machine: str) -> None:
-    """Refuse, with a `SetUpError`, a Python or a machine that the pinned packages do not serve."""
+    """Refuse, with a `SetUpError`, a Python or a machine that the pinned packages do not support."""
     if not (3, 10) <= version <= (3, 13):
         raise SetUpError(
-            f"Python {version[0]}.{version[1]} does not serve: ROS 2 Jazzy's wheels are for Python 3.10 to 3.13. "
+            f"Python {version[0]}.{version[1]} is not supported: ROS 2 Jazzy's wheels are for Python 3.10 to 3.13. "
             "Install one of them (3.12 is Jazzy's own) and run `make PYTHON=python3.12`"
         )
     if (system, machine) != ("Linux", "x86_64"):
@@ -83,13 +83,13 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
         SetUpError: another distribution is sourced, or one that this Python cannot import.
     """
 
-    def foreign(name: str) -> list[Path]:
+    def outside_venv(name: str) -> list[Path]:
         paths = [Path(part) for part in environ.get(name, "").split(os.pathsep) if part]
         return [path for path in paths if venv not in (path, *path.parents)]
 
     distro = environ.get("ROS_DISTRO", "")
-    modules = [path for path in foreign("PYTHONPATH") if (path / "rclpy").is_dir()]
-    other = distro and (foreign("AMENT_PREFIX_PATH") or foreign("ROS_PACKAGE_PATH"))
+    modules = [path for path in outside_venv("PYTHONPATH") if (path / "rclpy").is_dir()]
+    other = distro and (outside_venv("AMENT_PREFIX_PATH") or outside_venv("ROS_PACKAGE_PATH"))
     if (modules or other) and distro != "jazzy":
         raise SetUpError(
             f"the ROS that is sourced is {distro or 'of no known distribution'} and the course needs Jazzy: open a "
@@ -152,49 +152,49 @@ class SetUp:
         """The virtual environment's Python."""
         return str(self.venv / "bin" / "python")
 
-    def wanted(self, *, dev: bool) -> dict[str, str]:
-        """Return what a finished set-up would be stamped with."""
-        lock, mend = self.root / "requirements.lock", self.root / "autograder" / "ros" / "mend.py"
+    def expected_stamp(self, *, dev: bool) -> dict[str, str]:
+        """Return the stamp of a finished set-up."""
+        lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "mend.py"
         project = (self.root / "pyproject.toml", self.root / "autograder" / "interfaces" / "tutorials.yaml")
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
-        base = {"base": digest(Path(__file__), lock, mend, *about), "project": digest(*project)}
+        base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project)}
         return {**base, "dev": digest(self.root / "requirements-dev.lock")} if dev else base
 
     def stamp(self) -> dict[str, str]:
-        """Return what the last finished set-up was stamped with; empty when there is none or it cannot run."""
+        """Return the stamp of the last finished set-up; it is empty if there is none or its Python is gone."""
         try:
             stamp = json.loads((self.venv / STAMP).read_text())
         except (OSError, ValueError):
             return {}
         return stamp if isinstance(stamp, dict) and Path(self.python).exists() else {}
 
-    def lacks(self, *, dev: bool) -> list[str]:
+    def missing_parts(self, *, dev: bool) -> list[str]:
         """Return which parts have to be made: of `base`, `project` and `dev`."""
-        return [name for name, key in self.wanted(dev=dev).items() if self.stamp().get(name) != key]
+        return [name for name, key in self.expected_stamp(dev=dev).items() if self.stamp().get(name) != key]
 
     def make(self, *, dev: bool) -> None:
-        """Bring the environment to the wanted state, from the start or by what it lacks; nothing failed is stamped."""
-        lacks, have = self.lacks(dev=dev), self.stamp()
-        if not lacks:
+        """Make the whole environment, or its missing parts. The stamp is written only if every step succeeded."""
+        missing, have = self.missing_parts(dev=dev), self.stamp()
+        if not missing:
             return
         (self.venv / STAMP).unlink(missing_ok=True)
-        if "base" in lacks:
+        if "base" in missing:
             have = {}
             ros = f"the sourced ROS 2 in {self.sourced}" if self.sourced else "ROS 2 Jazzy from wheels"
-            say(f"making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
+            print_progress(f"making .venv with Python {self.interpreter.build.split()[0]} and {ros}")
             self._new_environment()
-        if "base" in lacks or "dev" in lacks:
+        if "base" in missing or "dev" in missing:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
-        self._step("the ROS wheels could not be mended", self.python, "-m", "autograder.ros.mend")
+        self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.mend")
         if not self.sourced:  # an installed ROS 2 has them
             self._step("the tutorials' interfaces were not built", self.python, "-m", "autograder.interfaces.tutorials")
         fresh = self.venv / f"{STAMP}.fresh"
-        fresh.write_text(json.dumps({**have, **self.wanted(dev=dev)}, indent=1))
+        fresh.write_text(json.dumps({**have, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)
-        say("done")
+        print_progress("done")
 
     def _step(self, failed: str, *command: str) -> None:
         if status := self.run(*command):
@@ -215,25 +215,25 @@ class SetUp:
     def _install(self, name: str) -> None:
         lock = (self.root / name).read_text()
         (chosen := self.venv / name).write_text(without_ros(lock) if self.sourced else lock)
-        say(f"installing the pinned packages of {name}, a minute or two")
+        print_progress(f"installing the pinned packages of {name}, a minute or two")
         failed = f"pip could not install {name}: its lines above say why; pip.conf is where proxies and mirrors are set"
         # The lock is whole and holds for 3.10 to 3.13, whatever a package claims (rtamt: to end at 3.12).
         pinned = ("--no-deps", "--ignore-requires-python", "--no-compile", "--require-hashes", "-r", str(chosen))
         self._step(failed, self.python, "-m", "pip", "install", "-qq", *pinned)
-        say("compiling them")
+        print_progress("compiling them")
         # Its exit status is not asked: some packages ship templates and old Python that never compile.
         self.run(self.python, "-m", "compileall", "-qq", "-j", "0", str(self.venv / "lib"), quiet=True)
 
 
 @contextmanager
-def alone(lock: Path) -> Iterator[None]:
-    """Hold `lock`, so that two set-ups of one clone never meet; say so when that means to wait."""
-    lock.parent.mkdir(exist_ok=True)
-    with lock.open("w") as held:
+def exclusive_set_up(lock_file: Path) -> Iterator[None]:
+    """Lock `lock_file`, so that two set-ups of one clone do not run at the same time; print a line before waiting."""
+    lock_file.parent.mkdir(exist_ok=True)
+    with lock_file.open("w") as held:
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            say("another one is at work here, waiting for it")
+            print_progress("another one is at work here, waiting for it")
             fcntl.flock(held, fcntl.LOCK_EX)
         yield
 
@@ -245,21 +245,21 @@ def install_tools(missing: Sequence[str], tried: Path, uid: int, run: Run) -> No
     sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
     possible = shutil.which("apt-get") and run("env", *sudo, "true", quiet=True) == 0
     if not possible or set(missing) <= set(before):
-        say(f"{', '.join(missing)} is missing; to install it: {by_hand}")
+        print_progress(f"{', '.join(missing)} is missing; to install it: {by_hand}")
         return
-    say(f"installing {', '.join(missing)} with apt-get")
+    print_progress(f"installing {', '.join(missing)} with apt-get")
     apt = [*sudo, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-o", "DPkg::Lock::Timeout=60"]
     run(*apt, "update", quiet=True)
     status = run(*apt, "install", "-y", "--no-install-recommends", *missing, quiet=True)
     tried.parent.mkdir(exist_ok=True)
     tried.write_text(" ".join({*before, *missing}))
     if status != 0:
-        say(f"apt-get failed, the rest goes on; by hand: {by_hand}")
+        print_progress(f"apt-get failed, the rest goes on; by hand: {by_hand}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Set the clone up; return 0 when it is ready, 1 when it cannot be, 2 for a wrong call."""
-    parser = argparse.ArgumentParser(description="Make .venv from the pinned packages and mend the ROS 2 wheels.")
+    parser = argparse.ArgumentParser(description="Make .venv from the pinned packages and patch the ROS 2 wheels.")
     parser.add_argument("--dev", action="store_true", help="also what the tests and benchmarks need")
     parser.add_argument("--browser", action="store_true", help="also Chromium, by apt, when no browser is there")
     options = parser.parse_args(arguments)
@@ -280,8 +280,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             missing.append("python{}.{}-dev".format(*interpreter.version))
         if missing:
             install_tools(missing, root / ".build" / "apt-tried", os.geteuid(), run)
-        if set_up.lacks(dev=options.dev):
-            with alone(root / ".build" / "set-up.lock"):
+        if set_up.missing_parts(dev=options.dev):
+            with exclusive_set_up(root / ".build" / "set-up.lock"):
                 set_up.make(dev=options.dev)
     except SetUpError as error:
         print(f"set-up: {error}.", file=sys.stderr)

@@ -32,7 +32,7 @@ def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: tuple[int, i
 @pytest.mark.parametrize("version", [(2, 7), (3, 9), (3, 14)])
 def test_an_unsupported_python_is_refused_with_the_supported_ones(version: tuple[int, int]) -> None:
     with pytest.raises(
-        SetUpError, match=rf"Python {version[0]}\.{version[1]} does not serve: .* 3\.10 to 3\.13\. .*3\.12"
+        SetUpError, match=rf"Python {version[0]}\.{version[1]} is not supported: .* 3\.10 to 3\.13\. .*3\.12"
     ):
         bootstrap.check_machine(version, "Linux", "x86_64")
 

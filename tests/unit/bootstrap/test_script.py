@@ -74,7 +74,7 @@ names = runpy.run_path({str(program)!r})
 set_up = names["SetUp"](pathlib.Path({str(script_clone)!r}), names["Interpreter"].running(), None, None)
 (set_up.venv / "bin").mkdir(parents=True)
 (set_up.venv / "bin/python").touch()
-(set_up.venv / names["STAMP"]).write_text(json.dumps(set_up.wanted(dev=True)))
+(set_up.venv / names["STAMP"]).write_text(json.dumps(set_up.expected_stamp(dev=True)))
 """
     subprocess.run([Interpreter.running().executable, "-I", "-c", code], check=True, timeout=60)
     before = json.loads((script_clone / ".venv" / bootstrap.STAMP).read_text())

@@ -43,7 +43,7 @@ def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: S
 def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=True)
     assert commands.take() == ["venv", "dev", "project", "mend", "tutorials"]
-    assert set_up.lacks(dev=False) == []
+    assert set_up.missing_parts(dev=False) == []
 
 
 @pytest.mark.parametrize(
@@ -79,20 +79,20 @@ def test_a_different_ros_or_interpreter_repeats_the_whole_set_up(
 def test_a_moved_clone_repeats_the_whole_set_up(set_up: SetUp, commands: Any, tmp_path: Path) -> None:
     set_up.make(dev=False)
     moved = replace(set_up, root=set_up.root.rename(tmp_path / "moved"))
-    assert moved.lacks(dev=False) == ["base"]
+    assert moved.missing_parts(dev=False) == ["base"]
 
 
 def test_an_environment_whose_interpreter_is_gone_is_made_again(set_up: SetUp) -> None:
     set_up.make(dev=False)
     (set_up.venv / "bin/python").unlink()
-    assert set_up.lacks(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project"]
 
 
 @pytest.mark.parametrize("stamp", ["", "half a {", "[]"])
 def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str) -> None:
     set_up.make(dev=False)
     (set_up.venv / bootstrap.STAMP).write_text(stamp)
-    assert set_up.lacks(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project"]
 
 
 @pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.mend", "interfaces.tutorials"])
@@ -123,7 +123,7 @@ def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set
         ("-m venv", "the virtual environment could not be made"),
         ("requirements.lock", "pip could not install requirements.lock: its lines above say why; pip.conf"),
         ("-e ", "the project could not be installed"),
-        ("ros.mend", "the ROS wheels could not be mended"),
+        ("ros.mend", "the ROS wheels could not be patched"),
     ],
 )
 def test_a_failed_step_is_named_with_its_command(set_up: SetUp, commands: Any, step: str, told: str) -> None:
@@ -132,7 +132,7 @@ def test_a_failed_step_is_named_with_its_command(set_up: SetUp, commands: Any, s
         set_up.make(dev=False)
     assert str(error.value).startswith(told)
     assert "exit status 3 of `" in str(error.value)
-    assert set_up.lacks(dev=False) == ["base", "project"]
+    assert set_up.missing_parts(dev=False) == ["base", "project"]
 
 
 def test_a_python_without_ensurepip_gets_pip_from_the_systems_pip(set_up: SetUp, commands: Any) -> None:
@@ -164,14 +164,14 @@ def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, c
 def test_two_set_ups_of_one_clone_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     lock = tmp_path / ".build" / "lock"
     waiting, entered = threading.Event(), threading.Event()
-    monkeypatch.setattr(bootstrap, "say", lambda line: waiting.set())
+    monkeypatch.setattr(bootstrap, "print_progress", lambda line: waiting.set())
 
     def other() -> None:
-        with bootstrap.alone(lock):
+        with bootstrap.exclusive_set_up(lock):
             entered.set()
 
     thread = threading.Thread(target=other)
-    with bootstrap.alone(lock):
+    with bootstrap.exclusive_set_up(lock):
         assert not waiting.is_set()
         thread.start()
         assert waiting.wait(timeout=60)
