@@ -125,7 +125,7 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
     linked = link_first_uses([cell.source for cell in prose], meant(words, chapter.assignment))
     for cell, text in zip(prose, linked, strict=True):
         cell.source = text
-    nbformat.write(notebook, folder / chapter.path.name)
+    nbformat.write(notebook, folder / chapter.notebook_path.name)
     if (chapter.folder / "figures").is_dir():
         shutil.copytree(chapter.folder / "figures", folder / "figures", dirs_exist_ok=True)
 

@@ -10,10 +10,10 @@ from autograder.checks import suites
 from autograder.course.cells import is_graded
 from autograder.course.contract_rules import broken_contract
 from autograder.course.findings import Finding
-from autograder.course.minutes import wrong_promise
 from autograder.course.notebook_rules import broken_rules
 from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
 from autograder.course.tables import PAGE, course_page, titles
+from autograder.course.workload import outdated_time_sentence
 from autograder.proof import checks_page
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
@@ -45,8 +45,8 @@ def check(names: tuple[str, ...]) -> None:
 
 def findings(chapter: Chapter) -> list[Finding]:
     """Return everything that is wrong with a chapter."""
-    notebook, name = chapter.read(), chapter.path.name
-    found = [*find_outdated(chapter), *broken_rules(name, notebook), *wrong_promise(name, notebook)]
+    notebook, name = chapter.read(), chapter.notebook_path.name
+    found = [*find_outdated(chapter), *broken_rules(name, notebook), *outdated_time_sentence(name, notebook)]
     if any(map(is_graded, notebook.cells)):
         hidden, visible = suites.hidden(chapter.assignment), suites.visible(chapter.assignment)
         found += broken_contract(name, notebook, (*visible.checks, *hidden.checks))

@@ -27,32 +27,34 @@ _METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.s
 
 
 @dataclass(frozen=True)
-class Origin:
-    """The reference file that a cell copies: its metadata, as the docstring of this module describes them."""
+class CopiedFile:
+    """The reference file that a cell copies. The metadata call its hidden functions `hide`, its hidden lines `cut`."""
 
     source: PurePosixPath
     target: PurePosixPath
-    hide: tuple[str, ...]
-    cut: tuple[tuple[str, str], ...]
+    hidden_functions: tuple[str, ...]
+    hidden_lines: tuple[tuple[str, str], ...]
 
     def expected_text(self) -> str:
         """Return the source that the cell must have. Raises CourseError if the reference does not have it all."""
         text = strip_licence(read_solution(self.source))
         try:
-            text = mark_functions(text, self.hide) if self.hide else text
-            text = mark_lines(text, self.cut) if self.cut else text
+            text = mark_functions(text, self.hidden_functions) if self.hidden_functions else text
+            text = mark_lines(text, self.hidden_lines) if self.hidden_lines else text
         except CourseError as error:
             raise CourseError(f"{self.source}: {error}") from error
         return f"%%writefile {self.target}\n{text.rstrip()}"
 
 
-def origin(cell: NotebookNode) -> Origin | None:
+def copied_file(cell: NotebookNode) -> CopiedFile | None:
     """Return the reference file that a code cell copies, or None if it copies none."""
     course = metadata(cell)
     if "source" not in course:
         return None
     cut = tuple((before, after) for before, after in course.get("cut", ()))
-    return Origin(PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut)
+    return CopiedFile(
+        PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut
+    )
 
 
 def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:

@@ -1,7 +1,7 @@
-"""The rules for a chapter's contract: each sentence is where its cell says, and checks hold each of them.
+"""The rules for a chapter's contract: each sentence is in the cell that names it, and has a check.
 
-In a cell that names sentences of the contract, each row of a table, each bullet and the docstring of each function that
-the student writes holds one of them, or is named as an explanation.
+A cell that names sentences of the contract has to name all of them. Each row of a table, each bullet, and the docstring
+of each function that the student writes has to contain one of these sentences, or a text in `explains`.
 """
 
 from __future__ import annotations

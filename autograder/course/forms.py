@@ -11,8 +11,8 @@ from nbformat import NotebookNode
 from autograder.course.solution_markers import strip_markers
 from autograder.unwritten import STILL_TO_BE_WRITTEN
 
-# What nbgrader puts in a solution's place. It is right in any function of a node, and it says who has to act:
-# the node that runs into it ends, and what it ended with is this sentence.
+# What nbgrader puts in a solution's place. It is valid Python in any function. A node that runs it ends with this
+# sentence, which tells the student what to do.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 
 # What nbgrader is told wherever it makes a form.
@@ -24,7 +24,7 @@ SETTINGS = {
 
 
 class Form(str, Enum):
-    """Whose notebook it is."""
+    """The forms of a notebook: as its author wrote it, solved, or as students get it."""
 
     SOURCE = "source"
     SOLVED = "solved"

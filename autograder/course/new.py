@@ -13,10 +13,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder import layout
-from autograder.course.minutes import effort, promise
 from autograder.course.syllabus import SYLLABUS
 from autograder.course.sync import Chapter, sync_chapter
 from autograder.course.tables import titles
+from autograder.course.workload import effort, time_sentence
 from autograder.exceptions import UsageError
 
 TEMPLATES = layout.ROOT / "assets" / "new"
@@ -79,7 +79,7 @@ def _complete(chapter: Chapter) -> None:
     sync_chapter(chapter)
     notebook = chapter.read()
     first = notebook.cells[0]
-    first.source = first.source.replace("NEW_MINUTES", promise(effort(notebook)))
+    first.source = first.source.replace("NEW_MINUTES", time_sentence(effort(notebook)))
     chapter.write(notebook)
     later = layout.judged_later(chapter.assignment)
     later.write_text(titles()[later], encoding="utf-8")

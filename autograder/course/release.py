@@ -94,4 +94,4 @@ def _withhold(bundle: Path) -> None:
 def write_released(chapter: Chapter, folder: Path) -> None:
     """Write the folder of a chapter as students get it."""
     shutil.copytree(chapter.folder, folder, ignore=layout.NOT_COPIED)
-    nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.path.name)
+    nbformat.write(in_form(chapter.read(), Form.RELEASED), folder / chapter.notebook_path.name)

@@ -14,7 +14,7 @@ from nbformat import NotebookNode
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course.cells import given_files, is_graded, origin, read_solution
+from autograder.course.cells import copied_file, given_files, is_graded, read_solution
 from autograder.course.exceptions import CourseError
 from autograder.course.findings import Difference, Finding
 from autograder.course.points import point_differences
@@ -35,15 +35,15 @@ class Chapter:
         return self.folder.name
 
     @property
-    def path(self) -> Path:
+    def notebook_path(self) -> Path:
         """The path of the notebook."""
         return self.folder / f"{self.folder.name}.ipynb"
 
     def read(self) -> NotebookNode:
         """Read the notebook. Raises CourseError if there is none, or it is none of this format."""
-        if not self.path.is_file():
+        if not self.notebook_path.is_file():
             raise CourseError(f"{self.folder.name}: the folder has no notebook {self.folder.name}.ipynb: create it")
-        text = self.path.read_text(encoding="utf-8")
+        text = self.notebook_path.read_text(encoding="utf-8")
         try:
             with warnings.catch_warnings():
                 # nbformat would assign new ids, but grades and findings refer to the old ones.
@@ -51,16 +51,16 @@ class Chapter:
                 warnings.simplefilter("error", nbformat.warnings.MissingIDFieldWarning)
                 notebook: NotebookNode = nbformat.reads(text, as_version=nbformat.NO_CONVERT)
         except (nbformat.warnings.DuplicateCellId, nbformat.warnings.MissingIDFieldWarning) as error:
-            raise CourseError(f"{self.path.name}: each cell needs an id of its own: {error}") from error
+            raise CourseError(f"{self.notebook_path.name}: each cell needs an id of its own: {error}") from error
         except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:
-            raise CourseError(f"{self.path.name} is not a notebook: {error}") from error
+            raise CourseError(f"{self.notebook_path.name} is not a notebook: {error}") from error
         if notebook.get("nbformat") != nbformat.current_nbformat:
-            raise CourseError(f"{self.path.name} is not a notebook of format {nbformat.current_nbformat}")
+            raise CourseError(f"{self.notebook_path.name} is not a notebook of format {nbformat.current_nbformat}")
         return notebook
 
     def write(self, notebook: NotebookNode) -> None:
         """Write the notebook."""
-        nbformat.write(notebook, self.path)
+        nbformat.write(notebook, self.notebook_path)
 
 
 def chapters(names: Sequence[str] = ()) -> list[Chapter]:
@@ -93,12 +93,12 @@ def sync_chapter(chapter: Chapter) -> list[Finding]:
 
 
 def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[Difference]:
-    name = chapter.path.name
+    name = chapter.notebook_path.name
     if any(map(is_graded, notebook.cells)):
         yield from point_differences(name, notebook, suites.hidden(chapter.assignment).groups)
     for cell in notebook.cells:
         try:
-            source = origin(cell)
+            source = copied_file(cell)
             expected = None if source is None else source.expected_text()
         except CourseError as error:
             yield Finding(name, cell.id, str(error)), None

@@ -13,17 +13,17 @@ from pathlib import Path
 from autograder.checks import suites
 from autograder.course.findings import Finding
 from autograder.course.markdown_table import table
-from autograder.course.minutes import (
+from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
+from autograder.course.sync import chapters
+from autograder.course.workload import (
     FLUENT_WORDS_A_MINUTE,
     MINUTES_A_CELL,
     MINUTES_A_LINE,
     WORDS_A_MINUTE,
     Effort,
+    duration_text,
     effort,
-    told,
 )
-from autograder.course.syllabus import Location, Syllabus, SyllabusCoverage, find_coverage
-from autograder.course.sync import chapters
 from autograder.layout import CHAPTERS, COURSE, judged_later
 
 PAGE = CHAPTERS / "README.md"
@@ -82,8 +82,8 @@ def page(syllabus: Syllabus, covered: SyllabusCoverage, titles: dict[str, str], 
 
 
 def _effort(needed: Effort) -> tuple[str, ...]:
-    counted = (str(needed.words), str(needed.cells), str(needed.lines), told(needed.reading + needed.writing))
-    return *counted, f"{needed.at_one_go:.1f}"
+    counted = (str(needed.words), str(needed.cells), str(needed.lines), duration_text(needed.reading + needed.writing))
+    return *counted, f"{needed.longest_reading:.1f}"
 
 
 def _points(covered: SyllabusCoverage, name: str) -> float:

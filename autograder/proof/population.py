@@ -12,7 +12,7 @@ from types import CodeType
 
 from autograder import layout
 from autograder.checks import suites
-from autograder.course.cells import is_solution, origin
+from autograder.course.cells import copied_file, is_solution
 from autograder.course.sync import Chapter
 from autograder.proof.python_operators import Slip, Source, Spot, classic, left_out, nodes_in_context, replaced
 from autograder.proof.ros_operators import is_queue_length, multi_node_mutations, ros_mutations, wall_time
@@ -92,10 +92,14 @@ def population(assignment: str) -> Population:
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
     """Yield (path, functions, given lines) of each file that students write or correct; no functions means all."""
     packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
-    copies = [(cell, copied) for cell in chapter.read().cells if (copied := origin(cell))]
+    copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
     for cell, copied in copies:
         if is_solution(cell) and copied.source.parts[0] in packages:
-            yield str(copied.source), frozenset(copied.hide) if copied.hide else None, frozenset()
+            yield (
+                str(copied.source),
+                frozenset(copied.hidden_functions) if copied.hidden_functions else None,
+                frozenset(),
+            )
     given = chapter.folder / "ws" / "src"
     written = {copied.source.parts[0] for _, copied in copies}
     for package in set(packages) - written:  # students get it with faults, and correct it

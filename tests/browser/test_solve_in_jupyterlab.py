@@ -117,9 +117,9 @@ def is_blank(picture: str) -> bool:
 def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screenshots: Path, chapter: Chapter) -> None:
     name = chapter.assignment
     shutil.copytree(chapter.folder, lab.folder / name, ignore=shutil.ignore_patterns("build", "install", "log"))
-    nbformat.write(in_form(chapter.read(), Form.RELEASED), lab.folder / name / chapter.path.name)
+    nbformat.write(in_form(chapter.read(), Form.RELEASED), lab.folder / name / chapter.notebook_path.name)
 
-    lab.show(page, f"{name}/{chapter.path.name}")
+    lab.show(page, f"{name}/{chapter.notebook_path.name}")
     solved = [cell for cell in in_form(chapter.read(), Form.SOLVED).cells if is_solution(cell)]
     for cell in solved:
         type_in(page, cell.id, cell.source)

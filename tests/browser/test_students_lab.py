@@ -48,7 +48,7 @@ def chapter(lab: Lab, request: pytest.FixtureRequest) -> Path:
     released = in_form(FIRST.read(), Form.RELEASED)
     written = [cell for cell in released.cells if cell.source.startswith("%%writefile")]
     released.cells = [new_code_cell("from autograder.notebook import ros\n\nros()"), *written]
-    nbformat.write(released, folder / FIRST.path.name)
+    nbformat.write(released, folder / FIRST.notebook_path.name)
     return folder
 
 
@@ -65,7 +65,7 @@ def edit_in_the_editor(page: Page, folder: Path) -> None:
 
 def run_all(page: Page, lab: Lab, folder: Path) -> str:
     """Open the notebook, restart its kernel, run all cells; return what they show."""
-    lab.show(page, f"{folder.name}/{FIRST.path.name}")
+    lab.show(page, f"{folder.name}/{FIRST.notebook_path.name}")
     assert page.evaluate(RUN_ALL) == [1, 2, 3]
     return str(page.evaluate(OUTPUTS))
 
@@ -83,9 +83,9 @@ def test_run_all_keeps_a_file_that_was_edited_in_the_editor(page: Page, lab: Lab
 def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, lab: Lab, chapter: Path) -> None:
     run_all(page, lab, chapter)
     edit_in_the_editor(page, chapter)
-    notebook = nbformat.read(chapter / FIRST.path.name, as_version=4)
+    notebook = nbformat.read(chapter / FIRST.notebook_path.name, as_version=4)
     notebook.cells[-1].source = CELL
-    nbformat.write(notebook, chapter / FIRST.path.name)
+    nbformat.write(notebook, chapter / FIRST.notebook_path.name)
     told = run_all(page, lab, chapter)
     copy = Path("ws", REPLACED, Path(FILE).relative_to("ws")).with_suffix(".py.1")
     assert (chapter / FILE).read_text() == CELL.partition("\n")[2]
@@ -94,7 +94,7 @@ def test_a_file_and_its_cell_that_were_both_changed_are_both_kept(page: Page, la
 
 
 def test_the_student_interface_has_no_button_validate(page: Page, lab: Lab, chapter: Path) -> None:
-    lab.show(page, f"{chapter.name}/{FIRST.path.name}")
+    lab.show(page, f"{chapter.name}/{FIRST.notebook_path.name}")
     expect(page.locator(".jp-NotebookPanel-toolbar")).to_be_visible(timeout=PATIENCE * 1000)
     assert page.evaluate("() => window.jupyterapp.hasPlugin('@jupyterlab/notebook-extension:tracker')")
     for plugin in ("validate-assignment", "create-assignment"):

@@ -137,7 +137,7 @@ def test_nbgraders_validate_fails_on_an_unsolved_notebook(tmp_path: Path) -> Non
     released = in_form(chapter.read(), Form.RELEASED)
     graded = [cell for cell in released.cells if cell.metadata.get("nbgrader", {}).get("grade")]
     released.cells = [new_code_cell("from autograder.notebook import grade"), *graded]
-    nbformat.write(released, tmp_path / chapter.path.name)
-    found = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.path.name))
+    nbformat.write(released, tmp_path / chapter.notebook_path.name)
+    found = Validator(ignore_checksums=True).validate(str(tmp_path / chapter.notebook_path.name))
     assert graded
     assert [cell["source"] for cell in found["failed"]] == [cell.source for cell in graded]

@@ -36,7 +36,7 @@ def text_of(folder: Path) -> str:
 def test_the_release_contains_every_chapter_as_nbgrader_releases_it(bundle: Path) -> None:
     for chapter in chapters():
         released = in_form(chapter.read(), Form.RELEASED)
-        text = (bundle / "chapters" / chapter.assignment / chapter.path.name).read_text()
+        text = (bundle / "chapters" / chapter.assignment / chapter.notebook_path.name).read_text()
         assert all(cell.id in text for cell in released.cells)
         assert "BEGIN SOLUTION" not in text
         assert "BEGIN MARK SCHEME" not in text

@@ -113,7 +113,7 @@ def runs() -> list[ParameterSet]:
 @pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
 @pytest.mark.parametrize(("chapter", "form"), runs())
 def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
-    result = run_notebook(chapter, form, timeout=400, report=tmp_path / chapter.path.name)
+    result = run_notebook(chapter, form, timeout=400, report=tmp_path / chapter.notebook_path.name)
     assert result.ok, result.failure
     assert images_without_alt(result.notebook) == []
     counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook.cells))

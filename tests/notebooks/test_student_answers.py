@@ -91,7 +91,7 @@ class Student:
     """
 
     def __init__(self, bundle: Path, chapter: Chapter) -> None:
-        self.path = bundle / "chapters" / chapter.assignment / chapter.path.name
+        self.path = bundle / "chapters" / chapter.assignment / chapter.notebook_path.name
         self.notebook = nbformat.read(self.path, as_version=4)
         self.cells: list[NotebookNode] = self.notebook.cells
         begins = next(index for index, cell in enumerate(self.cells) if is_solution(cell))

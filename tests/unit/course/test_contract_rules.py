@@ -103,7 +103,8 @@ def test_the_contract_of_each_chapter_has_no_findings(chapter: Any) -> None:
     name = chapter.assignment
     hidden = suites.hidden(name).checks if name in suites.graded() else ()
     assert [
-        str(f) for f in broken_contract(chapter.path.name, chapter.read(), (*suites.visible(name).checks, *hidden))
+        str(f)
+        for f in broken_contract(chapter.notebook_path.name, chapter.read(), (*suites.visible(name).checks, *hidden))
     ] == []
 
 

@@ -9,7 +9,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder import layout
-from autograder.course.cells import origin
+from autograder.course.cells import copied_file
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import Form, in_form
 from autograder.course.solution_markers import mark_lines, strip_markers
@@ -69,7 +69,7 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "b.xml").write_text(MANIFEST)
     cell = _cell(cut=[["<package>", "</package>"]])
-    source = origin(cell)
+    source = copied_file(cell)
     assert source is not None
     cell.source = source.expected_text()
     cell.metadata["nbgrader"] = {
@@ -92,4 +92,4 @@ def test_a_cell_is_cut_as_its_metadata_says_and_its_release_holds_no_answer(
 )
 def test_invalid_metadata_for_cuts_are_an_error(course: dict[str, object], words: str) -> None:
     with pytest.raises(CourseError, match=words):
-        origin(_cell(**course))
+        copied_file(_cell(**course))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from autograder.checks import Check, Visibility
-from autograder.course.minutes import Effort
 from autograder.course.syllabus import Location, Syllabus, find_coverage
 from autograder.course.tables import PAGE, course_page, page
+from autograder.course.workload import Effort
 from autograder.proof import checks_page
 
 from .notebooks import code, notebook, prose

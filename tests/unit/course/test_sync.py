@@ -45,9 +45,9 @@ def test_sync_writes_the_cell_with_its_answer_marked(tmp_path: Path, solutions: 
 def test_sync_twice_changes_nothing(tmp_path: Path, solutions: Path) -> None:
     made = small(tmp_path)
     sync_chapter(made)
-    before = made.path.read_bytes()
+    before = made.notebook_path.read_bytes()
     assert sync_chapter(made) == []
-    assert made.path.read_bytes() == before
+    assert made.notebook_path.read_bytes() == before
 
 
 def test_a_stale_cell_is_named_with_what_differs(tmp_path: Path, solutions: Path) -> None:
@@ -97,12 +97,12 @@ def test_metadata_that_sync_cannot_correct_are_an_error_and_nothing_is_written(
     tmp_path: Path, solutions: Path, course: dict[str, Any], message: str
 ) -> None:
     made = small(tmp_path, **course)
-    before = made.path.read_bytes()
+    before = made.notebook_path.read_bytes()
     (found,) = find_outdated(made)
     assert message in str(found)
     with pytest.raises(CourseError, match=r"01_small\.ipynb, cell 'node'"):
         sync_chapter(made)
-    assert made.path.read_bytes() == before
+    assert made.notebook_path.read_bytes() == before
 
 
 def test_given_must_be_a_mapping(tmp_path: Path, solutions: Path) -> None:
@@ -125,14 +125,14 @@ def test_a_folder_without_its_notebook_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["no json", "{}", '{"cells": 3}'])
 def test_a_file_that_is_no_notebook_is_named(tmp_path: Path, text: str) -> None:
     made = chapter(tmp_path, notebook())
-    made.path.write_text(text)
+    made.notebook_path.write_text(text)
     with pytest.raises(CourseError, match=r"01_small\.ipynb is not a notebook"):
         made.read()
 
 
 def test_two_cells_with_one_id_are_named_before_nbformat_repairs_them(tmp_path: Path) -> None:
     made = chapter(tmp_path, notebook(prose("# T", "same"), prose("text", "other")))
-    made.path.write_text(made.path.read_text().replace('"other"', '"same"'))
+    made.notebook_path.write_text(made.notebook_path.read_text().replace('"other"', '"same"'))
     with pytest.raises(CourseError, match=r"each cell needs an id of its own: .*'same'"):
         made.read()
 

@@ -1,4 +1,4 @@
-"""Counts how long a beginner takes for a chapter, which its first cell promises.
+"""Counts how long a beginner takes for a chapter. Its first cell says this time.
 
 Walks through chapters 0 to 4, done as a beginner would do them, were put at 27, 90, 130, 230 and 100 minutes. With the
 first two rates as they are, MINUTES_A_LINE is the least-squares fit to these five times: half an hour off at most.
@@ -16,9 +16,9 @@ from autograder.course.findings import Finding
 from autograder.course.solution_markers import BEGIN, END
 
 WORDS_A_MINUTE = 120.0  # of a technical text, for somebody who reads English as a second language
-FLUENT_WORDS_A_MINUTE = 200.0  # for the bound on what is read and run at one go
+FLUENT_WORDS_A_MINUTE = 200.0  # for the limit of `longest_reading`
 MINUTES_A_CELL = 1.0  # read a code cell, run it, look at what it shows
-MINUTES_A_LINE = 1.2  # think, write and mend
+MINUTES_A_LINE = 1.2  # think, write and correct
 LONGEST_IN_MINUTES = 100.0
 _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
@@ -27,13 +27,13 @@ _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 class Effort:
     """What there is to do in a chapter: words to read, code cells to run, lines to write without the empty ones.
 
-    `at_one_go` is the longest time in minutes, of somebody fluent, in which nothing is to be written.
+    `longest_reading` is the longest time in minutes for which a fluent reader only reads and runs, and writes nothing.
     """
 
     words: int
     cells: int
     lines: int
-    at_one_go: float = 0.0
+    longest_reading: float = 0.0
 
     @property
     def reading(self) -> float:
@@ -61,12 +61,12 @@ def effort(source: NotebookNode) -> Effort:
     return Effort(sum(len(text.split()) for text in texts), len(code), len(lines), max(stretches))
 
 
-def promise(needed: Effort) -> str:
-    """Return the words of a chapter's first cell about the time that it takes."""
-    return f"{told(needed.reading)} to read and run, {told(needed.writing)} for the exercises"
+def time_sentence(needed: Effort) -> str:
+    """Return what the first cell of a chapter says about the time that it takes."""
+    return f"{duration_text(needed.reading)} to read and run, {duration_text(needed.writing)} for the exercises"
 
 
-def told(minutes: float) -> str:
+def duration_text(minutes: float) -> str:
     """Return a time in words: up to 100 minutes in steps of five, a longer one in half hours."""
     if minutes <= LONGEST_IN_MINUTES:
         return f"{max(5, 5 * round(minutes / 5))} minutes"
@@ -74,9 +74,9 @@ def told(minutes: float) -> str:
     return f"{halves // 2}{'½' if halves % 2 else ''} hours"
 
 
-def wrong_promise(name: str, source: NotebookNode) -> list[Finding]:
-    """Return a finding where the first cell of a source notebook says another time than the rule."""
-    words = promise(effort(source))
+def outdated_time_sentence(name: str, source: NotebookNode) -> list[Finding]:
+    """Return a finding if the first cell of a source notebook says another time than the counted one."""
+    words = time_sentence(effort(source))
     if words in " ".join(source.cells[0].source.split()):
         return []
     return [Finding(name, source.cells[0].id, f"by the counted rule, this should hold: {words}")]
