@@ -1,4 +1,7 @@
-"""The command line: `autograder VERB`. Exit status 0 is good, 1 falls short, 2 is a wrong call."""
+"""The command line: `autograder VERB`.
+
+Exit status: 0 success, 1 a requirement is not met or an error occurred, 2 wrong usage, 130 interrupted.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ class Verbs(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the verbs."""
         modules = {path.stem for path in Path(__file__).parent.glob("*.py")}
-        return sorted(modules - {"__init__", "options"})
+        return sorted(modules - {"__init__", "options", "text_tables"})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a verb."""

@@ -21,7 +21,7 @@ from autograder.result import write_json
 def check(assignment: str, workspace: Path | None, json_file: Path | None) -> None:
     """Run the visible checks of the chapter ID on the colcon workspace at PATH.
 
-    By default that is ./ws, or the chapter's ws in the course's folder or in its folder `chapters`.
+    PATH is by default the first of ./ws, ./ID/ws and ./chapters/ID/ws that exists.
     """
     report = run_checks(assignment, workspace or _workspace(assignment))
     click.echo(repr(report))
@@ -31,7 +31,7 @@ def check(assignment: str, workspace: Path | None, json_file: Path | None) -> No
 
 
 def _workspace(assignment: str) -> Path:
-    """Return the workspace that is meant where none is named: the one here, else the chapter's below here."""
+    """Return the workspace that is checked if the command line names none."""
     here = Path("ws")
     below = (Path(assignment) / "ws", Path("chapters", assignment, "ws"))
     return next((folder for folder in (here, *below) if folder.is_dir()), here)

@@ -1,4 +1,4 @@
-"""`autograder compare`: whose mark changes between two gradings, and by which check."""
+"""`autograder compare`: lists the students whose marks differ between two gradings, and the checks."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from autograder.result import write_json
 @click.argument("new", type=click.Path(path_type=Path))
 @json_option
 def compare(old: Path, new: Path, json_file: Path | None) -> None:
-    """Say whose mark differs between the stored results OLD and NEW, by how much, and by which checks.
+    """List the students whose marks differ between the stored results OLD and NEW, with the checks that differ.
 
-    Each is a folder that `autograder grade --out` wrote, or a JSON file. After a suite was mended, grade the class into
-    another folder and compare the two.
+    Each is a folder that `autograder grade --out` wrote, or a JSON file. After a change of a suite, grade the class
+    into another folder and compare the two.
     """
     found = changes(export.load(old), export.load(new))
-    tell(found)
+    print_changes(found)
     students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
     click.echo(f"{students} with another result" if found else "No result has changed.")
     if json_file is not None:
         write_json(json_file, [asdict(change) for change in found])
 
 
-def tell(found: Iterable[Change]) -> None:
-    """Print who has another result, with the marks and the checks."""
+def print_changes(found: Iterable[Change]) -> None:
+    """Print the students with another result, their marks, and the checks that differ."""
     for change in found:
         marks = f"{_number(change.before)} -> {_number(change.after)}"
         click.echo(f"{change.student} ({change.assignment}): {marks}{_note(change)}")

@@ -10,7 +10,7 @@ import click
 from autograder import export as exporters
 from autograder.cli.options import json_option
 from autograder.exceptions import UsageError
-from autograder.lms.collect import HANDED_IN
+from autograder.lms.collect import COLLECTION_REPORT
 from autograder.lms.marks import SYSTEMS, write_marks
 from autograder.lms.roster import read_roster
 from autograder.result import write_json
@@ -43,7 +43,7 @@ _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if fo
     type=click.FloatRange(0, 100),
     default=0.0,
     metavar="PERCENT",
-    help="For canvas and moodle: what a late submission loses of its marks.",
+    help="For canvas and moodle: subtract PERCENT of its marks from a late submission.",
 )
 @json_option
 def export(
@@ -55,9 +55,9 @@ def export(
         if roster is None:
             raise UsageError(f"--format {name} needs --roster: the table that {name.title()} exported")
         table = read_roster(roster)
-        strangers = write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
-        if strangers:
-            click.echo(f"Not in {roster}: {', '.join(strangers)}", err=True)
+        unmatched_students = write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
+        if unmatched_students:
+            click.echo(f"Not in {roster}: {', '.join(unmatched_students)}", err=True)
         written = out
     else:
         written = exporters.write(stored, name, out)
@@ -68,5 +68,5 @@ def export(
 
 def _late(results: Path) -> tuple[str, ...]:
     """Return the students whose submission was late, as `autograder grade --roster` found them."""
-    file = results / HANDED_IN
+    file = results / COLLECTION_REPORT
     return tuple(json.loads(file.read_text(encoding="utf-8"))["late"]) if file.is_file() else ()

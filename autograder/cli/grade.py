@@ -12,27 +12,25 @@ import click
 
 from autograder import feedback
 from autograder.checks import suites
-from autograder.cli.compare import tell
+from autograder.cli.compare import print_changes
 from autograder.cli.options import (
     isolation_option,
     jobs_option,
     json_option,
-    marks,
-    reason,
     seed_option,
-    table,
 )
+from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import UsageError
 from autograder.export import Stored, load
 from autograder.export.changes import changes
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
 from autograder.grading.pipeline import RESULT
-from autograder.lms.collect import HANDED_IN, collect, unpacked
+from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
-INTERRUPTED = 130  # as a shell tells it
+INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 
 @click.command()
@@ -48,7 +46,7 @@ INTERRUPTED = 130  # as a shell tells it
 @click.option(
     "--resume",
     is_flag=True,
-    help="Keep a result whose submission, suite and seed have not changed. Say whose mark is another one.",
+    help="Keep a result if submission, suite, seed and isolation are the same. List the students whose mark changed.",
 )
 @click.option(
     "--roster",
@@ -92,10 +90,10 @@ def grade(
     for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
     """
     suites.hidden(assignment)
-    with _submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
+    with _find_submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
         before = _stored(entries, out) if resume else {}
         try:
-            with _graders(scheduler, jobs, certificates) as grade_each:
+            with _cluster_grader(scheduler, jobs, certificates) as grade_each:
                 results = grade_all(
                     entries,
                     assignment,
@@ -108,14 +106,14 @@ def grade(
                     grade_each=grade_each,
                 )
         except KeyboardInterrupt:
-            said = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
-            click.echo(f"\n{said}", err=True)
+            message = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
+            click.echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
     again = [Stored(result, out / result.student) for result in results if result.student in before]
     if changed := changes(list(before.values()), again):
         click.echo("\nWhat a change of the suite or of the submission changed:")
-        tell(changed)
+        print_changes(changed)
     sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
 
 
@@ -133,17 +131,19 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
     for result in results:
         feedback.write(result, out / result.student)
     summary = feedback.write_summary(results, out)
-    click.echo("\n" + table([(r.student, marks(r), reason(r)) for r in results], ("submission", "marks", "why")))
+    click.echo(
+        "\n" + table([(r.student, score_text(r), failure_summary(r)) for r in results], ("submission", "marks", "why"))
+    )
     click.echo(f"\nFeedback: {summary}")
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
 
 
 @contextmanager
-def _submissions(
+def _find_submissions(
     paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path
 ) -> Iterator[tuple[tuple[Entry, ...], bool]]:
-    """Give the submissions, and whether each that was handed in fits a student."""
+    """Yield the submissions, and whether each item of the download belongs to a student."""
     if roster is None:
         yield discover(paths, assignment), True
         return
@@ -156,13 +156,15 @@ def _submissions(
         for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
             if names:
                 click.echo(f"{title}: {', '.join(names)}")
-        write_json(out / HANDED_IN, {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")})
+        write_json(
+            out / COLLECTION_REPORT, {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
+        )
         yield found.entries, not found.unmatched
 
 
 @contextmanager
-def _graders(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeEach | None]:
-    """Give what grades the class on a cluster; None for this machine alone."""
+def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeEach | None]:
+    """Yield the function that grades on a cluster, or None if the class is graded on this machine."""
     if scheduler is None:
         yield None
         return
@@ -178,7 +180,7 @@ def _graders(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[G
 
 
 class Progress:
-    """A progress bar on a terminal, a plain line a submission elsewhere."""
+    """A progress bar on a terminal; elsewhere, a line of text for each submission."""
 
     def __init__(self, total: int) -> None:
         self._total, self._plain = total, not sys.stdout.isatty()
@@ -192,7 +194,7 @@ class Progress:
         self._bar.render_finish()
 
     def show(self, result: Result, name: str = "") -> None:
-        """Count one more result, of the student or of what else is named."""
+        """Count one more result. A line names it by `name`, or else by its student."""
         self._bar.update(1)
         if self._plain:
-            click.echo(f"[{self._bar.pos}/{self._total}] {name or result.student}: {marks(result)}")
+            click.echo(f"[{self._bar.pos}/{self._total}] {name or result.student}: {score_text(result)}")

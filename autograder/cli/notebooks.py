@@ -47,7 +47,7 @@ def notebooks(
         report = layout.BUILD / "notebooks" / f"{chapter.assignment}-{form.value}.ipynb"
         return run_notebook(chapter, form, report=report)
 
-    runs = map_parallel(run, wanted, jobs=jobs, on_done=_tell)
+    runs = map_parallel(run, wanted, jobs=jobs, on_done=_print_result)
     if json_file is not None:
         write_json(
             json_file,
@@ -59,7 +59,7 @@ def notebooks(
     sys.exit(0 if all(run.ok for run in runs) else 1)
 
 
-def _tell(run: Execution) -> None:
+def _print_result(run: Execution) -> None:
     click.echo(f"{run.chapter} ({run.form.value}): {'ok' if run.ok else 'failed'} in {run.seconds:.1f} s")
     if run.failure is not None:
         click.echo(run.failure)

@@ -27,7 +27,8 @@ def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | No
     """Write the students' bundle of the chapters ID (all by default).
 
     The bundle holds the released notebooks, the packages that they give, the simulator, and the students' half of the
-    autograder. It holds no hidden check and no solution. `autograder update` mends a student's bundle by a later one.
+    autograder. It holds no hidden check and no solution. `autograder update` updates a student's folder to a later
+    release.
     """
     written = write_bundle(out, names, newest)
     click.echo(f"{out}: {', '.join(written)}")

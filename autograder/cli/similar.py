@@ -1,4 +1,4 @@
-"""`autograder similar`: which submissions of a class are alike."""
+"""`autograder similar`: finds the submissions of a class that are similar to each other."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from autograder.result import write_json
     default=50.0,
     show_default=True,
     metavar="PERCENT",
-    help="How much of a student's own text has to be in another's.",
+    help="List a pair if at least PERCENT of the own text of one student is also in the other's.",
 )
 @json_option
 def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, json_file: Path | None) -> None:
-    """Show which submissions at PATHS have passages alike that the release does not give.
+    """List pairs of submissions at PATHS with similar passages. Text of the release does not count.
 
-    It is a hint to read both texts, and no verdict. No mark changes.
+    A pair is a hint to read both texts, and no verdict. No mark changes.
     """
     try:
         from autograder.lms.similar import code, pairs, write_pairs

@@ -14,7 +14,8 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.checks.contract import counts
 from autograder.cli.grade import Progress
-from autograder.cli.options import isolation_option, jobs_option, json_option, marks, seed_option, table
+from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
+from autograder.cli.text_tables import score_text, table
 from autograder.proof.cases import cases
 from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.mutation_run import MutantResult, run_mutants
@@ -101,7 +102,7 @@ def verify(
             for name, each in populations.items()
             if mutants[name]
         ]
-    click.echo("\n" + table([(_name(claim), marks(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
+    click.echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
     click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     plain = {

@@ -11,19 +11,23 @@ from pathlib import Path
 
 from autograder.exceptions import UsageError
 from autograder.grading.batch import ARCHIVES, Entry
-from autograder.lms.names import METADATA, HandedIn, read_metadata, read_name
 from autograder.lms.roster import Roster
+from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name
 
-HANDED_IN = "handed_in.json"  # beside the results: who was late, what fits no student
-NOT_HANDED_IN = frozenset({"__MACOSX", ".DS_Store", METADATA})
+COLLECTION_REPORT = "handed_in.json"  # beside the results: the late students, and what fits no student
+NOT_SUBMISSIONS = frozenset({"__MACOSX", ".DS_Store", METADATA})
 
 
 @dataclass(frozen=True)
-class Collected:
-    """What a download holds, in the order of the roster.
+class CollectedSubmissions:
+    """The submissions in a download, in the order of the roster.
 
-    Late are the students whom the system calls late. `older` names what a newer submission of a student replaces,
-    `unmatched` what fits no student or is no answer, with the reason. Missing are who handed nothing in.
+    Attributes:
+        entries: the newest submission of each student.
+        late: the students whom the system calls late.
+        older: the names of the submissions that a newer one of the same student replaces.
+        unmatched: what fits no student or is no submission, as pairs of a name and the reason.
+        missing: the students without a submission.
     """
 
     entries: tuple[Entry, ...]
@@ -54,19 +58,19 @@ def unpacked(download: Path) -> Iterator[Path]:
         yield Path(folder)
 
 
-def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
+def collect(folder: Path, roster: Roster, assignment: str) -> CollectedSubmissions:
     """Find each student's submission in an unpacked download.
 
     In nbgrader's layout, the folder of a student holds one with the name of the assignment.
     """
-    newest: dict[str, HandedIn] = {}
+    newest: dict[str, DownloadedItem] = {}
     older: list[str] = []
     unmatched: list[tuple[str, str]] = []
-    for item in _handed_in(folder, roster):
+    for item in _items(folder, roster):
         student = roster.find(item.keys)
         if student is None:
             unmatched.append((item.path.name, f"no student of {roster.path.name} fits"))
-        elif not item.answer:
+        elif not item.is_submission:
             unmatched.append((item.path.name, "it is no file that was handed in"))
         elif student.id not in newest:
             newest[student.id] = item
@@ -77,8 +81,8 @@ def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
             newest[student.id] = max(item, newest[student.id], key=lambda item: item.order)
     students = [student.id for student in roster.students]
     late = {student.id for student in roster.students if student.late}
-    return Collected(
-        tuple(Entry(name, _answer(newest[name].path, assignment)) for name in students if name in newest),
+    return CollectedSubmissions(
+        tuple(Entry(name, _submission(newest[name].path, assignment)) for name in students if name in newest),
         tuple(name for name in students if name in newest and (newest[name].late or name in late)),
         tuple(older),
         tuple(unmatched),
@@ -86,21 +90,21 @@ def collect(folder: Path, roster: Roster, assignment: str) -> Collected:
     )
 
 
-def _handed_in(folder: Path, roster: Roster) -> list[HandedIn]:
+def _items(folder: Path, roster: Roster) -> list[DownloadedItem]:
     if (folder / METADATA).is_file():
         return read_metadata(folder)
-    items = [read_name(child) for child in sorted(folder.iterdir()) if child.name not in NOT_HANDED_IN]
+    items = [read_name(child) for child in sorted(folder.iterdir()) if child.name not in NOT_SUBMISSIONS]
     # A zip often holds one folder that holds all.
     if len(items) == 1 and items[0].path.is_dir() and roster.find(items[0].keys) is None:
-        return _handed_in(items[0].path, roster)
+        return _items(items[0].path, roster)
     return items
 
 
-def _answer(path: Path, assignment: str) -> Path:
+def _submission(path: Path, assignment: str) -> Path:
     """Return the submission in what a student handed in: a folder that holds one archive alone means the archive."""
     if path.is_file():
         return path
     if (path / assignment).is_dir():
         return path / assignment
-    inside = [child for child in path.iterdir() if child.name not in NOT_HANDED_IN]
+    inside = [child for child in path.iterdir() if child.name not in NOT_SUBMISSIONS]
     return inside[0] if len(inside) == 1 and inside[0].suffix in ARCHIVES else path

@@ -1,6 +1,7 @@
-"""Which submissions of a class have passages alike that the course did not give: a hint to read both, and no verdict.
+"""Finds pairs of submissions with similar passages. Text that the course gives does not count.
 
-Passages are compared as copydetect does: names and strings are one sign each, so that renaming hides nothing.
+A pair is a hint for a person to read both texts, and no verdict. copydetect compares the passages: each name and each
+string is one token, whatever its text, so that other names hide nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from autograder.feedback.pages import SUMMARY, environment
 from autograder.intake import Submission
 from autograder.result import write_atomically
 
-PASSAGE = 50  # signs of a passage that counts: about three lines
+MIN_MATCH_TOKENS = 50  # a shorter passage does not count; these are about three lines
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def pairs(codes: Mapping[str, str], given: str, least: float) -> list[Pair]:
     for found in prints.values():
         found.hashes -= gift.hashes
         found.hash_idx = {key: places for key, places in found.hash_idx.items() if key in found.hashes}
-        found.token_coverage = get_token_coverage(found.hash_idx, PASSAGE, len(found.filtered_code))
+        found.token_coverage = get_token_coverage(found.hash_idx, MIN_MATCH_TOKENS, len(found.filtered_code))
     alike = []
     for one, two in combinations(prints, 2):
         first, second = prints[one], prints[two]
@@ -76,7 +77,7 @@ def _text(data: bytes) -> str:
 
 def _fingerprint(text: str) -> CodeFingerprint:
     """Return all passages of a text: those that are there do not depend on a hash's luck."""
-    return CodeFingerprint("submission.py", PASSAGE, 1, fp=io.StringIO(text))
+    return CodeFingerprint("submission.py", MIN_MATCH_TOKENS, 1, fp=io.StringIO(text))
 
 
 def _marked(text: str, slices: object) -> Markup:

@@ -17,7 +17,7 @@ from click.testing import CliRunner, Result
 from autograder import cli, result
 from autograder.checks import Check, Outcome, Visibility
 from autograder.cli.grade import grade as grade_verb
-from autograder.cli.options import table
+from autograder.cli.text_tables import table
 from autograder.exceptions import GraderError, UsageError
 from autograder.notebook.checking import CheckReport
 

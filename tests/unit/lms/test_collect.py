@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.lms.collect import Collected, collect, unpacked
+from autograder.lms.collect import CollectedSubmissions, collect, unpacked
 from autograder.lms.roster import read_roster
 
 CHAPTER = "02_nodes"
@@ -37,7 +37,7 @@ def download(folder: Path, *names: str) -> Path:
     return folder
 
 
-def found(folder: Path, table: str) -> tuple[Collected, dict[str, str]]:
+def found(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str]]:
     roster = folder.parent / "roster.csv"
     roster.write_text(table, encoding="utf-8-sig")
     collected = collect(folder, read_roster(roster), CHAPTER)

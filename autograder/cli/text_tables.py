@@ -1,0 +1,43 @@
+"""Writes results as tables on a terminal."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import textwrap
+
+from autograder.checks import Outcome
+from autograder.result import Result, Status
+
+
+def failure_summary(result: Result) -> str:
+    """Return one sentence that says why points are missing. A failed check with a picture comes first."""
+    if result.status is Status.NOT_GRADED or result.build is None or not result.build.ok:
+        return result.diagnosis.sentence
+    failed = [check for check in result.checks if check.outcome is Outcome.FAILED]
+    pictured = {artifact.check for artifact in result.artifacts}
+    failed.sort(key=lambda check: check.id not in pictured)
+    more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
+    return f"{failed[0].message}{more}" if failed else ""
+
+
+def table(rows: list[tuple[str, str, str]], headings: tuple[str, str, str]) -> str:
+    """Return a table of three columns; the last one is wrapped."""
+    first = max(len(row[0]) for row in [headings, *rows])
+    second = max(len(row[1]) for row in [headings, *rows])
+    width = max(40, shutil.get_terminal_size((120, 24)).columns - first - second - 4)
+    lines = []
+    for index, (name, mark, text) in enumerate([headings, *rows]):
+        wrapped = textwrap.wrap(text, width) or [""]
+        lines.append(f"{name:<{first}}  {mark:>{second}}  {wrapped[0]}".rstrip())
+        lines += [" " * (first + second + 4) + line for line in wrapped[1:]]
+        if index == 0:
+            lines.append("-" * (first + second + 4 + min(width, 60)))
+    return "\n".join(lines)
+
+
+def score_text(result: Result) -> str:
+    """Return the score of a result as text, or "not graded"."""
+    if result.status is Status.NOT_GRADED:
+        return "not graded"
+    return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to all
