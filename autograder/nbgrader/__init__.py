@@ -1,4 +1,4 @@
-"""The nbgrader plug-in: nbgrader's commands book the scores of the isolated grader.
+"""The nbgrader plug-in: nbgrader's commands record the scores of the isolated grader.
 
 `nbgrader autograde` runs two chains of preprocessors on each submitted notebook. `nbgrader_config.py` adds these parts
 by their names:
@@ -6,7 +6,7 @@ by their names:
     SubmissionExporter   reads a submitted file, even if it is not a notebook
     RestoreCells         restores the released cells (the first preprocessor of the sanitizing chain)
     SandboxedGrade       grades the submitted folder in a sandbox and writes the scores into the locked grade cells. It
-                         takes the place of nbgrader's Execute; nbgrader's SaveAutoGrades books the scores
+                         takes the place of nbgrader's Execute; nbgrader's SaveAutoGrades records the scores
     sanitized_markdown   renders a student's text without scripts, for feedback and formgrader
 """
 

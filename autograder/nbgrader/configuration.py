@@ -1,4 +1,4 @@
-"""What `nbgrader_config.py` of a course says to nbgrader."""
+"""Configures nbgrader for a course; its `nbgrader_config.py` calls this."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
     """Return the outputs of a locked grade cell.
 
     Args:
-        points: the points to book.
+        points: the points that nbgrader records.
         page: content of the feedback page.
         group: the checks that count for the cell.
         first: whether this is the first grade cell of the notebook, which also gets the diagnosis.

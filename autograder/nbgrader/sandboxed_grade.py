@@ -1,6 +1,6 @@
 """Grades the submitted folder in place of nbgrader's execution of the notebook.
 
-The folder is graded in a sandbox. The scores are written into the locked grade cells, from which nbgrader books them.
+The folder is graded in a sandbox. The scores are written into the locked grade cells, from which nbgrader records them.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class SandboxedGrade(NbGraderPreprocessor):
     isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation: bubblewrap or process.").tag(config=True)
     results = Unicode(
         ".build/nbgrader",
-        help="The folder of results, from the course directory: ASSIGNMENT/STUDENT/result.json. What is graded is "
-        "booked, unless submission, suite, seed or isolation is another one.",
+        help="The folder of results, from the course directory: ASSIGNMENT/STUDENT/result.json. A stored result "
+        "is recorded without another grading if submission, suite, seed and isolation are the same.",
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -51,7 +51,7 @@ class SandboxedGrade(NbGraderPreprocessor):
 
         Raises:
             GraderError: the submission could not be graded, or the grade cells do not match the suite. Nothing is
-                booked then.
+                recorded then.
         """
         coursedir = self.parent.parent.coursedir
         marks = resources["nbgrader"]
@@ -69,7 +69,7 @@ class SandboxedGrade(NbGraderPreprocessor):
                 resume=True,
             )
             if result.status is Status.NOT_GRADED:
-                raise GraderError(f"{student}: not graded, nothing is booked. {result.diagnosis.sentence}")
+                raise GraderError(f"{student}: not graded, no score is recorded. {result.diagnosis.sentence}")
             self._copy_outputs(nb, results / student / NOTEBOOK)
             self._write_scores(nb, result, results / student)
             feedback.write(result, results / student)
@@ -113,7 +113,7 @@ class SandboxedGrade(NbGraderPreprocessor):
             cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
 
     def _request_manual_grading(self, marks: dict[str, str]) -> None:
-        """Mark the submission for manual grading. A score that was booked earlier stays the same."""
+        """Mark the submission for manual grading. A score that was recorded earlier stays the same."""
         with Gradebook(marks["db_url"]) as gradebook:
             submission = gradebook.find_submission_notebook(marks["notebook"], marks["assignment"], marks["student"])
             for grade in submission.grades:

@@ -197,7 +197,7 @@ def test_an_ungraded_submission_fails_and_no_score_is_recorded(course: Any, verd
     course.submit("carol", course.released)
     done = course.autograde("carol")
     assert not done["success"]
-    assert "carol: not graded, nothing is booked." in done["log"]
+    assert "carol: not graded, no score is recorded." in done["log"]
     assert course.grades("carol") == {"grade-graph": (None, 3.0, True), "grade-reaction": (None, 4.0, True)}
     assert not (course.root / "autograded" / "carol" / "tiny").exists()
 
