@@ -1,4 +1,4 @@
-"""What a class's results say of the class and of the checks."""
+"""Statistics of a class's results: the distribution of marks, and how difficult each check was."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from statistics import StatisticsError, correlation, median
 from autograder.checks import Outcome
 from autograder.result import CheckResult, Result
 
-BAND = 10  # per cent of a bar of the distribution
+BAND_PERCENT = 10  # width of a bar of the distribution
 SHOWN_REASONS = 8
 
 
@@ -21,7 +21,7 @@ class CheckStatistics:
 
     Attributes:
         passed: how many passed it, of `total`.
-        difficulty: mean share of its points that was reached, 0 to 1. Tests call it the p-value of an item.
+        difficulty: mean share of its points that was reached, 0 to 1. Test theory calls it the difficulty of an item.
         discrimination: correlation of its points with the points of all other checks, -1 to 1. Near 0 or below, the
             check tells good answers from weak ones no better than chance. None if everybody has the same points.
     """
@@ -39,9 +39,9 @@ class ClassStatistics:
     """Figures of a class in an assignment.
 
     Attributes:
-        bands: how many results lie in each band of `BAND` per cent, from 0; full marks lie in the last.
+        bands: number of results in each band of `BAND_PERCENT` per cent, from 0; full marks are in the last.
         checks: the checks that not everybody passed, the most missed first.
-        reasons: what was said most often to those who lost points, with how many were told.
+        reasons: the most frequent messages of failed checks, each with the number of students who got it.
         seconds: median wall time of a grading.
     """
 
@@ -53,22 +53,22 @@ class ClassStatistics:
 
 def class_statistics(results: Sequence[Result]) -> ClassStatistics:
     """Return the figures of graded results; there must be one at least."""
-    bands = Counter(min(int(result.percent // BAND), 100 // BAND - 1) for result in results)
+    bands = Counter(min(int(result.percent // BAND_PERCENT), 100 // BAND_PERCENT - 1) for result in results)
     by_check: dict[tuple[str, str], list[tuple[Result, CheckResult]]] = {}
     for result in results:
         for check in result.checks:
             by_check.setdefault((result.assignment, check.id), []).append((result, check))
     checks = [_check(taken) for taken in by_check.values()]
     missed = sorted((check for check in checks if check.passed < check.total), key=lambda check: check.difficulty)
-    told = Counter(
+    messages = Counter(
         message
         for result in results
         for message in {check.message for check in result.checks if check.outcome is Outcome.FAILED and check.message}
     )
     return ClassStatistics(
-        tuple(bands[band] for band in range(100 // BAND)),
+        tuple(bands[band] for band in range(100 // BAND_PERCENT)),
         tuple(missed),
-        tuple((message, count) for message, count in told.most_common(SHOWN_REASONS) if count > 1),
+        tuple((message, count) for message, count in messages.most_common(SHOWN_REASONS) if count > 1),
         median(result.seconds for result in results),
     )
 

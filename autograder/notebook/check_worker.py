@@ -1,4 +1,6 @@
-"""The trusted process behind a notebook: it builds the workspace and drives or checks, as grading does.
+"""The trusted worker process of `drive` and `check`: builds the workspace and runs its programs in sandboxes.
+
+It does so with the code that grades submissions.
 
 python -m autograder.notebook.check_worker REQUEST
 """
@@ -16,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from autograder import layout
 from autograder.diagnosis import OK
 from autograder.exceptions import GraderError, StudentError
-from autograder.notebook.worker_client import ANSWER, RECORDING
+from autograder.notebook.worker_client import RECORDING, REPLY_FILE
 from autograder.result import write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
@@ -43,7 +45,7 @@ def main() -> None:
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     shutil.copytree(request["source"], workspace.root / "src", ignore=layout.NOT_COPIED)
     answer = VERBS[request["verb"]](workspace, out, **request["arguments"])
-    write_json(out / ANSWER, answer)
+    write_json(out / REPLY_FILE, answer)
 
 
 def _drive(

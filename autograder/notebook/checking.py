@@ -11,12 +11,12 @@ from autograder import layout
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
-from autograder.notebook.worker_client import send
+from autograder.notebook.worker_client import run_in_worker
 from autograder.result import CheckResult, structure
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
-AFTER = "After you hand in, {count} more checks judge, with inputs of their own:"
+HIDDEN_CHECKS_HEADING = "After you hand in, {count} more checks judge, with inputs of their own:"
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
 
 
@@ -54,7 +54,7 @@ class CheckReport:
                 parts += [f"    read: {line.doc}"] if line.doc else []
         parts += ["", self.summary]
         if self.passed and self.later:
-            parts += ["", AFTER.format(count=len(self.later)), *(f"- {title}" for title in self.later)]
+            parts += ["", HIDDEN_CHECKS_HEADING.format(count=len(self.later)), *(f"- {title}" for title in self.later)]
         return "\n".join(parts)
 
     def _repr_html_(self) -> str:
@@ -63,7 +63,8 @@ class CheckReport:
         rows = "".join(_row(line) for line in self.lines)
         if self.passed and self.later:
             titles = "".join(f"<li>{html.escape(title)}</li>" for title in self.later)
-            rows += f"<details><summary>{AFTER.format(count=len(self.later))}</summary><ul>{titles}</ul></details>"
+            heading = HIDDEN_CHECKS_HEADING.format(count=len(self.later))
+            rows += f"<details><summary>{heading}</summary><ul>{titles}</ul></details>"
         return f'{trouble}<div style="{STYLE.format(colour=colour)}"><b>{html.escape(self.summary)}</b>{rows}</div>'
 
 
@@ -77,7 +78,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         return Notice("The hidden checks run after this notebook has been executed.")
     if assignment not in (there := suites.checked()):
         raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
-    with send("check", Path(workspace), assignment=assignment) as (answer, _):
+    with run_in_worker("check", Path(workspace), assignment=assignment) as (answer, _):
         diagnosis = answer["diagnosis"]
         trouble = None
         if diagnosis["kind"] != "ok":

@@ -13,7 +13,7 @@ from autograder import layout
 from autograder.diagnosis import Kind
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import TROUBLE, Notice
-from autograder.notebook.worker_client import RECORDING, send
+from autograder.notebook.worker_client import RECORDING, run_in_worker
 from sim import (
     DeadSector,
     Faults,
@@ -100,8 +100,8 @@ def drive(
 ) -> DriveReport | Notice:
     """Build the workspace, let a program steer the robot, and show the track.
 
-    The program is the student's own `main()`, with real rclpy over DDS, in a process of its own; its ROS time is
-    stepped, so a minute takes a second or two and comes out the same every time.
+    The program is the student's own `main()`, with real rclpy over DDS. It runs in its own process. Its ROS time is
+    stepped: a minute takes a second or two, and each run gives the same result.
 
     Args:
         package: the package in `ws/src`.
@@ -126,7 +126,7 @@ def drive(
     robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
     world = world if isinstance(world, World) else load(layout.world(world))
     simulation = Simulation(world, (robot,), seed=seed)
-    with send(
+    with run_in_worker(
         "drive",
         Path(workspace),
         package=package,

@@ -11,10 +11,10 @@ from autograder.notebook.notices import Notice
 from autograder.ros.discovery import announcing_often
 from sim.grading import grading
 
-QUIET = ("/rosout", "/parameter_events", "/clock")
+HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Topics that nearly every node has, which would hide the others."""
 
-SETTLED = 1.0  # s without a change: discovery is over
+STABLE_SECONDS = 1.0  # real time without a change, after which discovery is over
 ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: the height of a row, the widths of boxes, the way between columns
 
 STYLE = """
@@ -84,30 +84,30 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
     with announcing_often():
         rclpy.init(context=context)
     try:
-        looker = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
-        return _settled(looker, seconds)
+        observer = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
+        return _wait_until_stable(observer, seconds)
     finally:
         rclpy.try_shutdown(context=context)
 
 
-def _settled(looker: Any, seconds: float) -> Graph:
-    """Look until the graph has stayed the same for a while, or the time is over."""
+def _wait_until_stable(observer: Any, seconds: float) -> Graph:
+    """Read the graph until it has not changed for a while, or the time is over."""
     end = time.monotonic() + seconds
-    seen, since = _look(looker), time.monotonic()
-    while time.monotonic() < min(end, since + SETTLED):
+    seen, since = _read_graph(observer), time.monotonic()
+    while time.monotonic() < min(end, since + STABLE_SECONDS):
         time.sleep(0.05)
-        now = _look(looker)
+        now = _read_graph(observer)
         if now != seen or not now.nodes:
             seen, since = now, time.monotonic()
     return seen
 
 
-def _look(looker: Any) -> Graph:
+def _read_graph(observer: Any) -> Graph:
     """Return the graph as it is now, without hidden nodes, whose names begin with an underscore."""
-    topics = {name: kinds[0] for name, kinds in looker.get_topic_names_and_types() if name not in QUIET}
-    published = {(_name(end), topic) for topic in topics for end in looker.get_publishers_info_by_topic(topic)}
-    subscribed = {(topic, _name(end)) for topic in topics for end in looker.get_subscriptions_info_by_topic(topic)}
-    nodes = {f"{space.rstrip('/')}/{name}" for name, space in looker.get_node_names_and_namespaces()}
+    topics = {name: kinds[0] for name, kinds in observer.get_topic_names_and_types() if name not in HIDDEN_TOPICS}
+    published = {(_name(end), topic) for topic in topics for end in observer.get_publishers_info_by_topic(topic)}
+    subscribed = {(topic, _name(end)) for topic in topics for end in observer.get_subscriptions_info_by_topic(topic)}
+    nodes = {f"{space.rstrip('/')}/{name}" for name, space in observer.get_node_names_and_namespaces()}
     shown = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
     return Graph(
         shown,

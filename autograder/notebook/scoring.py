@@ -42,7 +42,7 @@ class Score:
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """The smaller, the better: it arrived, it touched nothing, and how fast or how far from the goal."""
+        """The sort key, smallest first: arrival, then no collision, then the time or the distance that is left."""
         touched = self.margin <= 0.0
         return (True, touched, self.left) if self.arrived is None else (False, touched, self.arrived)
 

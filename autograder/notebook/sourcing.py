@@ -23,7 +23,7 @@ from sim.grading import grading
 
 SITE = Path(f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")
 KINDS = ("msg", "srv", "action")
-LATER = "The workspace is built and used after the notebook has been executed, outside of it."
+NOT_WHILE_GRADING = "The workspace is built and used after the notebook has been executed, outside of it."
 
 
 def source(workspace: str | Path = "ws") -> Notice:
@@ -39,7 +39,7 @@ def source(workspace: str | Path = "ws") -> Notice:
         UsageError: there is no workspace, or it was not built.
     """
     if grading():
-        return Notice(LATER)
+        return Notice(NOT_WHILE_GRADING)
     prefixes = _prefixes(workspace)
     modules = [prefix / SITE for prefix in prefixes if (prefix / SITE).is_dir()]
     _FINDER.prefixes |= {prefix.name: prefix for prefix in prefixes}

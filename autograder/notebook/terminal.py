@@ -22,7 +22,7 @@ from autograder.ros.discovery import announcing_often
 from autograder.unwritten import explain
 from sim.grading import grading
 
-GRADED = "Commands are not run while the notebook is graded."
+NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."
 STOP_SECONDS = 30.0  # real time for what Ctrl-C ends; `ros2 launch` itself gives its nodes 10
 _STEP = 0.05
 _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
@@ -43,7 +43,7 @@ def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws")
         UsageError: there is no such workspace.
     """
     if grading():
-        print(GRADED)
+        print(NOT_WHILE_GRADING)
         return
     if unwritten := _unwritten(command, Path(workspace)):
         print(unwritten)
@@ -72,15 +72,15 @@ def running(
         UsageError: there is no such workspace.
     """
     if grading():
-        print(GRADED)
+        print(NOT_WHILE_GRADING)
         yield
         return
     texts = [until] if isinstance(until, str) else until
     # All programs of the block announce themselves often: `ros2 node list` then finds them all within a second.
     with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
-        terminal.wait(lambda: all(text in terminal.said() for text in texts), seconds)
+        terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
-        missing = [text for text in texts if text not in terminal.said()]
+        missing = [text for text in texts if text not in terminal.output()]
         if missing and terminal.runs:
             print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing))}]")
         try:
@@ -132,13 +132,13 @@ class _Terminal:
         """Whether the command has not ended."""
         return self._process.poll() is None
 
-    def said(self) -> str:
+    def output(self) -> str:
         """Return all that the command has printed so far."""
         return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
 
     def show(self) -> None:
         """Print what has not been printed yet."""
-        text = self.said()
+        text = self.output()
         print(text[self._shown :], end="", flush=True)
         self._shown = len(text)
 

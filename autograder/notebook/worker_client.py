@@ -1,4 +1,4 @@
-"""The client of a trusted worker, for a notebook's kernel: a request goes out as JSON, files come back."""
+"""Starts a trusted worker for a notebook's kernel. It gets its request as JSON, and its reply is files."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from autograder.sandbox.cell import run_in_cell
 from autograder.sandbox.limits import NOTEBOOK_CELL
 
 REQUEST = "request.json"
-ANSWER = "answer.json"
+REPLY_FILE = "answer.json"
 RECORDING = "recording.npz"
 
 
 @contextmanager
-def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Ask a worker to `drive` or to `check`; yield its answer and the folder with the files that it wrote.
+def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[str, Any], Path]]:
+    """Start a worker that does `drive` or `check`, and wait; yield its reply and the folder with its files.
 
     Raises UsageError if there is no such workspace, and GraderError if the worker failed.
     """
@@ -39,7 +39,7 @@ def send(verb: str, workspace: Path, **arguments: Any) -> Iterator[tuple[dict[st
             return [sys.executable, "-m", "autograder.notebook.check_worker", str(file)]
 
         report = run_in_cell(command, best_tier(), NOTEBOOK_CELL)
-        answer = Path(folder) / ANSWER
-        if report.returncode != 0 or not answer.is_file():
+        reply = Path(folder) / REPLY_FILE
+        if report.returncode != 0 or not reply.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")
-        yield json.loads(answer.read_text()), Path(folder)
+        yield json.loads(reply.read_text()), Path(folder)

@@ -125,7 +125,7 @@ def test_no_command_runs_while_the_notebook_is_graded(
     with running(f"touch {ws / 'two'}", workspace=ws):
         pass
     assert list(ws.iterdir()) == []
-    assert capsys.readouterr().out == 2 * f"{terminal.GRADED}\n"
+    assert capsys.readouterr().out == 2 * f"{terminal.NOT_WHILE_GRADING}\n"
 
 
 def test_a_missing_workspace_is_named(tmp_path: Path) -> None:
