@@ -176,7 +176,7 @@ def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Ite
             raise
         raise UsageError("--scheduler needs Dask, which is not installed here: run `make cluster`") from None
     with connected(scheduler, jobs, certificates) as client:
-        yield partial(grade_on, client, say=partial(click.echo, err=True))
+        yield partial(grade_on, client, report=partial(click.echo, err=True))
 
 
 class Progress:

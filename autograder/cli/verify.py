@@ -67,7 +67,7 @@ def verify(
     isolation: str,
     json_file: Path | None,
 ) -> None:
-    """Prove the grader by submissions whose mark is known.
+    """Grade submissions whose marks are known, and compare the results with these marks.
 
     The reference and right answers in another style have every point. The untouched release has none. Each named
     mutant loses the checks that it names, and no other. No attack gains a point. Of the generated mutants that are not

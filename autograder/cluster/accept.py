@@ -68,10 +68,10 @@ def _result(data: bytes, request: Request, sha256: str) -> Result:
         raise AnswerError(f"a worker's answer holds no result: {error}") from None
     suite = suites.hidden(request.assignment)
     graded = result.status is Status.GRADED
-    told = (result.assignment, result.suite_version, result.seed, result.isolation, result.max_score)
+    graded_as = (result.assignment, result.suite_version, result.seed, result.isolation, result.max_score)
     asked = (request.assignment, suite.version, request.seed, request.isolation.value, suite.max_score)
-    if told != asked or (graded and result.submission_sha256 not in (sha256, "0" * 64)):
-        raise AnswerError(f"a worker graded {(*told, result.submission_sha256)} instead of {(*asked, sha256)}")
+    if graded_as != asked or (graded and result.submission_sha256 not in (sha256, "0" * 64)):
+        raise AnswerError(f"a worker graded {(*graded_as, result.submission_sha256)} instead of {(*asked, sha256)}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]
     if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
         raise AnswerError("a worker's answer does not hold the checks of the suite")

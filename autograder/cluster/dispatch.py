@@ -50,7 +50,7 @@ def grade_on(
     requests: Sequence[Request],
     on_result: OnResult,
     *,
-    say: Callable[[str], None],
+    report: Callable[[str], None],
     grade: Grade = work.grade,
 ) -> None:
     """Grade submissions of one assignment on a cluster.
@@ -61,7 +61,7 @@ def grade_on(
         client: the connection to the scheduler.
         requests: what is asked for, with one assignment and tier.
         on_result: called for each result as it comes, in any order.
-        say: called with a sentence for each worker that is refused, which says why.
+        report: called with a sentence for each worker that is refused, which says why.
         grade: what a worker does with a packed `Parcel`; it returns a packed `Answer`.
 
     Raises:
@@ -69,7 +69,7 @@ def grade_on(
     """
     if not requests:
         return
-    dispatch = _Dispatch(client, requests, on_result, say, grade)
+    dispatch = _Dispatch(client, requests, on_result, report, grade)
     try:
         with _first_interrupt() as interrupted:
             dispatch.run(interrupted)
@@ -102,9 +102,14 @@ class _Dispatch:
     """The state of grading one class on the cluster."""
 
     def __init__(
-        self, client: Client, requests: Sequence[Request], on_result: OnResult, say: Callable[[str], None], grade: Grade
+        self,
+        client: Client,
+        requests: Sequence[Request],
+        on_result: OnResult,
+        report: Callable[[str], None],
+        grade: Grade,
     ) -> None:
-        self._client, self._on_result, self._say, self._grade = client, on_result, say, grade
+        self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
         self._resource = resource(requests[0].assignment, requests[0].isolation)
         self._refused: set[str] = set()
         self._threads = 0
@@ -160,7 +165,7 @@ class _Dispatch:
                 self._threads += worker["nthreads"]
             elif address not in self._refused:
                 self._refused.add(address)
-                self._say(f"The worker {address} is refused: {why}.")
+                self._report(f"The worker {address} is refused: {why}.")
 
     def _packed(self, requests: Sequence[Request]) -> Iterator[_Pending]:
         """Yield what has to be sent; report the results of the rest."""

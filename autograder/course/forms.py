@@ -15,7 +15,7 @@ from autograder.unwritten import STILL_TO_BE_WRITTEN
 # sentence, which tells the student what to do.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 
-# What nbgrader is told wherever it makes a form.
+# The settings of nbgrader for each form that it makes.
 SETTINGS = {
     "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
     # A mark scheme stands in the locked cell of its question, where autograding brings it back.

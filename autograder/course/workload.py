@@ -79,4 +79,4 @@ def outdated_time_sentence(name: str, source: NotebookNode) -> list[Finding]:
     words = time_sentence(effort(source))
     if words in " ".join(source.cells[0].source.split()):
         return []
-    return [Finding(name, source.cells[0].id, f"by the counted rule, this should hold: {words}")]
+    return [Finding(name, source.cells[0].id, f"its time is out of date; write: {words}")]

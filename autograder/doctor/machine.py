@@ -155,11 +155,11 @@ def space(system: System) -> Finding:
         found = f"{system.tmp} cannot be written to: workspaces and builds go there"
         return Finding("disk", Status.MISSING, found, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
     free = system.disk_usage(system.tmp).free
-    told = f"{free / 1024**3:.1f} GB free in {system.tmp}"
+    free_text = f"{free / 1024**3:.1f} GB free in {system.tmp}"
     if free < ROOMY_BYTES:
-        found = f"{told}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
+        found = f"{free_text}: building and grading may need {ROOMY_BYTES / 1024**3:.0f} GB"
         return Finding("disk", Status.WEAK, found, f"df -h {system.tmp}")
-    return Finding("disk", Status.OK, told)
+    return Finding("disk", Status.OK, free_text)
 
 
 def browser(system: System) -> Finding:

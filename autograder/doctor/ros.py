@@ -36,7 +36,7 @@ _HARMLESS = {"ROS_AUTOMATIC_DISCOVERY_RANGE": ("SUBNET",), "ROS_LOCALHOST_ONLY":
 
 
 def examine(system: System) -> list[Finding]:
-    """Return the findings about ROS 2; without one only that is told, and the variables."""
+    """Return the findings about ROS 2; without one, only this and the variables are examined."""
     try:
         ros = system.find_ros()
     except WrongDistroError as error:
@@ -58,14 +58,14 @@ def installation(system: System, ros: RosEnvironment) -> Finding:
     version = re.search(r"<version>\s*([^<\s]+)", next((text for text in manifests if text), ""))
     if version is None:
         return Finding("ROS 2", Status.MISSING, f"{ros.describe()}, but its rclpy has no package.xml", "make setup")
-    told = f"{ros.describe()}, rclpy {version[1]}"
+    version_text = f"{ros.describe()}, rclpy {version[1]}"
     if not version[1].startswith(f"{JAZZY_RCLPY}."):
         other = f"rclpy {version[1]} in {ros.prefixes[0]} is not Jazzy's, which is {JAZZY_RCLPY}"
         return Finding("ROS 2", Status.MISSING, other, "make setup")
     if ros.kind == "sourced" and system.read(_manifest(system.prefix)) is not None:
-        both = f"{told}; the wheels are installed as well, and the two mix their libraries"
+        both = f"{version_text}; the wheels are installed as well, and the two mix their libraries"
         return Finding("ROS 2", Status.WEAK, both, "make setup")
-    return Finding("ROS 2", Status.OK, told)
+    return Finding("ROS 2", Status.OK, version_text)
 
 
 def _manifest(prefix: Path) -> Path:

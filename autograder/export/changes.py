@@ -1,4 +1,4 @@
-"""Compares two gradings of a class: whose mark is another one, and by which checks."""
+"""Compares two gradings of a class: lists the students whose marks differ, and the checks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class CheckChange:
 
 @dataclass(frozen=True)
 class Change:
-    """A student whose result is another one.
+    """A student whose result differs between two gradings.
 
     Attributes:
         before: points of the old grading; None if there is no mark.

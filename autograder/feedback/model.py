@@ -107,13 +107,13 @@ def _checks(
     checks: Sequence[CheckResult], pictures: Mapping[str, Sequence[Picture]], contract: Mapping[str, Sentence]
 ) -> tuple[CheckView, ...]:
     views: list[CheckView] = []
-    said = ""  # the reason for which the check before was not checked
+    last_reason = ""  # the reason for which the check before was not checked
     for check in checks:
         held = check.holds if check.outcome is Outcome.FAILED else ()
         sentences = tuple(contract[name].text for name in held if name in contract)
         message = clean(check.message).strip()
         skipped = check.outcome is Outcome.NOT_CHECKED
-        shown = "" if skipped and message == said else message
+        shown = "" if skipped and message == last_reason else message
         views.append(CheckView(check, shown, sentences, tuple(pictures.get(check.id, ()))))
-        said = message if skipped else ""
+        last_reason = message if skipped else ""
     return tuple(views)

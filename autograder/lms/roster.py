@@ -101,13 +101,13 @@ def read_roster(path: Path) -> Roster:
 
 
 def _student(kinds: list[str], row: tuple[str, ...], place: int) -> Student | None:
-    told = {kind: cell.strip() for kind, cell in zip(kinds, row, strict=False) if kind and cell.strip()}
-    if not told or normalized(row[0]) in NOT_STUDENTS:
+    cells = {kind: cell.strip() for kind, cell in zip(kinds, row, strict=False) if kind and cell.strip()}
+    if not cells or normalized(row[0]) in NOT_STUDENTS:
         return None
-    keys = {(kind, normalized(value)) for kind, value in told.items()}
-    participant = normalized(told.get("identifier", ""))
+    keys = {(kind, normalized(value)) for kind, value in cells.items()}
+    participant = normalized(cells.get("identifier", ""))
     if participant.startswith(PARTICIPANT):
         keys.add(("identifier", participant.removeprefix(PARTICIPANT)))
-    name = next(told[kind] for kind in NAMES_A_STUDENT if kind in told) if set(told) & set(NAMES_A_STUDENT) else ""
-    late = LATE.search(told.get("status", "")) is not None
+    name = next(cells[kind] for kind in NAMES_A_STUDENT if kind in cells) if set(cells) & set(NAMES_A_STUDENT) else ""
+    late = LATE.search(cells.get("status", "")) is not None
     return Student(name.replace("/", "-").replace("\0", ""), frozenset(keys), place, late) if name else None

@@ -39,10 +39,10 @@ def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[
     """Return the seconds that a class takes on a cluster, and the sum of its pauses, of which each has one."""
     with tempfile.TemporaryDirectory() as name:
         requests = [_request(Path(name), number) for number in range(submissions)]
-        grade_on(client, requests[:1], lambda _: None, say=print, grade=partial(_answered, [0.0]))  # imports
+        grade_on(client, requests[:1], lambda _: None, report=print, grade=partial(_answered, [0.0]))  # imports
         began = time.monotonic()
         results: list[Result] = []
-        grade_on(client, requests, results.append, say=print, grade=partial(_answered, pauses))
+        grade_on(client, requests, results.append, report=print, grade=partial(_answered, pauses))
         spent = time.monotonic() - began
     assert len({result.submission_sha256 for result in results}) == submissions
     return spent, sum(result.seconds for result in results)

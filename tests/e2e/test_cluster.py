@@ -137,7 +137,7 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
 ) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
         results: list[Result] = []
-        grade_on(client, requests, results.append, say=pytest.fail, grade=answered)
+        grade_on(client, requests, results.append, report=pytest.fail, grade=answered)
         alice, bob, carol = sorted(results, key=lambda result: result.student)
     assert (alice.status, bob.status, carol.status) == (Status.GRADED, Status.NOT_GRADED, Status.GRADED)
     assert bob.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")
@@ -153,7 +153,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
         monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)
         with pytest.raises(ClusterError, match="there was no worker that can grade this"):
-            grade_on(client, requests, pytest.fail, say=said.append, grade=answered)
+            grade_on(client, requests, pytest.fail, report=said.append, grade=answered)
     (sentence,) = said
     assert f"is refused: its suite of {ASSIGNMENT} is" in sentence
     assert sentence.endswith("and here it is another: give both the same version of the course.")
