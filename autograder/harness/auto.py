@@ -13,14 +13,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rclpy.node import Node
-
 from autograder.exceptions import StudentError
 from autograder.harness.base import Harness, Program
-from autograder.harness.goals import Goal, Stamped
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
-from autograder.sandbox import Process
 from autograder.time_record import LOCKSTEP, REAL
 from autograder.workspace import Workspace
 
@@ -33,33 +29,17 @@ _WORDS = re.compile(rb"\b(threading|_?thread|asyncio|concurrent|multiprocessing|
 AnyAuto = TypeVar("AnyAuto", bound="AutoHarness")
 AnyHarness = TypeVar("AnyHarness", bound=Harness)
 
+if TYPE_CHECKING:
+    Base = SteppedHarness  # it has every attribute of a harness, by `__getattr__`
+else:
+    Base = object
 
-class AutoHarness:
+
+class AutoHarness(Base):
     """A `SteppedHarness` for programs that can be stepped, else a `RealTimeHarness`; made and used like these.
 
     `time` is "lockstep" or "real".
     """
-
-    # What it has of the harness that was chosen, by `__getattr__`.
-    node: Node
-    tick_ns: int
-    now_ns: int
-    seconds: float
-    processes: tuple[Process, ...]
-    running: frozenset[str]
-    output: str
-    discovery_seconds: float
-    nodes: Callable[[], list[str]]
-    takes: Callable[[str], bool]
-    publish: Callable[[str, Any], None]
-    messages: Callable[..., list[Stamped]]
-    rate: Callable[..., float]
-    step: Callable[[int], None]
-    run: Callable[[float], None]
-    until: Callable[[Callable[[], bool], float], bool]
-    wait_for: Callable[[Callable[[], bool], float], bool]
-    call: Callable[..., Any]
-    send_goal: Callable[..., Goal]
 
     def __init__(self, workspace: Workspace, *names: str, **options: Any) -> None:
         self._workspace, self._names, self._options = workspace, names, options
@@ -67,7 +47,7 @@ class AutoHarness:
         self._entered: Harness | None = None
         self.time = LOCKSTEP
 
-    if not TYPE_CHECKING:  # for the type checker it has what is named above, and nothing else
+    if not TYPE_CHECKING:  # the type checker would take any name
 
         def __getattr__(self, name: str) -> Any:
             if self._entered is None:

@@ -12,7 +12,6 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.harness.auto import AutoHarness
 from autograder.harness.base import Harness
 from autograder.harness.goals import Stamped
 from autograder.plain_text import clean
@@ -43,7 +42,7 @@ class Drive:
 
 
 def drive(
-    harness: Harness | AutoHarness,
+    harness: Harness,
     simulation: Simulation,
     seconds: float,
     *,
@@ -86,7 +85,7 @@ def drive(
     return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
 
 
-def _hear(harness: Harness | AutoHarness, seconds: float, recorder: Recorder, heard: dict[Process, int]) -> None:
+def _hear(harness: Harness, seconds: float, recorder: Recorder, heard: dict[Process, int]) -> None:
     """Record the lines that the programs have ended since the last time; `heard` counts their bytes."""
     for process in harness.processes:
         text = process.written(heard.get(process, 0))
@@ -115,7 +114,7 @@ def _move(simulation: Simulation, state: State, command: Command | None, target_
 
 
 def _sense(
-    harness: Harness | AutoHarness,
+    harness: Harness,
     simulation: Simulation,
     state: State,
     origin: int,

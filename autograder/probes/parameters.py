@@ -22,7 +22,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 
 from autograder.checks import CheckFailed
-from autograder.harness import AutoHarness, Harness
+from autograder.harness import Harness
 
 Value = bool | int | float | str | list[object] | None
 
@@ -52,7 +52,7 @@ class Answer:
 class NodeParameters:
     """The parameter services of one node, by its fully qualified name."""
 
-    harness: Harness | AutoHarness
+    harness: Harness
     node: str
 
     def names(self) -> frozenset[str]:

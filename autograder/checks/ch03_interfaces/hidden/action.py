@@ -116,7 +116,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     goal = placed_driver.start(draw.uniform(1.4, 1.8), 0.5)  # a tenth of it is more than what is allowed
     placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.6)
     top, pushed = math.dist((x, y), (placed_driver.x, placed_driver.y)), placed_driver.seconds
-    placed_driver.push(-PUSHED)
+    placed_driver.shift(-PUSHED)
     placed_driver.finish(goal, LONG, f"With a way of some metres to drive, and pushed back by {PUSHED} m")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
@@ -126,7 +126,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(1.0, 0.5)
     placed_driver.roll(goal, LONG, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
-    placed_driver.push(4 * PUSHED)
+    placed_driver.shift(4 * PUSHED)
     placed_driver.finish(goal, LONG, f"With 1 m to drive, and pushed on by {4 * PUSHED:g} m")
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     said = (

@@ -158,7 +158,7 @@ def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:
     before = len(driver.messages(COMMANDS))
     goal = driver.start(1.0, 0.4)
     driver.roll(goal, PUSH_AFTER)
-    driver.push(distance)
+    driver.shift(distance)
     driver.finish(goal, 6.0, "With wheels that do not turn")
     return goal, driver.messages(COMMANDS)[before:]
 
@@ -170,7 +170,7 @@ def _is_given_up_rolling_back(driver: Driver) -> bool:
     driver.roll(goal, 1.0)
     driver.stuck, end = True, driver.seconds + PATIENCE + LATE[driver.time]
     while goal.result is None and driver.seconds < end:
-        driver.push(-ROLLS_BACK)
+        driver.shift(-ROLLS_BACK)
         driver.roll(goal, LOOK)
     given_up = bool(goal.status == GoalStatus.STATUS_ABORTED)
     driver.abandon(goal)

@@ -45,7 +45,7 @@ class Driver(AutoHarness):
             self._publish_odometry()
             self.run(LOOK)
 
-    def push(self, distance: float) -> None:
+    def shift(self, distance: float) -> None:
         """Move the robot along its heading, which only the odometry tells."""
         self.x += distance * math.cos(self.heading)
         self.y += distance * math.sin(self.heading)
