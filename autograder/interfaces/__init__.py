@@ -1,21 +1,10 @@
 """Message packages from their texts alone, for the trusted process: no line of CMake or Python of a student's runs.
 
-`build` turns the texts of a package into a prefix, which a content-addressed cache keeps, and `load` makes it
-importable in this process. `load_from` does both for a package in a student's workspace.
+`load_from` makes a package of a student's workspace importable in this process. `prefix.build` turns the package's
+texts into a prefix, which a content-addressed cache keeps, and `loading.load` imports it.
 """
 
 from autograder.interfaces.cache import Cache
-from autograder.interfaces.definitions import DefinitionError, InterfaceError
-from autograder.interfaces.loading import AlreadyLoadedError, load, load_from
-from autograder.interfaces.prefix import GenerationError, build
+from autograder.interfaces.loading import load_from
 
-__all__ = [
-    "AlreadyLoadedError",
-    "Cache",
-    "DefinitionError",
-    "GenerationError",
-    "InterfaceError",
-    "build",
-    "load",
-    "load_from",
-]
+__all__ = ["Cache", "load_from"]

@@ -10,7 +10,6 @@ import json
 import os
 import shutil
 import sys
-import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -20,6 +19,7 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from autograder.interfaces import compile as compiling
+from autograder.packages import read_texts
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
@@ -54,9 +54,7 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
         if name in found or share is None or not any((share / kind).is_dir() for kind in ("msg", "srv", "action")):
             continue
         found.add(name)
-        for element in ET.parse(share / "package.xml").getroot():
-            if element.tag in ("depend", "build_depend", "exec_depend", "build_export_depend") and element.text:
-                pending.append(element.text.strip())
+        pending += read_texts(share / "package.xml").depends
     return tuple(sorted(found))
 
 

@@ -24,19 +24,19 @@ if TYPE_CHECKING:  # the generators' process imports this package, too, and no R
 _loaded: dict[str, Path] = {}
 
 
-class AlreadyLoadedError(InterfaceError):
-    """Another version of the package is in this process, which can hold one."""
-
-
 def load(prefix: Path) -> ModuleType:
-    """Import the package of a prefix that `build` returned, and those that it uses."""
+    """Import the package of a prefix that `build` returned, and those that it uses.
+
+    Raises:
+        InterfaceError: this process has another version of one of them.
+    """
     recipe = json.loads((prefix / RECIPE).read_text())
     package = recipe["package"]
     if _loaded.get(package) == prefix:
         return sys.modules[package]
     if package in _loaded or package in sys.modules:
         there = _loaded.get(package) or sys.modules[package].__file__
-        raise AlreadyLoadedError(
+        raise InterfaceError(
             f"{package} is loaded from {there} already: a process can hold one version of it, start another process"
         )
     for underlay in recipe["underlays"]:
@@ -59,7 +59,7 @@ def load_from(workspace: Workspace, package: str) -> ModuleType:
 
     Raises:
         StudentError: the package or its definitions are missing, or wrong; the sentence says where.
-        AlreadyLoadedError: this process has another version of it.
+        InterfaceError: this process has another version of it.
     """
     source = workspace.root / "src"
     packages, broken = find_packages(source)

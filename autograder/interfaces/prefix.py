@@ -38,7 +38,7 @@ def build(
         package: its name.
         files: texts by their path in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
         cache: where to keep it, this user's own cache by default.
-        underlays: prefixes that `build` returned for other packages which this one uses.
+        underlays: prefixes that `build` returned for the other packages that this one uses.
 
     Raises:
         DefinitionError: a definition is wrong; names file and line.
@@ -49,13 +49,12 @@ def build(
     definitions = read(package, files)
     prefixes = (*underlays, *ros.prefixes)
     require_uses(definitions, lambda name, message: _exists(prefixes, name, message))
-    own = [prefix for prefix in underlays if _offers(prefix, {use[0] for d in definitions for use in d.uses})]
     recipe = {
         "package": package,
         "texts": {definition.path: definition.text for definition in definitions},
         "uses": sorted(set(packages_used(definitions)) - {package}),
-        "underlays": [str(path) for path in own],
-        "prefixes": [str(path) for path in (*own, *ros.prefixes)],
+        "underlays": [str(path) for path in underlays],
+        "prefixes": [str(path) for path in prefixes],
     }
     told = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
     key = hashlib.sha256(told.encode()).hexdigest()[:40]
@@ -65,11 +64,6 @@ def build(
 def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
     folders = (prefix / "share" / package / "msg" for prefix in prefixes)
     return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
-
-
-def _offers(prefix: Path, packages: set[str]) -> bool:
-    share = prefix / "share"
-    return any((share / package / "package.xml").is_file() for package in packages)
 
 
 def identity(ros: RosEnvironment) -> dict[str, object]:

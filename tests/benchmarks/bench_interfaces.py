@@ -11,8 +11,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from autograder.interfaces import Cache, build
+from autograder.interfaces import Cache
 from autograder.interfaces.definitions import KINDS
+from autograder.interfaces.prefix import build
 from autograder.proof.mutants import write_reference
 
 PACKAGE = "my_robot_interfaces"

@@ -12,7 +12,10 @@ import pytest
 from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces import AlreadyLoadedError, Cache, build, load, load_from
+from autograder.interfaces import Cache, load_from
+from autograder.interfaces.definitions import InterfaceError
+from autograder.interfaces.loading import load
+from autograder.interfaces.prefix import build
 from tests.e2e.cell_support import in_cell
 
 PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"
@@ -96,7 +99,7 @@ def two_versions(scratch: Path) -> str:
     load(build("twice_msgs", {"msg/A.msg": "int32 a\n"}, cache=cache))
     try:
         load(build("twice_msgs", {"msg/A.msg": "int32 b\n"}, cache=cache))
-    except AlreadyLoadedError as error:
+    except InterfaceError as error:
         return str(error)
     return "loaded"
 

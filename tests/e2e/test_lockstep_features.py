@@ -23,7 +23,7 @@ INTERFACES = {
 @lru_cache(maxsize=1)
 def interfaces() -> Path:
     """Build the message package of these tests."""
-    from autograder.interfaces import build
+    from autograder.interfaces.prefix import build
 
     return build("lockstep_interfaces", INTERFACES)
 
@@ -118,7 +118,7 @@ def test_a_program_gets_its_arguments_in_lockstep_and_in_real_time() -> None:
 
 
 def goals(scratch: Path, program: str) -> Any:
-    from autograder.interfaces import load
+    from autograder.interfaces.loading import load
 
     count = load(interfaces()).action.Count
     workspace = write_workspace(scratch, node=program)

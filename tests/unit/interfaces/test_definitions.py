@@ -8,8 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.interfaces import DefinitionError
-from autograder.interfaces.definitions import MAX_BYTES, MAX_FILES, packages_used, read, require_uses
+from autograder.interfaces.definitions import (
+    MAX_BYTES,
+    MAX_FILES,
+    DefinitionError,
+    packages_used,
+    read,
+    require_uses,
+)
 
 
 def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:

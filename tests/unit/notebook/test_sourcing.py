@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.interfaces import build
+from autograder.interfaces.prefix import build
 from autograder.notebook import source
 from autograder.notebook.notices import Notice
 from sim.grading import GRADING_VARIABLE
