@@ -11,14 +11,12 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep.stepper import HOST
 from autograder.ros import RosEnvironment
-from autograder.ros.environment import LOGS_TO_STDOUT, WHEEL_BOOTSTRAP_VARIABLES
+from autograder.ros.environment import LOGS_TO_STDOUT, WHEEL_BOOTSTRAP_VARIABLES, site_packages
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
 from autograder.sandbox.spec import INTERPRETER
 from autograder.talk import Talk
 from autograder.time_record import TimeRecord
-
-_SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,7 @@ class Workspace:
         """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
         prefixes = self.prefixes()
         libraries = [str(prefix / "lib") for prefix in prefixes]
-        modules = [str(prefix / _SITE) for prefix in prefixes if (prefix / _SITE).is_dir()]
+        modules = [str(path) for path in map(site_packages, prefixes) if path.is_dir()]
         inherited = {name: os.environ[name] for name in WHEEL_BOOTSTRAP_VARIABLES if name in os.environ}
         if self.ros.kind == "sourced":
             modules += [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 import sysconfig
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
 
+from autograder.ros.environment import site_packages
+
 FAST = "rosidl_typesupport_fastrtps_c"
 INTROSPECTION = "rosidl_typesupport_introspection_c"
 # The libraries that dependants link: an installed package has all of them, one that was built here the first two.
 _LIBRARIES = (FAST, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c", "rosidl_generator_py")
-
-
-def site(prefix: Path) -> Path:
-    """Return the site-packages folder of a prefix."""
-    return prefix / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
 
 
 def compile_package(
@@ -74,7 +70,8 @@ def compile_package(
     _link(inner, [objects[introspection]], common)
     own = [f"-l{FAST}", "-lrosidl_typesupport_fastrtps_cpp", "-lfastcdr", "-Wl,--no-as-needed", str(inner)]
     _link(fast, [objects[path] for path in main], [*common, *own])
-    extension = site(prefix) / package / f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    name = f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    extension = site_packages(prefix) / package / name
     extension.symlink_to(os.path.relpath(fast, extension.parent))
 
 

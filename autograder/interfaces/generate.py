@@ -20,6 +20,7 @@ from xml.sax.saxutils import escape
 
 from autograder.interfaces import compile as compiling
 from autograder.packages import read_texts
+from autograder.ros.environment import site_packages
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
@@ -157,7 +158,7 @@ def both(here: Callable[[], None], aside: Callable[[], None]) -> None:
 def install(job: Job) -> None:
     """Lay out what dependants and `load` look for: Python, headers, type descriptions, manifest, index."""
     package, share = job.package, job.prefix / "share"
-    site = compiling.site(job.prefix) / package
+    site = site_packages(job.prefix) / package
     site.mkdir(parents=True)
     (site / "__init__.py").touch()
     for source, target, ending in (

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces.compile import site
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, DefinitionError, InterfaceError, read
 from autograder.interfaces.prefix import RECIPE, GenerationError, build
 from autograder.packages import find_packages
+from autograder.ros.environment import site_packages
 from autograder.unwritten import explain
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
@@ -41,7 +41,7 @@ def load(prefix: Path) -> ModuleType:
         )
     for underlay in recipe["underlays"]:
         load(Path(underlay))
-    sys.path.insert(0, str(site(prefix)))
+    sys.path.insert(0, str(site_packages(prefix)))
     found = os.environ.get("AMENT_PREFIX_PATH", "")
     os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(filter(None, [str(prefix), found]))
     importlib.invalidate_caches()

@@ -19,9 +19,9 @@ from types import ModuleType
 
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import TROUBLE, Notice
+from autograder.ros.environment import site_packages
 from sim.grading import grading
 
-SITE = Path(f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages")
 KINDS = ("msg", "srv", "action")
 NOT_WHILE_GRADING = "The workspace is built and used after the notebook has been executed, outside of it."
 
@@ -41,7 +41,7 @@ def source(workspace: str | Path = "ws") -> Notice:
     if grading():
         return Notice(NOT_WHILE_GRADING)
     prefixes = _prefixes(workspace)
-    modules = [prefix / SITE for prefix in prefixes if (prefix / SITE).is_dir()]
+    modules = [path for path in map(site_packages, prefixes) if path.is_dir()]
     _FINDER.prefixes |= {prefix.name: prefix for prefix in prefixes}
     if _FINDER not in sys.meta_path:
         sys.meta_path.insert(0, _FINDER)

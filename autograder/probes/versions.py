@@ -20,8 +20,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard
 
+from autograder.ros.environment import site_packages
+
 WHEN = 1_750_000_000  # s since 1970: the time of every file of every version
-_SITE = f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 _SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
 _SCRIPT = """#!{python}
 import sys
@@ -97,7 +98,7 @@ def write_version(version: Version, package: str, tests: Mapping[str, bytes], ro
 def _installed(prefix: Path, package: str, name: str) -> Path | None:
     top = Path(name).parts[0]
     if top == package:
-        return prefix / _SITE / name
+        return site_packages(prefix) / name
     return prefix / "share" / package / name if top in ("launch", "config", "package.xml") else None
 
 

@@ -34,6 +34,11 @@ def without_wheel_bootstrap(environ: Mapping[str, str]) -> dict[str, str]:
     return {name: value for name, value in environ.items() if name not in dropped}
 
 
+def site_packages(prefix: Path) -> Path:
+    """Return the folder of a prefix in which its packages' Python modules are installed."""
+    return prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+
+
 @dataclass(frozen=True)
 class RosEnvironment:
     """A ROS 2 installation that this interpreter can import.
