@@ -6,6 +6,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
@@ -23,28 +24,15 @@ SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be see
 ROUNDS = 1000  # in one step; programs that still answer each other then will never stop
 
 
+@dataclass(eq=False)
 class SteppedProgram:
-    """One program of a harness in lockstep.
+    """One program of a harness in lockstep."""
 
-    Attributes:
-        description, reads: of its nodes, and the channels that they read, as last asked.
-        pending: messages that were sent to it and that it has not been told of, by channel.
-        wake: as in `Reply`.
-    """
-
-    def __init__(self, program: Program, stepper: Stepper) -> None:
-        self.program = program
-        self.stepper = stepper
-        self.description = Description()
-        self.reads: frozenset[str] = frozenset()
-        self.pending: Counter[str] = Counter()
-        self.wake: int | None = None
-
-    def describe(self) -> Description:
-        """Ask what the program's nodes look like now."""
-        self.description = self.stepper.describe()
-        self.reads = self.description.reads()
-        return self.description
+    program: Program
+    stepper: Stepper
+    description: Description = field(default_factory=Description)  # of its nodes, as last asked
+    pending: Counter[str] = field(default_factory=Counter)  # messages sent to it that it does not know of, by channel
+    wake: int | None = None  # as in `Reply`
 
 
 class _OptionalProgramLost(Exception):
@@ -166,7 +154,7 @@ class SteppedHarness(Harness):
         """Add sent messages to the pending ones of every program but `but` that reads their channels."""
         for channel, count in sent.items():
             for stepped in self._stepped:
-                if stepped is not but and channel in stepped.reads:
+                if stepped is not but and channel in stepped.description.reads:
                     stepped.pending[channel] += count
         if sent is self._grader_node.sent:
             self._grader_node.sent.clear()
@@ -240,7 +228,8 @@ class SteppedHarness(Harness):
         found = []
         for stepped in self._stepped:
             with self._attributing(stepped):
-                found.append(stepped.describe())
+                stepped.description = stepped.stepper.describe()
+                found.append(stepped.description)
         return found
 
     def _reach(self, client: Any, seconds: float) -> bool:

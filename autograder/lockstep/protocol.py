@@ -24,6 +24,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
@@ -53,8 +54,9 @@ class Description:
     kept: dict[str, int] = field(default_factory=dict)  # messages that latched publishers hold, by channel
     prefix: str = ""  # of the process's GUIDs
 
+    @cached_property
     def reads(self) -> frozenset[str]:
-        """Return every channel that the program takes messages from."""
+        """Every channel that the program takes messages from."""
         subscribed = {channel for channels, _ in self.readers for channel in channels}
         return frozenset({*subscribed, *self.servers, *(answers(name, self.prefix) for name, _ in self.clients)})
 

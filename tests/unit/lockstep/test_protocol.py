@@ -97,7 +97,7 @@ def test_changed_is_true_and_nothing_like_it() -> None:
 def test_a_description_says_what_the_program_reads() -> None:
     _, description = protocol.parse(_line(**DESCRIPTION))
     assert description.timers == (10**8,)
-    assert description.reads() == {
+    assert description.reads == {
         "/scan T reliable volatile",
         "/scan T best-effort volatile",
         "/odom T",
