@@ -2,12 +2,12 @@
 
 `SteppedHarness` steps the time of programs. `RealTimeHarness` runs them in real time and can send them signals.
 `AutoHarness` steps programs where that is possible. `launch.LaunchHarness` runs `ros2 launch`. `drive` lets the
-programs steer the simulated robot, in any harness but the last. `Shared` keeps a harness for several checks.
+programs steer the simulated robot, in any harness except `LaunchHarness`. `Shared` keeps a harness for several checks.
 """
 
 from autograder.harness.auto import AutoHarness
 from autograder.harness.base import Harness, Program
-from autograder.harness.drive import Drive, drive
+from autograder.harness.drive import drive
 from autograder.harness.goals import Goal, Stamped
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.shared import Shared
@@ -16,7 +16,6 @@ from autograder.workspace import Workspace
 
 __all__ = [
     "AutoHarness",
-    "Drive",
     "Goal",
     "Harness",
     "Program",

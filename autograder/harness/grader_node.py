@@ -74,7 +74,7 @@ class GraderNode:
         self._clients: dict[tuple[str, str], Any] = {}
         self._waiting: dict[tuple[int, int], Callable[[Any], None]] = {}  # by client and sequence number
         self._unused_guard = GuardCondition(callback=None, callback_group=None, context=self.context)
-        self._prefix = ""
+        self._prefix = ""  # of this process's GUIDs
 
     def close(self) -> None:
         """Leave the domain."""
@@ -93,7 +93,8 @@ class GraderNode:
     def listen(self, topic: str, kind: Any, receive: OnMessage) -> None:
         """Make a subscription that suits each publisher that is seen, unless there is one or the type is another."""
         peers = self.publishers_of(topic)
-        if topic not in self.subscribed() and _have_type(kind, peers):
+        subscribed = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
+        if topic not in subscribed and _have_type(kind, peers):
             self.subscribe(topic, kind, receive, requested_qos(peers))
 
     def subscribe(self, topic: str, kind: Any, receive: OnMessage, qos: QoSProfile) -> None:
@@ -137,8 +138,8 @@ class GraderNode:
                     then(taken[1])
                 return True
 
-            answers = channels.response(name, kind, self.prefix())
-            self.readers.append(Reader("client", (answers,), client, take))
+            self._prefix = self._prefix or channels.own_prefix(self.node)
+            self.readers.append(Reader("client", (channels.response(name, kind, self._prefix),), client, take))
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
@@ -158,21 +159,12 @@ class GraderNode:
         """Return each client with the channel of its requests."""
         return [(channel, client) for (_, channel), client in self._clients.items()]
 
-    def prefix(self) -> str:
-        """Return the prefix of this process's GUIDs."""
-        self._prefix = self._prefix or channels.own_prefix(self.node)
-        return self._prefix
-
     def take_expected(self) -> bool:
         """Take what has arrived where something is expected; return whether all that is expected has come."""
         for reader in self.readers:
             if reader.count < reader.expected:
                 reader.empty()
         return all(reader.count >= reader.expected for reader in self.readers)
-
-    def subscribed(self) -> set[str]:
-        """Return the topics that this node subscribes to."""
-        return {reader.entity.topic_name for reader in self.readers if reader.kind == "subscription"}
 
     def subscriptions_of(self, topic: str) -> list[Any]:
         """Return the other nodes' subscriptions to a topic, as rclpy's graph functions describe them."""

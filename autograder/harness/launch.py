@@ -169,10 +169,6 @@ class LaunchHarness(contextlib.ExitStack):
             if over:
                 return False
 
-    def run(self, seconds: float) -> None:
-        """Take messages for `seconds` of real time, or until the launch has ended."""
-        self.wait_for(lambda: False, seconds)
-
     def nodes(self) -> list[str]:
         """Return the full names of the nodes that are seen now; a name that several nodes have comes as often."""
         return [name for name in self._grader_node.other_nodes() if "/_" not in name]

@@ -55,7 +55,7 @@ class Blocking:
             end = host.time + nanoseconds
             self._until(lambda: bool(host.time >= end), end)
             return True
-        if host.has_nodes():
+        if host.nodes():
             self._slept += nanoseconds
             if host.has_sent():
                 self._looped, self._loops = self._looped + nanoseconds, self._loops + 1

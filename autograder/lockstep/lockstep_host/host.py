@@ -156,9 +156,9 @@ class Host:
     def _is_stepped(self, thread: threading.Thread) -> bool:
         return thread is self._main or isinstance(thread, Worker)
 
-    def has_nodes(self) -> bool:
-        """Return whether there is a node."""
-        return bool(self._alive())
+    def nodes(self) -> list[Any]:
+        """Return the nodes that the program has made and not destroyed."""
+        return [node for ref in self._nodes if (node := ref()) is not None and message_counts.is_alive(node)]
 
     def has_sent(self) -> bool:
         """Return whether a node has sent anything but parameter events."""
@@ -208,7 +208,7 @@ class Host:
     def _in_order(self, executor: Executor) -> list[Any]:
         """Return the executor's nodes in the order of their creation; the executor keeps them in a set."""
         there = executor.get_nodes()
-        return [node for node in self._alive() if node in there]
+        return [node for node in self.nodes() if node in there]
 
     def _readers_behind(self, executor: Executor) -> list[tuple[message_counts.Reader, Any]]:
         """Return an executor's readers with unread messages whose callbacks can run now, each with its entity."""
@@ -263,14 +263,10 @@ class Host:
     def _describe(self) -> dict[str, Any]:
         self.hooks.changed = False
         told = {"early": self.counts.fresh, "kept": self.counts.kept, "prefix": self._prefix()}
-        return {**describe(self._alive()), **told}
+        return {**describe(self.nodes()), **told}
 
     def _prefix(self) -> str:
-        return next((prefix for node in self._alive() if (prefix := channels.own_prefix(node))), "")
-
-    def _alive(self) -> list[Any]:
-        """Return the nodes that the program has made and not destroyed."""
-        return [node for ref in self._nodes if (node := ref()) is not None and message_counts.is_alive(node)]
+        return next((prefix for node in self.nodes() if (prefix := channels.own_prefix(node))), "")
 
     def _set_time(self, nanoseconds: int) -> None:
         self.time = nanoseconds

@@ -206,5 +206,5 @@ def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
 def test_a_launch_that_prints_without_end_raises_a_student_error(workspace: Workspace) -> None:
     there = launch_probe.with_files(workspace, "floods", "fleet", {"launch/floods.launch.py": FLOODS})
     with LaunchHarness(there, "fleet", "floods.launch.py") as harness, pytest.raises(StudentError) as caught:
-        harness.run(PATIENCE)
+        harness.wait_for(lambda: False, PATIENCE)
     assert caught.value.diagnosis.kind is Kind.FLOODED_OUTPUT
