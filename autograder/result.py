@@ -176,12 +176,10 @@ def schema() -> dict[str, Any]:
 
 @cache
 def _validator() -> Validator:
-    """Return the schema's validator; to check the schema itself each time takes longer than all else."""
+    """Return the schema's validator."""
     from jsonschema.validators import validator_for
 
-    kind = validator_for(schema())
-    kind.check_schema(schema())
-    return kind(schema())
+    return validator_for(schema())(schema())
 
 
 def from_json(data: Any, *, source: str = "result") -> Result:

@@ -6,10 +6,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import TypeVar
 
-# Results are checked by it. Two threads that are the first to import it at the same time find it half imported, because
-# its modules import each other.
-import jsonschema.validators  # noqa: F401
-
 T = TypeVar("T")
 R = TypeVar("R")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import threading
 
 import pytest
@@ -60,24 +58,3 @@ def test_an_exception_of_an_item_is_raised() -> None:
     with pytest.raises(ValueError, match="item"):
         map_parallel(do, MANY, jobs=1, on_done=lambda result: None)
     assert begun[0] == 0
-
-
-def test_threads_that_validate_their_first_results_at_once_find_jsonschema_imported() -> None:
-    """Unless jsonschema is imported before, this fails in two of three runs: its modules import each other."""
-    program = """
-import importlib, sys, threading
-from autograder.grading.parallel import map_parallel
-
-sys.setswitchinterval(1e-6)
-together = threading.Barrier(4)
-
-
-def imported(name):
-    together.wait()
-    return importlib.import_module(name)
-
-
-map_parallel(imported, ["jsonschema.exceptions", "jsonschema.validators"] * 2, jobs=4, on_done=lambda module: None)
-"""
-    for _ in range(3):
-        subprocess.run([sys.executable, "-c", program], check=True)
