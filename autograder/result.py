@@ -80,6 +80,11 @@ class CheckResult:
             holds=check.holds,
         )
 
+    @classmethod
+    def not_checked(cls, check: Check, reason: str, *, seconds: float = 0.0) -> CheckResult:
+        """Return the result of a check that was not run, or not to its end."""
+        return cls.of(check, Outcome.NOT_CHECKED, f"not checked: {reason}", seconds=seconds)
+
 
 @dataclass(frozen=True)
 class Build:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 
-from autograder.checks import Outcome, suites
+from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
@@ -131,7 +131,6 @@ def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str)
 
 def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis) -> Result:
     """Return the result of a submission that intake refused, with the reason, as a worker would record it."""
-    message = f"not checked: {diagnosis.sentence}"
     return Result(
         assignment=suite.assignment,
         student=student,
@@ -139,7 +138,7 @@ def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: D
         suite_version=suite.version,
         seed=seed,
         isolation=isolation.value,
-        checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, message) for check in suite.checks),
+        checks=tuple(CheckResult.not_checked(check, diagnosis.sentence) for check in suite.checks),
         max_score=suite.max_score,
         started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
         seconds=0.0,

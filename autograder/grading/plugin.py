@@ -109,7 +109,7 @@ class GradingPlugin:
         self._workspace.talk.take()  # what is said from now on is of this check
         for needed in check.depends if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
-                pytest.skip(f'not checked: first "{self.results[needed].title}" has to pass')
+                pytest.skip(f'first "{self.results[needed].title}" has to pass')
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -129,10 +129,10 @@ class GradingPlugin:
                 self.diagnosis = error.diagnosis
             verdict = CheckResult.of(check, Outcome.FAILED, error.diagnosis.sentence, seconds=seconds)
         elif isinstance(error, pytest.skip.Exception):
-            verdict = CheckResult.of(check, Outcome.NOT_CHECKED, str(error), seconds=seconds)
+            verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
         else:
             self.failures.append("".join(traceback.format_exception(error)))
-            verdict = CheckResult.of(check, Outcome.NOT_CHECKED, "the grader failed here", seconds=seconds)
+            verdict = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
         self.results[check.id] = replace(verdict, talk=self._workspace.talk.take() if self._scope.pictures else ())
 
 

@@ -18,7 +18,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from autograder import layout
-from autograder.checks import Outcome, suites
+from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
@@ -67,7 +67,7 @@ class Grading:
             diagnosis = error.diagnosis
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
-        sentence, times = f"not checked: {diagnosis.sentence}", self._workspace.time_record
+        times = self._workspace.time_record
         return Result(
             assignment=self._job.assignment,
             student=self._job.student,
@@ -76,7 +76,7 @@ class Grading:
             seed=self._job.seed,
             isolation=self._job.tier.value,
             checks=tuple(
-                results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED, sentence)
+                results.get(check.id) or CheckResult.not_checked(check, diagnosis.sentence)
                 for check in self._suite.checks
             ),
             max_score=self._suite.max_score,
