@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from autograder import layout
-from autograder.layout import Course
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(
@@ -36,26 +35,23 @@ PROOF = frozenset({"attack_payloads.py", "attacks.py", "mutants.yaml", "survivor
 CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\w+)")
 
 
-def digest(assignment: str, reads: Iterable[str] = (), course: Course = layout.COURSE, home: Path = layout.ROOT) -> str:
+def digest(assignment: str, reads: Iterable[str] = ()) -> str:
     """Return a digest of the files that a grading of the assignment reads, as 12 hexadecimal digits.
 
     Args:
         assignment: name of the assignment.
         reads: files and folders that its checks read beside their own, as paths in the course's folder.
-        course: the course.
-        home: folder of the autograder and the simulator.
     """
     found = hashlib.sha256()
-    for path in files(assignment, reads, course, home):
-        name = path.relative_to(course.root if path.is_relative_to(course.root) else home)
+    for path in files(assignment, reads):
+        name = path.relative_to(layout.COURSE.root if path.is_relative_to(layout.COURSE.root) else layout.ROOT)
         found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
     return found.hexdigest()[:12]
 
 
-def files(
-    assignment: str, reads: Iterable[str] = (), course: Course = layout.COURSE, home: Path = layout.ROOT
-) -> list[Path]:
+def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of the files that a grading of the assignment reads; the arguments are as in `digest`."""
+    course, home = layout.COURSE, layout.ROOT
     checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
     suites = _below(course.root, (checks / name for name in _chapters(assignment, checks)))

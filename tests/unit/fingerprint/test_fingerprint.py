@@ -55,46 +55,47 @@ LINES = "name: few\ntitle: A course with few files\nchecks: autograder/checks\nw
 
 
 @pytest.fixture
-def course(tmp_path: Path) -> Path:
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course with few files."""
     for name, text in {**READ, layout.FILE: LINES}.items():
         _write(tmp_path / name, text)
+    monkeypatch.setattr(layout, "ROOT", tmp_path)
+    monkeypatch.setattr(layout, "COURSE", Course.read(tmp_path))
     return tmp_path
-
-
-def version(course: Path) -> str:
-    return digest(CHAPTER, READS, Course.read(course), course)
 
 
 @pytest.mark.parametrize("name", READ)
 def test_a_file_that_a_grading_reads_changes_the_version(name: str, course: Path) -> None:
-    before = version(course)
+    before = digest(CHAPTER, READS)
     with (course / name).open("a") as stream:
         stream.write("# more\n")
-    assert version(course) != before
+    assert digest(CHAPTER, READS) != before
 
 
-def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(course: Path, tmp_path: Path) -> None:
-    other = tmp_path / "other"
+def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
+    course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = course / "other"
     _write(other / layout.FILE, "name: other\ntitle: Another\n")
     _write(other / "checks/ch02_nodes/hidden/graph.py", "")
-    read = {str(path.relative_to(tmp_path)) for path in files(CHAPTER, (), Course.read(other), course)}
+    monkeypatch.setattr(layout, "COURSE", Course.read(other))
+    read = {str(path.relative_to(course)) for path in files(CHAPTER)}
     assert "other/checks/ch02_nodes/hidden/graph.py" in read
     assert {"sim/world.py", "autograder/checks/suites.py", "assets/worlds/lab.yaml"} <= read
     assert not [path for path in read if path.startswith(("autograder/checks/ch", "chapters"))]
 
 
 def test_a_new_file_of_the_suite_changes_the_version(course: Path) -> None:
-    before = version(course)
+    before = digest(CHAPTER, READS)
     _write(course / "autograder/checks/ch02_nodes/hidden/more.json", "")
-    assert version(course) != before
+    assert digest(CHAPTER, READS) != before
 
 
 @pytest.mark.parametrize("name", NOT_READ)
 def test_a_file_that_no_grading_reads_does_not_change_the_version(name: str, course: Path) -> None:
-    before = version(course)
+    before = digest(CHAPTER, READS)
     _write(course / name, "x")
-    assert version(course) == before
+    assert digest(CHAPTER, READS) == before
 
 
 def test_the_version_of_a_suite_is_the_digest_of_all_files_that_it_reads() -> None:
