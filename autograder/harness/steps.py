@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+# Both have to divide `drive.SCAN_NS`: a scan is sent where a step ends.
 TICK_NS = 100_000_000  # the longest step that `Harness.run` takes
 FINEST_TICK_NS = 10_000_000  # the shortest, however short the programs' timers are
 SLACK_NS = 1_000_000  # a program that wants to wake so shortly before the end of a step wakes at its end

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.harness.drive import SCAN_NS
 from autograder.harness.steps import FINEST_TICK_NS, TICK_NS, next_instant, tick_of
 
 MS = 1_000_000
+
+
+@pytest.mark.parametrize("tick_ns", [TICK_NS, FINEST_TICK_NS])
+def test_each_scan_comes_at_the_end_of_a_step(tick_ns: int) -> None:
+    assert SCAN_NS % tick_ns == 0
 
 
 @pytest.mark.parametrize(
