@@ -41,7 +41,7 @@ class Reader:
     take: Callable[[], bool]  # takes one message and handles it; False when there is none
     count: int = 0  # how many it has taken
     expected: int = 0  # how many were sent to it, as far as is known
-    latched: bool = False  # whether it gets what publishers hold for late subscriptions
+    transient_local: bool = False  # whether it gets what publishers hold for late subscriptions
     new: bool = True  # whether that is still to be counted
 
     def empty(self) -> None:
@@ -88,7 +88,7 @@ class GraderNode:
             return
         qos = offered_qos(peers)
         self.publishers[topic] = self.node.create_publisher(kind, topic, qos)
-        self.written[topic] = channels.written(topic, kind, qos)
+        self.written[topic] = channels.publisher_channel(topic, kind, qos)
 
     def listen(self, topic: str, kind: Any, receive: OnMessage) -> None:
         """Make a subscription that suits each publisher that is seen, unless there is one or the type is another."""
@@ -107,9 +107,15 @@ class GraderNode:
                 receive(taken[0], taken[1]["received_timestamp"])
             return taken is not None
 
-        latched = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        transient_local = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.readers.append(
-            Reader("subscription", channels.read(topic, kind, qos), subscription, take, latched=latched)
+            Reader(
+                "subscription",
+                channels.subscription_channels(topic, kind, qos),
+                subscription,
+                take,
+                transient_local=transient_local,
+            )
         )
 
     def publish(self, topic: str, message: Any) -> None:

@@ -200,7 +200,7 @@ class SteppedHarness(Harness):
         for reader in self._grader_node.readers:
             if reader.new:
                 reader.new = False
-                if reader.latched:
+                if reader.transient_local:
                     kept = _sum(description.kept for description in descriptions)
                     reader.expected += sum(kept[channel] for channel in reader.channels)
         self._collect()

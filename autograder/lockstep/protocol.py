@@ -51,7 +51,7 @@ class Description:
     clients: tuple[tuple[str, bool], ...] = ()  # the channel of each client's requests, and whether it sees a server
     servers: tuple[str, ...] = ()  # the channel of each service's requests
     early: dict[str, int] = field(default_factory=dict)  # messages that were sent before the first step, by channel
-    kept: dict[str, int] = field(default_factory=dict)  # messages that latched publishers hold, by channel
+    kept: dict[str, int] = field(default_factory=dict)  # messages that transient-local publishers hold, by channel
     prefix: str = ""  # of the process's GUIDs
 
     @cached_property

@@ -100,7 +100,7 @@ class Stepper:
         """Tell the program that its endpoints are matched, and what others sent before, by channel.
 
         Args:
-            kept: messages that latched writers hold.
+            kept: messages that transient-local publishers hold.
             early: requests and responses.
         """
         self._send({"op": "match", "kept": dict(kept), "early": dict(early)})

@@ -11,7 +11,7 @@ import ctypes
 from typing import Any
 
 RELIABLE, BEST_EFFORT = "reliable", "best-effort"
-LATCHED, VOLATILE = "latched", "volatile"
+TRANSIENT_LOCAL, VOLATILE = "transient_local", "volatile"
 OWN = "own"  # a placeholder for the prefix of the client's own process, which is not known at first
 PREFIX = 12  # bytes of a GUID that name the process
 _GUID = 16
@@ -24,17 +24,17 @@ def type_name(kind: Any) -> str:
     return f"{package}/{family}/{kind.__name__}"
 
 
-def written(topic: str, kind: Any, qos: Any) -> str:
-    """Return the channel that a publisher with a profile writes; the topic's name is resolved."""
+def publisher_channel(topic: str, kind: Any, qos: Any) -> str:
+    """Return the channel of a publisher with a profile; the topic's name is resolved."""
     reliability = BEST_EFFORT if qos.reliability.name == "BEST_EFFORT" else RELIABLE
-    durability = LATCHED if qos.durability.name == "TRANSIENT_LOCAL" else VOLATILE
+    durability = TRANSIENT_LOCAL if qos.durability.name == "TRANSIENT_LOCAL" else VOLATILE
     return _topic(topic, kind, reliability, durability)
 
 
-def read(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
-    """Return the channels that a subscription reads: all that offer at least what its profile requests."""
+def subscription_channels(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
+    """Return the channels from which a subscription gets messages: those that offer at least what its profile requests."""
     reliabilities = (RELIABLE,) if qos.reliability.name == "RELIABLE" else (RELIABLE, BEST_EFFORT)
-    durabilities = (LATCHED,) if qos.durability.name == "TRANSIENT_LOCAL" else (LATCHED, VOLATILE)
+    durabilities = (TRANSIENT_LOCAL,) if qos.durability.name == "TRANSIENT_LOCAL" else (TRANSIENT_LOCAL, VOLATILE)
     return tuple(_topic(topic, kind, one, two) for one in reliabilities for two in durabilities)
 
 
@@ -43,9 +43,9 @@ def topic_of(channel: str) -> str:
     return channel.partition(" ")[0]
 
 
-def is_latched(channel: str) -> bool:
+def is_transient_local(channel: str) -> bool:
     """Return whether late readers get what was written before they came."""
-    return channel.endswith(f" {LATCHED}")
+    return channel.endswith(f" {TRANSIENT_LOCAL}")
 
 
 def request(service: str, kind: Any) -> str:
@@ -55,7 +55,7 @@ def request(service: str, kind: Any) -> str:
 
 def is_topic(channel: str) -> bool:
     """Return whether a channel belongs to a topic, not to a service."""
-    return channel.endswith((f" {VOLATILE}", f" {LATCHED}"))
+    return channel.endswith((f" {VOLATILE}", f" {TRANSIENT_LOCAL}"))
 
 
 def response(service: str, kind: Any, prefix: str) -> str:
@@ -63,8 +63,8 @@ def response(service: str, kind: Any, prefix: str) -> str:
     return f"{service} {type_name(kind)} response {prefix}"
 
 
-def of(names: tuple[str, ...], prefix: str) -> tuple[str, ...]:
-    """Return channels, `OWN` replaced by the prefix of the process."""
+def with_process_prefix(names: tuple[str, ...], prefix: str) -> tuple[str, ...]:
+    """Return channels with the prefix of a process in the place of `OWN`."""
     return tuple(f"{name[: -len(OWN)]}{prefix}" if name.endswith(f" response {OWN}") else name for name in names)
 
 

@@ -28,11 +28,13 @@ def describe(nodes: list[Any]) -> dict[str, Any]:
     for node in nodes:
         for publisher in _alive(node.publishers):
             if publisher.topic_name not in _OWN_TOPICS:
-                channel = channels.written(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
+                channel = channels.publisher_channel(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
                 writers.append((channel, publisher.get_subscription_count()))
         for subscription in _alive(node.subscriptions):
             if subscription.topic_name not in NOT_COUNTED:
-                read = channels.read(subscription.topic_name, subscription.msg_type, subscription.qos_profile)
+                read = channels.subscription_channels(
+                    subscription.topic_name, subscription.msg_type, subscription.qos_profile
+                )
                 readers.append((read, subscription.handle.get_publisher_count()))
         for client in _alive(node.clients):
             clients.append((channels.request(client.service_name, client.srv_type), client.service_is_ready()))

@@ -45,7 +45,7 @@ class Hooks:
         self.counts = counts
         self._note = note
         self.changed = True
-        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth if latched
+        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth or 0
         self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
 
     def install(self) -> None:
@@ -78,17 +78,19 @@ class Hooks:
 
     def _made_publisher(self, publisher: Any, *_: Any, **__: Any) -> None:
         if publisher.topic_name not in NOT_COUNTED:
-            channel = channels.written(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
-            depth = (publisher.qos_profile.depth or 1) if channels.is_latched(channel) else 0
+            channel = channels.publisher_channel(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
+            depth = (publisher.qos_profile.depth or 1) if channels.is_transient_local(channel) else 0
             self._written[(publisher.handle.pointer, "")] = channel, depth
             self.changed = True
 
     def _made_subscription(self, subscription: Any, *_: Any, **__: Any) -> None:
         if subscription.topic_name not in NOT_COUNTED:
             qos = subscription.qos_profile
-            read = channels.read(subscription.topic_name, subscription.msg_type, qos)
-            latched = qos.durability.name == "TRANSIENT_LOCAL"
-            self.counts.add(subscription.handle, Reader(subscription, read, depth=qos.depth or 1, latched=latched))
+            read = channels.subscription_channels(subscription.topic_name, subscription.msg_type, qos)
+            transient_local = qos.durability.name == "TRANSIENT_LOCAL"
+            self.counts.add(
+                subscription.handle, Reader(subscription, read, depth=qos.depth or 1, transient_local=transient_local)
+            )
             self.changed = True
 
     def _made_client(self, client: Any, *_: Any, **__: Any) -> None:
@@ -110,7 +112,7 @@ class Hooks:
             ),
         ):
             topic = node.resolve_topic_name(f"{name}/_action/{part}")
-            self._written[(server._handle.pointer, part)] = channels.written(topic, of, qos), 0
+            self._written[(server._handle.pointer, part)] = channels.publisher_channel(topic, of, qos), 0
         server.lockstep_requests = self._requests(server._handle)
         server.lockstep_feedback = self._written[(server._handle.pointer, "feedback")][0]
 
@@ -120,7 +122,7 @@ class Hooks:
             self._calls(client, client._client_handle, part, 2 + index, resolved, getattr(kind.Impl, of))
         topic = node.resolve_topic_name(f"{name}/_action/feedback")
         qos = options.get("feedback_sub_qos_profile", _FEEDBACK)
-        read = channels.read(topic, kind.Impl.FeedbackMessage, qos)
+        read = channels.subscription_channels(topic, kind.Impl.FeedbackMessage, qos)
         self.counts.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
         client.lockstep_requests = self._requests(client._client_handle)
         client.lockstep_feedback = read
@@ -174,7 +176,7 @@ class Hooks:
         if taken is None:
             return None
         reader = self.counts.readers.get((handle.pointer, ""))
-        if reader is not None and not reader.latched and taken[1]["source_timestamp"] < reader.matched_ns:
+        if reader is not None and not reader.transient_local and taken[1]["source_timestamp"] < reader.matched_ns:
             return None  # it was on its way when the reader was matched, so whether it comes is up to chance
         self.counts.took(handle, "")
         return taken

@@ -27,7 +27,7 @@ class Reader:
     Attributes:
         channels: what it takes.
         part: which part of an action's entity it is, and its index in what the entity's `is_ready` returns.
-        latched: whether it gets what latched writers hold.
+        transient_local: whether it gets what transient-local writers hold.
         unread: messages that were sent to it and that it has not taken; counted once it is matched.
         matched_ns: when it was matched with its writers, in ns of system time; 0 before.
         depth: how many messages its queue holds; 0 where nothing is dropped.
@@ -40,13 +40,13 @@ class Reader:
         *,
         part: tuple[str, int] = ("", 0),
         depth: int = 0,
-        latched: bool = False,
+        transient_local: bool = False,
     ) -> None:
         self._entity = weakref.ref(entity)
         self.channels = read
         self.part = part
         self.depth = depth
-        self.latched = latched
+        self.transient_local = transient_local
         self.unread = 0
         self.matched_ns = 0
 
@@ -63,7 +63,7 @@ class MessageCounts:
     Attributes:
         readers: by the address of the C object, and the part of it.
         fresh: messages that were sent since the grader was last told, by channel.
-        kept: messages that latched writers hold for readers that come late, by channel.
+        kept: messages that transient-local writers hold for readers that come late, by channel.
         behind: the readers that have unread messages.
     """
 
@@ -79,7 +79,7 @@ class MessageCounts:
         self.readers[(handle.pointer, reader.part[0])] = reader
 
     def sent(self, channel: str, depth: int = 0) -> None:
-        """Count a message that this program has sent; `depth` is how many a latched writer holds."""
+        """Count a message that this program has sent; `depth` is how many a transient-local writer holds."""
         self.fresh[channel] += 1
         if depth:
             self.kept[channel] = min(self.kept[channel] + 1, depth)
@@ -101,11 +101,11 @@ class MessageCounts:
     def match(self, prefix: str, kept: dict[str, int], early: dict[str, int]) -> None:
         """Begin to count for new readers, which are matched with their writers now.
 
-        What latched writers hold, this program's own too, and early requests are unread messages.
+        What transient-local writers hold, this program's own too, and early requests are unread messages.
 
         Args:
             prefix: of this process's GUIDs.
-            kept: messages that latched writers of others hold, by channel.
+            kept: messages that transient-local writers of others hold, by channel.
             early: requests and responses that others sent before the first step, by channel.
         """
         kept = dict(Counter(kept) + self.kept)
@@ -117,7 +117,7 @@ class MessageCounts:
                 self.behind.discard(reader)
             elif not reader.matched_ns:
                 reader.matched_ns = time.time_ns()
-                if reader.latched:
+                if reader.transient_local:
                     reader.unread = min(reader.depth, sum(kept.get(channel, 0) for channel in reader.channels))
                 elif reader.depth:
                     if not reader.part[0]:
@@ -128,7 +128,7 @@ class MessageCounts:
                     self.behind.add(reader)
         self._by_channel = {}
         for reader in self.readers.values():
-            for channel in channels.of(reader.channels, prefix):
+            for channel in channels.with_process_prefix(reader.channels, prefix):
                 self._by_channel.setdefault(channel, []).append(reader)
 
     def drop(self, readers: Iterable[Reader]) -> None:
