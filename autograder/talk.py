@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 from autograder.plain_text import clean
 
-MOST_ROWS = 20  # at the start of a check, and as many at its end
-MOST_LETTERS = 300  # in a row
+MAX_ROWS = 20  # at the start of a check, and as many at its end
+MAX_CHARACTERS = 300  # in a row
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class Talk:
     def add(self, seconds: float, what: str, name: str, text: str) -> None:
         """Add a row. Of too many, the first and the last are kept."""
         text = clean(text)
-        shown = text if len(text) <= MOST_LETTERS else text[: MOST_LETTERS - 1] + "…"
-        self._rows.append(Row(round(seconds, 3), what, name[:MOST_LETTERS], shown))
-        if len(self._rows) > 2 * MOST_ROWS:
-            del self._rows[MOST_ROWS]
+        shown = text if len(text) <= MAX_CHARACTERS else text[: MAX_CHARACTERS - 1] + "…"
+        self._rows.append(Row(round(seconds, 3), what, name[:MAX_CHARACTERS], shown))
+        if len(self._rows) > 2 * MAX_ROWS:
+            del self._rows[MAX_ROWS]
 
     def take(self) -> tuple[Row, ...]:
         """Return the rows, and forget them."""

@@ -13,10 +13,10 @@ from typing import Any
 import yaml
 
 from sim.exceptions import WorldError
-from sim.world import MOST_METRES
+from sim.world import MAX_METRES
 
-MOST_BYTES = 20_000_000
-MOST_NAME = 200
+MAX_BYTES = 20_000_000
+MAX_NAME = 200
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 ANGLES = {"rad": 1.0, "deg": math.pi / 180.0}
@@ -40,13 +40,13 @@ def composed(path: Path) -> yaml.MappingNode:
     """Return the nodes of a YAML file that is one mapping. Raises WorldError for anything else."""
     name = str(path)
     try:
-        data = path.read_bytes() if path.stat().st_size <= MOST_BYTES else None
+        data = path.read_bytes() if path.stat().st_size <= MAX_BYTES else None
     except OSError as error:
         raise WorldError(
             f"the file cannot be read ({error.strerror})", "Give the path of a world file", path=name
         ) from None
     if data is None:
-        raise WorldError(f"the file is larger than {MOST_BYTES // 1_000_000} MB", "Give a smaller world", path=name)
+        raise WorldError(f"the file is larger than {MAX_BYTES // 1_000_000} MB", "Give a smaller world", path=name)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -131,8 +131,8 @@ class Reader:
     def length(self, node: yaml.Node, what: str) -> float:
         """Return a length in metres."""
         value = self._quantity(node, what, LENGTHS, self.units.length)
-        if abs(value) > MOST_METRES:
-            raise bad(self.path, node, f"{what} is {value:g} m", f"Keep within {MOST_METRES:g} m; mind the units")
+        if abs(value) > MAX_METRES:
+            raise bad(self.path, node, f"{what} is {value:g} m", f"Keep within {MAX_METRES:g} m; mind the units")
         return value
 
     def above_zero(self, node: yaml.Node, what: str) -> float:
@@ -160,10 +160,8 @@ class Reader:
         if not isinstance(node, yaml.ScalarNode):
             raise bad(self.path, node, f"{what} is {kind(node)}", "Give a text")
         text = str(node.value)
-        if len(text) > MOST_NAME or not text.isprintable():
-            raise bad(
-                self.path, node, f"{what} is not a short text", f"Give one line of at most {MOST_NAME} characters"
-            )
+        if len(text) > MAX_NAME or not text.isprintable():
+            raise bad(self.path, node, f"{what} is not a short text", f"Give one line of at most {MAX_NAME} characters")
         return text
 
     def truth(self, node: yaml.Node | None, what: str) -> bool:

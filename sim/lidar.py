@@ -13,8 +13,8 @@ from sim.pose import ORIGIN, Pose
 
 Float32s = NDArray[np.float32]
 
-MOST_BEAMS = 100_000
-MOST_RANGE = 10_000.0
+MAX_BEAMS = 100_000
+MAX_RANGE = 10_000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +42,10 @@ class LidarSpec:
 
     def __post_init__(self) -> None:
         for what, good, remedy in (
-            ("beams", 1 <= self.beams <= MOST_BEAMS, f"from 1 to {MOST_BEAMS}"),
+            ("beams", 1 <= self.beams <= MAX_BEAMS, f"from 1 to {MAX_BEAMS}"),
             ("angle_min", -math.tau <= self.angle_min <= math.tau, "an angle in radians within a turn of 0"),
             ("angle_increment", 1e-7 <= self.angle_increment <= math.tau, "radians, from 1e-7 to a whole turn"),
-            ("range_max", 0.0 < self.range_max <= MOST_RANGE, f"metres, above 0 and at most {MOST_RANGE:.0f}"),
+            ("range_max", 0.0 < self.range_max <= MAX_RANGE, f"metres, above 0 and at most {MAX_RANGE:.0f}"),
             ("range_min", 0.0 <= self.range_min < self.range_max, "metres, from 0 to below range_max"),
             ("rate", 0.0 < self.rate <= 1000.0, "scans a second, above 0 and at most 1000"),
             ("noise", 0.0 <= self.noise <= self.range_max, "a standard deviation in metres, 0 or above"),

@@ -7,8 +7,8 @@ from collections import deque
 Line = tuple[float, str]
 """Seconds since the start of the run, and what was written then."""
 
-MOST_LINES = 1000  # at the start of a run, and as many at its end
-MOST_LETTERS = 300  # in a line
+MAX_LINES = 1000  # at the start of a run, and as many at its end
+MAX_CHARACTERS = 300  # in a line
 LEFT_OUT = "(lines are left out here)"
 
 
@@ -17,17 +17,17 @@ class Log:
 
     def __init__(self) -> None:
         self._first: list[Line] = []
-        self._last: deque[Line] = deque(maxlen=MOST_LINES + 1)
+        self._last: deque[Line] = deque(maxlen=MAX_LINES + 1)
 
     def add(self, seconds: float, text: str) -> None:
         """Add a line, whose end is cut off if it is too long. An empty one is not kept."""
         if text.strip():
-            line = (round(seconds, 3), text if len(text) <= MOST_LETTERS else text[: MOST_LETTERS - 1] + "…")
-            (self._first if len(self._first) < MOST_LINES else self._last).append(line)
+            line = (round(seconds, 3), text if len(text) <= MAX_CHARACTERS else text[: MAX_CHARACTERS - 1] + "…")
+            (self._first if len(self._first) < MAX_LINES else self._last).append(line)
 
     def lines(self) -> tuple[Line, ...]:
         """Return what was kept, in the order of its times."""
-        return shorten((*self._first, *self._last), 2 * MOST_LINES)
+        return shorten((*self._first, *self._last), 2 * MAX_LINES)
 
 
 def shorten(lines: tuple[Line, ...], most: int) -> tuple[Line, ...]:

@@ -28,7 +28,7 @@ from sim.simulation import start, step
 from sim.state import Commands, Event, Simulation, State
 
 FORMAT = 1
-MOST_BYTES = 4_000_000_000
+MAX_BYTES = 4_000_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -223,8 +223,8 @@ def load_recording(path: str | Path) -> Recording:
     try:
         with Path(path).open("rb") as stream, zipfile.ZipFile(stream) as archive:
             size = sum(part.file_size for part in archive.infolist())
-        if size > MOST_BYTES:
-            raise RecordingError(f"{path}: {size} bytes when unpacked; a recording holds at most {MOST_BYTES}")
+        if size > MAX_BYTES:
+            raise RecordingError(f"{path}: {size} bytes when unpacked; a recording holds at most {MAX_BYTES}")
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header = json.loads(file["header"].tobytes())
             if header["format"] != FORMAT:

@@ -19,7 +19,7 @@ from sim.pose import ORIGIN, Pose
 from sim.robot import RobotSpec
 from sim.scene import Body, Scene, beams_of, outline
 from sim.state import Simulation, State
-from sim.world import LEAST_METRES
+from sim.world import MIN_METRES
 
 Floats = NDArray[np.float64]
 NOTHING = np.empty(0)
@@ -115,7 +115,7 @@ def mounted(pose: Pose, mount: Pose) -> Pose:
 
 def clean(value: float) -> float:
     """Return 0 for numbers so small that their products would leave the range of a double."""
-    return value if abs(value) >= LEAST_METRES else 0.0
+    return value if abs(value) >= MIN_METRES else 0.0
 
 
 def _ranges(simulation: Simulation, state: State, index: int, lidar: LidarSpec, body: Body) -> Floats:

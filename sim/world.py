@@ -15,9 +15,9 @@ from sim.pose import Pose
 Floats = NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
-MOST_METRES = 100_000.0
+MAX_METRES = 100_000.0
 # Below this a coordinate is taken for zero: products of smaller ones would leave the range of a double.
-LEAST_METRES = 1e-60
+MIN_METRES = 1e-60
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Goal:
     name: str = "goal"
 
     def __post_init__(self) -> None:
-        if not (_near(self.x) and _near(self.y) and 0.0 < self.radius <= MOST_METRES):
+        if not (_near(self.x) and _near(self.y) and 0.0 < self.radius <= MAX_METRES):
             raise WorldError(
                 f"a goal at ({self.x}, {self.y}), radius {self.radius}", "Give metres, and a radius above 0"
             )
@@ -56,7 +56,7 @@ class Mover:
         object.__setattr__(self, "path", tuple((float(x), float(y)) for x, y in self.path))
         good = (
             ("path", self.path and all(_near(x) and _near(y) for x, y in self.path), "one point or more, in metres"),
-            ("radius", 0.0 < self.radius <= MOST_METRES, "metres, above 0"),
+            ("radius", 0.0 < self.radius <= MAX_METRES, "metres, above 0"),
             ("speed", 0.0 < self.speed <= 100.0, "m/s, above 0 and at most 100"),
             ("pause", 0.0 <= self.pause <= 1e6, "seconds, 0 or above"),
             ("phase", self.phase is None or 0.0 <= self.phase <= 1.0, "a share of the cycle, from 0 to 1"),
@@ -165,7 +165,7 @@ BOX_NAMES = ("south wall", "east wall", "north wall", "west wall")
 
 
 def _near(value: float) -> bool:
-    return -MOST_METRES <= value <= MOST_METRES
+    return -MAX_METRES <= value <= MAX_METRES
 
 
 def _table(rows: ArrayLike, width: int, what: str) -> Floats:
@@ -177,9 +177,9 @@ def _table(rows: ArrayLike, width: int, what: str) -> Floats:
         table = np.empty((0, width))
     if table.ndim != 2 or table.shape[1] != width:
         raise WorldError(f"{what} have the shape {table.shape}", f"Give rows of {width} numbers")
-    if not (np.abs(table) <= MOST_METRES).all():
-        raise WorldError(f"{what} hold a number that is not within {MOST_METRES:g} m", "Give finite numbers in metres")
-    table[np.abs(table) < LEAST_METRES] = 0.0
+    if not (np.abs(table) <= MAX_METRES).all():
+        raise WorldError(f"{what} hold a number that is not within {MAX_METRES:g} m", "Give finite numbers in metres")
+    table[np.abs(table) < MIN_METRES] = 0.0
     table.flags.writeable = False
     return table
 

@@ -33,8 +33,8 @@ from sim.fields import Reader, Units, bad, composed
 from sim.pose import Pose
 from sim.world import BOX_NAMES, Goal, Mover, World, box
 
-MOST_THINGS = 200_000
-MOST_MOVERS = 1000
+MAX_THINGS = 200_000
+MAX_MOVERS = 1000
 
 
 def load_world(path: str | Path) -> World:
@@ -53,7 +53,7 @@ def load_world(path: str | Path) -> World:
     name = read.text(sections.get("name"), "name")
     segments: list[tuple[float, float, float, float]] = []
     names: list[str] = []
-    for node in read.items(sections.get("walls"), "walls", MOST_THINGS):
+    for node in read.items(sections.get("walls"), "walls", MAX_THINGS):
         if isinstance(node, yaml.SequenceNode):
             x1, y1, x2, y2 = read.lengths(node, "a wall", 4)
             label = ""
@@ -65,28 +65,28 @@ def load_world(path: str | Path) -> World:
             raise bad(where, node, "the wall has no length: it ends where it begins", "Move one end, or leave it out")
         segments.append((x1, y1, x2, y2))
         names.append(label)
-    for node in read.items(sections.get("boxes"), "boxes", MOST_THINGS):
+    for node in read.items(sections.get("boxes"), "boxes", MAX_THINGS):
         room = read.fields(node, "a box", required=("size",), optional=("center", "name"))
         width, height = (read.above_zero(value, "size") for value in read.items(room["size"], "size", 2, 2))
         x, y = read.lengths(room["center"], "center", 2) if "center" in room else (0.0, 0.0)
         prefix = read.text(room.get("name"), "name")
         segments += [(a, b, c, d) for a, b, c, d in box(width, height, x=x, y=y).tolist()]
         names += [f"{prefix} {side}".strip() for side in BOX_NAMES]
-    for node in read.items(sections.get("polygons"), "polygons", MOST_THINGS):
+    for node in read.items(sections.get("polygons"), "polygons", MAX_THINGS):
         polygon = read.fields(node, "a polygon", required=("points",), optional=("name",))
         sides = _sides(read, polygon["points"])
         segments += sides
         names += [read.text(polygon.get("name"), "name")] * len(sides)
-    if len(segments) > MOST_THINGS:
-        raise bad(where, top, f"there are {len(segments)} walls in all", f"Keep to {MOST_THINGS}")
+    if len(segments) > MAX_THINGS:
+        raise bad(where, top, f"there are {len(segments)} walls in all", f"Keep to {MAX_THINGS}")
     circles, circle_names = [], []
-    for node in read.items(sections.get("circles"), "circles", MOST_THINGS):
+    for node in read.items(sections.get("circles"), "circles", MAX_THINGS):
         circle = read.fields(node, "a circle", required=("center", "radius"), optional=("name",))
         circles.append((*read.lengths(circle["center"], "center", 2), read.above_zero(circle["radius"], "radius")))
         circle_names.append(read.text(circle.get("name"), "name"))
-    starts = [_start(read, node, circles) for node in read.items(sections.get("starts"), "starts", MOST_MOVERS)]
-    goals = [_goal(read, node) for node in read.items(sections.get("goals"), "goals", MOST_MOVERS)]
-    movers = [_mover(read, node) for node in read.items(sections.get("movers"), "movers", MOST_MOVERS)]
+    starts = [_start(read, node, circles) for node in read.items(sections.get("starts"), "starts", MAX_MOVERS)]
+    goals = [_goal(read, node) for node in read.items(sections.get("goals"), "goals", MAX_MOVERS)]
+    movers = [_mover(read, node) for node in read.items(sections.get("movers"), "movers", MAX_MOVERS)]
     if not (segments or circles or movers):
         raise bad(where, top, "the world is empty", "Give it walls, boxes, polygons, circles or movers")
     return World.from_segments(
@@ -112,7 +112,7 @@ def _units(read: Reader, node: yaml.Node | None) -> Units:
 
 
 def _sides(read: Reader, node: yaml.Node) -> list[tuple[float, float, float, float]]:
-    nodes = read.items(node, "points", MOST_THINGS, 3)
+    nodes = read.items(node, "points", MAX_THINGS, 3)
     points = [read.lengths(point, "a point", 2) for point in nodes]
     if points[0] == points[-1]:  # closed by hand
         points.pop()

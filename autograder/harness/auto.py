@@ -22,7 +22,7 @@ from autograder.workspace import Workspace
 
 TIME_VARIABLE = "AUTOGRADER_TIME"  # "real" keeps every program from being stepped
 PROBE_SECONDS = 1.0
-PATIENCE = 1.0  # s for what a busy machine may hold up in real time
+LATE_MESSAGE_SECONDS = 1.0  # for what a busy machine may hold up in real time
 MAX_READ = 4 * 1024 * 1024  # bytes of a package's Python files that are looked through
 _WORDS = re.compile(rb"\b(threading|_?thread|asyncio|concurrent|multiprocessing|subprocess|sleep|Clock\w*|Executor)\b")
 
@@ -83,9 +83,9 @@ class AutoHarness(Base):
         return self.now_ns + (self.tick_ns - 1 if self.time == LOCKSTEP else 0)
 
     def wait_for_late(self, condition: Callable[[], bool]) -> None:
-        """Wait for what a busy machine may hold up: in real time at most `PATIENCE`, in lockstep not at all."""
+        """Wait for late messages: in real time at most `LATE_MESSAGE_SECONDS`, in lockstep not at all."""
         if self.time == REAL:
-            self.until(condition, PATIENCE)
+            self.until(condition, LATE_MESSAGE_SECONDS)
 
     # The choice.
 

@@ -9,8 +9,8 @@ from rcl_interfaces.msg import ParameterType, ParameterValue
 from rclpy.parameter import parameter_value_to_python
 from unique_identifier_msgs.msg import UUID
 
-MOST_ITEMS = 6  # of a list
-MOST_LETTERS = 200  # of a text
+MAX_ITEMS = 6  # of a list
+MAX_CHARACTERS = 200  # of a text
 _KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
 
 
@@ -29,10 +29,10 @@ def _value(value: Any) -> str:
     if hasattr(value, "get_fields_and_field_types"):
         return f"{{{words(value)}}}"
     if isinstance(value, str | bytes):
-        return repr(value[:MOST_LETTERS]) + "…" * (len(value) > MOST_LETTERS)
+        return repr(value[:MAX_CHARACTERS]) + "…" * (len(value) > MAX_CHARACTERS)
     if isinstance(value, float):
         return f"{value:.6g}"
     if hasattr(value, "__len__"):
-        more = f", … {len(value)} in all" if len(value) > MOST_ITEMS else ""
-        return f"[{', '.join(map(_value, islice(value, MOST_ITEMS)))}{more}]"
+        more = f", … {len(value)} in all" if len(value) > MAX_ITEMS else ""
+        return f"[{', '.join(map(_value, islice(value, MAX_ITEMS)))}{more}]"
     return str(value)

@@ -23,7 +23,7 @@ from autograder.proof.mutation_run import FAILED, MutantResult
 from autograder.proof.population import Population
 
 KINDS = ("equivalent", "outside")
-LEAST_KILLED, LEAST_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
+MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
 HEAD = """# The mutants
 
 Every slip of every operator in what students write, graded up to the first check that it loses. A cell is
@@ -88,8 +88,8 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
 def holds(chapters: Sequence[ChapterMutationResult]) -> bool:
     """Return whether enough mutants were killed, of each chapter and of all, and every other one has a reason."""
     killed, killable = sum(each.killed for each in chapters), sum(each.killable for each in chapters)
-    enough = all(each.killed >= LEAST_KILLED * each.killable for each in chapters)
-    enough = enough and killed >= LEAST_KILLED_OF_ALL * killable
+    enough = all(each.killed >= MIN_KILLED * each.killable for each in chapters)
+    enough = enough and killed >= MIN_KILLED_OF_ALL * killable
     return enough and not any(each.unexplained for each in chapters)
 
 

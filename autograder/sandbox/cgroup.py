@@ -21,7 +21,7 @@ from autograder.sandbox.limits import Limits
 
 _NUMBERS = itertools.count()
 _NAME = "autograder"
-_PATIENCE = 5.0
+_CLOSE_SECONDS = 5.0
 _TICK = 0.005
 _STALE = 3600.0  # s after which an empty group was left by a grader that was killed
 # A shell that joins the groups before `--`, and becomes the command behind it.
@@ -53,7 +53,7 @@ class ControlGroup:
         """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""
         with contextlib.suppress(OSError, KeyError):
             (self.by_controller["pids"] / "pids.max").write_text("0")  # who is about to die has no more children
-        deadline = time.monotonic() + _PATIENCE
+        deadline = time.monotonic() + _CLOSE_SECONDS
         for folder in self.folders:
             while not _removed(folder) and time.monotonic() < deadline:
                 for pid in map(int, _read(folder / "cgroup.procs").split()):

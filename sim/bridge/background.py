@@ -26,8 +26,7 @@ from sim.bridge.settings import SETTINGS
 from sim.exceptions import SpecError
 from sim.simulation import Simulation
 
-PATIENCE = 10.0
-"""Seconds that a call waits for the node's thread."""
+THREAD_TIMEOUT_SECONDS = 10.0  # for which a call waits for the node's thread
 
 
 class Bridge:
@@ -101,7 +100,7 @@ class Bridge:
         """End the node and its thread. Safe to call twice."""
         if self.running:  # between two callbacks: one that still publishes would trip over the end of its context
             self._executor.create_task(self._context.try_shutdown)
-            self._thread.join(PATIENCE)
+            self._thread.join(THREAD_TIMEOUT_SECONDS)
         self._context.try_shutdown()
 
     def __enter__(self) -> Bridge:
@@ -131,5 +130,5 @@ class Bridge:
                 done.set()
 
         self._executor.create_task(act)
-        if not done.wait(PATIENCE):
-            raise TimeoutError(f"the simulator did not answer within {PATIENCE:.0f} s")
+        if not done.wait(THREAD_TIMEOUT_SECONDS):
+            raise TimeoutError(f"the simulator did not answer within {THREAD_TIMEOUT_SECONDS:.0f} s")

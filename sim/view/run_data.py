@@ -22,8 +22,8 @@ from sim.recording import Recording
 from sim.view.artists import body_outline, is_full_turn, margin_of, movers_at, nose_outline, outlines
 from sim.world import World
 
-MOST_BYTES = 300_000
-MOST_LOG_BYTES = 60_000  # of them for what the programs wrote
+MAX_BYTES = 300_000
+MAX_LOG_BYTES = 60_000  # of them for what the programs wrote
 LADDER = ((3000, 360), (3000, 120), (1500, 60), (750, 30), (400, 10))
 """The most rows and the most beams of a scan; the first pair whose text is short enough is taken, or the last one."""
 
@@ -68,7 +68,7 @@ def encode(recording: Recording, alt: str, margins: Sequence[Margin] = ()) -> st
         }
         # "</" would end the script element; "\\u003c" is the same character to JSON.
         text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-        if len(text) <= MOST_BYTES:
+        if len(text) <= MAX_BYTES:
             break
     return text
 
@@ -177,7 +177,7 @@ def _said(lines: tuple[Line, ...]) -> dict[str, Any] | None:
     most = len(lines)
     while shown := shorten(lines, most):
         data = _deflated(json.dumps([text for _, text in shown]).encode())
-        if len(data) <= MOST_LOG_BYTES:
+        if len(data) <= MAX_LOG_BYTES:
             return {"times": pack([seconds for seconds, _ in shown], MILLI), "texts": data}
         most //= 2
     return None

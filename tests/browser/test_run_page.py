@@ -17,7 +17,7 @@ pytestmark = pytest.mark.browser
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 120_000.0  # milliseconds: a deadline, not an expectation
-MOST_BYTES = 300_000
+MAX_BYTES = 300_000
 
 COUNT_FRAMES = """seconds => new Promise(resolve => {
     let frames = 0;
@@ -123,7 +123,7 @@ def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     path = tmp_path / "run.html"
     path.write_text(page_of(recording, [Margin("the gap in m", times.tolist(), (gaps - 0.01).tolist(), broken)]))
     size = path.stat().st_size
-    assert size <= MOST_BYTES
+    assert size <= MAX_BYTES
     page.goto(path.as_uri())
     page.get_by_role("button", name=f"broken at t = {broken:.1f} s").click()
     expect(page.locator(".run-player output")).to_have_text(f"{broken:.2f} s")

@@ -32,7 +32,7 @@ def publisher_channel(topic: str, kind: Any, qos: Any) -> str:
 
 
 def subscription_channels(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
-    """Return the channels from which a subscription gets messages: those that offer at least what its profile requests."""
+    """Return the channels of a subscription with a profile: all that offer at least what its profile requests."""
     reliabilities = (RELIABLE,) if qos.reliability.name == "RELIABLE" else (RELIABLE, BEST_EFFORT)
     durabilities = (TRANSIENT_LOCAL,) if qos.durability.name == "TRANSIENT_LOCAL" else (TRANSIENT_LOCAL, VOLATILE)
     return tuple(_topic(topic, kind, one, two) for one in reliabilities for two in durabilities)

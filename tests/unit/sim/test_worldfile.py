@@ -180,13 +180,13 @@ def test_a_missing_or_too_large_file_is_reported(tmp_path: Path, monkeypatch: py
         load_world(tmp_path / "none.yaml")
     with pytest.raises(WorldError, match=r"cannot be read .Is a directory"):
         load_world(tmp_path)
-    monkeypatch.setattr("sim.fields.MOST_BYTES", 10)
+    monkeypatch.setattr("sim.fields.MAX_BYTES", 10)
     with pytest.raises(WorldError, match="the file is larger than"):
         load_world(write(tmp_path, GOOD))
 
 
 def test_a_world_too_large_to_use_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sim.worldfile.MOST_THINGS", 5)
+    monkeypatch.setattr("sim.worldfile.MAX_THINGS", 5)
     with pytest.raises(WorldError, match=r"there are 8 walls in all\. Keep to 5"):
         load_world(write(tmp_path, "boxes:\n- {size: [1, 1]}\n- {size: [2, 2]}\n"))
     with pytest.raises(WorldError, match=r"walls is a list of 6\. Give 0 to 5"):

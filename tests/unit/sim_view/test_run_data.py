@@ -18,7 +18,7 @@ import pytest
 from sim import Command, Recording, RobotSpec, Simulation, World, load_world, run
 from sim.log import LEFT_OUT
 from sim.view import Margin, encode
-from sim.view.run_data import MOST_BYTES, MOST_LOG_BYTES, NO_RETURN, pack
+from sim.view.run_data import MAX_BYTES, MAX_LOG_BYTES, NO_RETURN, pack
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -58,12 +58,12 @@ def test_a_run_keeps_its_poses_scans_commands_and_collisions(recording: Recordin
 def test_the_data_of_a_minute_are_small_and_of_a_fleet_for_an_hour_are_thinned_out() -> None:
     world = load_world(ROOT / "assets" / "worlds" / "lab.yaml")
     minute = run(Simulation(world), lambda state, scans: Command(0.3, 0.2), 60.0)
-    assert len(encode(minute, "")) < MOST_BYTES / 3
+    assert len(encode(minute, "")) < MAX_BYTES / 3
     fleet = tuple(RobotSpec(name=f"robot{number}") for number in range(6))
     commands = {spec.name: Command(0.3, 0.2) for spec in fleet}
     busy = run(Simulation(World.from_segments(world.segments.tolist()), fleet), lambda state, scans: commands, 60.0)
     text = encode(busy, "")
-    assert len(text) <= MOST_BYTES
+    assert len(text) <= MAX_BYTES
     assert unpack(json.loads(text)["robots"][0]["scans"]["ranges"]).shape[1] < 360
 
 
@@ -92,7 +92,7 @@ def test_a_flood_of_lines_that_cannot_be_compressed_is_bounded(recording: Record
     draw = random.Random(1)
     flood = tuple((0.001 * n, "".join(chr(draw.randrange(0x4E00, 0x9FFF)) for _ in range(300))) for n in range(2001))
     text = encode(replace(recording, said=flood), "")
-    assert len(json.loads(text)["said"]["texts"]) <= MOST_LOG_BYTES
-    assert len(text) <= MOST_BYTES
+    assert len(json.loads(text)["said"]["texts"]) <= MAX_LOG_BYTES
+    assert len(text) <= MAX_BYTES
     assert (said(text)[0][1], said(text)[-1][1]) == (flood[0][1], flood[-1][1])
     assert [line for _, line in said(text)].count(LEFT_OUT) == 1

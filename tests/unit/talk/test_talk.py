@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.talk import MOST_LETTERS, MOST_ROWS, Row, Talk
+from autograder.talk import MAX_CHARACTERS, MAX_ROWS, Row, Talk
 
 
 def test_rows_of_talk_are_returned_once() -> None:
@@ -17,6 +17,6 @@ def test_the_first_and_last_of_too_many_rows_are_kept_and_texts_are_cut_and_clea
     for number in range(1000):
         talk.add(number, "feedback", "/drive" * 1000, f"{number} \x1b[2J\u202e" + "x" * 100_000)
     rows = talk.take()
-    assert [row.seconds for row in rows] == [*range(MOST_ROWS), *range(1000 - MOST_ROWS, 1000)]
-    assert max(len(row.text) for row in rows) == max(len(row.name) for row in rows) == MOST_LETTERS
+    assert [row.seconds for row in rows] == [*range(MAX_ROWS), *range(1000 - MAX_ROWS, 1000)]
+    assert max(len(row.text) for row in rows) == max(len(row.name) for row in rows) == MAX_CHARACTERS
     assert rows[0].text.startswith("0 \ufffdx")
