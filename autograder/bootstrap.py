@@ -154,7 +154,7 @@ class SetUp:
 
     def expected_stamp(self, *, dev: bool) -> dict[str, str]:
         """Return the stamp of a finished set-up."""
-        lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "mend.py"
+        lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
         project = (self.root / "pyproject.toml", self.root / "autograder" / "interfaces" / "tutorials.yaml")
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
@@ -188,7 +188,7 @@ class SetUp:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
-        self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.mend")
+        self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
         if not self.sourced:  # an installed ROS 2 has them
             self._step("the tutorials' interfaces were not built", self.python, "-m", "autograder.interfaces.tutorials")
         fresh = self.venv / f"{STAMP}.fresh"

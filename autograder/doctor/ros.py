@@ -77,7 +77,7 @@ def cmake_files(system: System, ros: RosEnvironment) -> Finding:
     count = len(system.unpatched_cmake_files(ros.prefixes[0]))
     if count:
         found = f"{count} CMake files of the wheels name folders of another machine: no message package compiles"
-        return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.mend")
+        return Finding("CMake files", Status.MISSING, found, f"{sys.executable} -m autograder.ros.patch_wheels")
     return Finding("CMake files", Status.OK, "the wheels' CMake files point at this environment")
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.ros import find
-from autograder.ros.mend import baked_files
+from autograder.ros.patch_wheels import baked_files
 from autograder.sandbox import cgroup
 from autograder.sandbox.tiers import namespaces_failure
 

@@ -48,7 +48,7 @@ class Commands:
             "requirements.lock": "base",
             "requirements-dev.lock": "dev",
             "-e ": "project",
-            "ros.mend": "mend",
+            "ros.patch_wheels": "patch",
             "interfaces.tutorials": "tutorials",
             "--target": "pip",
         }
@@ -65,7 +65,7 @@ def clone(tmp_path: Path) -> Path:
         "requirements.lock",
         "requirements-dev.lock",
         "pyproject.toml",
-        "autograder/ros/mend.py",
+        "autograder/ros/patch_wheels.py",
         "autograder/interfaces/tutorials.yaml",
     ):
         (root / name).parent.mkdir(parents=True, exist_ok=True)

@@ -22,7 +22,7 @@ def set_up(clone: Path, commands: Any) -> SetUp:
 
 def test_a_set_up_is_made_once(set_up: SetUp, commands: Any, capsys: pytest.CaptureFixture[str]) -> None:
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
+    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
     shown = capsys.readouterr().out
     assert shown.startswith("set-up: making .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
     set_up.make(dev=False)
@@ -34,7 +34,7 @@ def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: S
     set_up.make(dev=False)
     commands.take()
     set_up.make(dev=True)
-    assert commands.take() == ["dev", "project", "mend", "tutorials"]
+    assert commands.take() == ["dev", "project", "patch", "tutorials"]
     set_up.make(dev=False)
     set_up.make(dev=True)
     assert commands.take() == []
@@ -42,17 +42,17 @@ def test_packages_of_the_tests_are_added_to_a_finished_set_up_and_kept(set_up: S
 
 def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_up: SetUp, commands: Any) -> None:
     set_up.make(dev=True)
-    assert commands.take() == ["venv", "dev", "project", "mend", "tutorials"]
+    assert commands.take() == ["venv", "dev", "project", "patch", "tutorials"]
     assert set_up.missing_parts(dev=False) == []
 
 
 @pytest.mark.parametrize(
     ("changed", "again"),
     [
-        ("requirements.lock", ["venv", "base", "project", "mend", "tutorials"]),
-        ("autograder/ros/mend.py", ["venv", "base", "project", "mend", "tutorials"]),
-        ("pyproject.toml", ["project", "mend", "tutorials"]),
-        ("autograder/interfaces/tutorials.yaml", ["project", "mend", "tutorials"]),
+        ("requirements.lock", ["venv", "base", "project", "patch", "tutorials"]),
+        ("autograder/ros/patch_wheels.py", ["venv", "base", "project", "patch", "tutorials"]),
+        ("pyproject.toml", ["project", "patch", "tutorials"]),
+        ("autograder/interfaces/tutorials.yaml", ["project", "patch", "tutorials"]),
         ("requirements-dev.lock", []),
     ],
 )
@@ -95,7 +95,7 @@ def test_an_unreadable_stamp_counts_as_a_missing_stamp(set_up: SetUp, stamp: str
     assert set_up.missing_parts(dev=False) == ["base", "project"]
 
 
-@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.mend", "interfaces.tutorials"])
+@pytest.mark.parametrize("step", ["-m venv", "requirements.lock", "-e ", "ros.patch_wheels", "interfaces.tutorials"])
 def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, commands: Any, step: str) -> None:
     commands.interrupting = step
     with pytest.raises(KeyboardInterrupt):
@@ -103,7 +103,7 @@ def test_an_interrupted_set_up_is_made_again_from_the_start(set_up: SetUp, comma
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
+    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
 
 
 def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set_up: SetUp, commands: Any) -> None:
@@ -114,7 +114,7 @@ def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set
     commands.interrupting = ""
     commands.take()
     set_up.make(dev=False)
-    assert commands.take() == ["venv", "base", "project", "mend", "tutorials"]
+    assert commands.take() == ["venv", "base", "project", "patch", "tutorials"]
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_an_interrupted_addition_of_test_packages_is_repeated_from_the_start(set
         ("-m venv", "the virtual environment could not be made"),
         ("requirements.lock", "pip could not install requirements.lock: its lines above say why; pip.conf"),
         ("-e ", "the project could not be installed"),
-        ("ros.mend", "the ROS wheels could not be patched"),
+        ("ros.patch_wheels", "the ROS wheels could not be patched"),
     ],
 )
 def test_a_failed_step_is_named_with_its_command(set_up: SetUp, commands: Any, step: str, told: str) -> None:
@@ -156,7 +156,7 @@ def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, c
     lock = (set_up.root / "requirements.lock").read_text()
     assert (set_up.venv / "requirements.lock").read_text() == bootstrap.without_ros(lock) != lock
     assert f"-r {set_up.venv}/requirements.lock" in " ".join(commands.ran)
-    assert commands.take() == ["venv", "base", "project", "mend"]
+    assert commands.take() == ["venv", "base", "project", "patch"]
     set_up.make(dev=False)
     assert (set_up.venv / "requirements.lock").read_text() == lock
 

@@ -151,7 +151,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         {"unpatched_cmake_files": lambda prefix: 15 * [prefix]},
         Status.MISSING,
         "15 CMake files",
-        "-m autograder.ros.mend",
+        "-m autograder.ros.patch_wheels",
     ),
     "a log folder that was chosen and is closed": (
         "ROS logs",

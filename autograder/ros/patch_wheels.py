@@ -1,4 +1,4 @@
-"""Mends the ROS wheels after pip, where they do not work as they are.
+"""Patches the ROS wheels after pip, where they do not work as they are.
 
 Their CMake files name folders of the machine that built them: the exported targets carry `/opt/python/cp3XX-cp3XX/...`
 for Python's and numpy's headers, so no message package compiles until they point at this interpreter. And ament_flake8
@@ -7,7 +7,7 @@ and flake8 replaces it for ever. And rclpy 7.1's MultiThreadedExecutor looks aga
 given to a thread, and so keeps that thread from the interpreter: on an idle machine a 10 Hz timer beside a 10 Hz
 subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). And
 ament_lint_auto has no wheel, which each CMake package that `ros2 pkg create` makes asks for. Each file is replaced
-atomically; mending twice changes nothing.
+atomically; to patch it twice changes nothing.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ endmacro()
 STANDINS_PTH = "ros2_standins.pth"
 
 
-def mended(text: str, *, headers: str, numpy_headers: str, prefix: str) -> str:
+def patched(text: str, *, headers: str, numpy_headers: str, prefix: str) -> str:
     """Return a CMake file's text with the build machine's folders replaced by this machine's."""
     text = _NUMPY.sub(lambda _: numpy_headers, text)
     text = _HEADERS.sub(lambda _: headers, text)
@@ -59,15 +59,15 @@ def baked_files(prefix: Path) -> list[Path]:
     return [path for path in sorted((prefix / "share").rglob("*.cmake")) if BAKED in path.read_text()]
 
 
-def mend_wheels(prefix: Path) -> int:
-    """Mend every CMake file under `prefix`; return how many changed."""
+def patch_wheels(prefix: Path) -> int:
+    """Patch every CMake file under `prefix`; return how many changed."""
     files = baked_files(prefix)
     if not files:
         return 0
     import numpy
 
     for path in files:
-        text = mended(
+        text = patched(
             path.read_text(),
             headers=sysconfig.get_paths()["include"],
             numpy_headers=numpy.get_include(),
@@ -77,7 +77,7 @@ def mend_wheels(prefix: Path) -> int:
     return len(files)
 
 
-def mend_flake8(site_packages: Path) -> bool:
+def patch_flake8(site_packages: Path) -> bool:
     """Let flake8 check in one process; return whether that was to be changed."""
     path = site_packages / FLAKE8_INI
     if not path.is_file() or ONE_PROCESS in path.read_text():
@@ -86,7 +86,7 @@ def mend_flake8(site_packages: Path) -> bool:
     return True
 
 
-def mend_executor(site_packages: Path) -> bool:
+def patch_executor(site_packages: Path) -> bool:
     """Let rclpy's MultiThreadedExecutor yield to its threads; return whether that was to be changed."""
     path = site_packages / EXECUTORS
     if not path.is_file() or _SUBMIT not in path.read_text():
@@ -120,10 +120,10 @@ def _replace(path: Path, text: str) -> None:
 
 
 if __name__ == "__main__":
-    count = mend_wheels(Path(sys.prefix))
+    count = patch_wheels(Path(sys.prefix))
     packages = Path(sysconfig.get_paths()["purelib"])
-    mend_flake8(packages)
-    mend_executor(packages)
+    patch_flake8(packages)
+    patch_executor(packages)
     offer_lint_auto(Path(sys.prefix))
     link_standins(packages)
-    print(f"mended {count} CMake files of the ROS wheels")
+    print(f"patched {count} CMake files of the ROS wheels")
