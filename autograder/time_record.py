@@ -40,10 +40,10 @@ class TimeRecord:
 
     def explain(self) -> str:
         """Return which programs were not stepped, and why, in sentences; an empty string if all were stepped."""
-        said = [
-            f"{name} was met in real time: {UNSTEPPABLE.get(why, 'that was asked for')}."
+        sentences = [
+            f"{name} ran in real time, because {UNSTEPPABLE.get(why, 'that was asked for')}."
             for name, why in sorted(self.real_time.items())
             if why
         ]
         beside = ", ".join(sorted(name for name, why in self.real_time.items() if not why))
-        return " ".join([*said, f"So was what runs beside it: {beside}."] if beside else said)
+        return " ".join([*sentences, f"What runs beside it ran in real time, too: {beside}."] if beside else sentences)

@@ -27,7 +27,11 @@ def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
     paths = list(stubs)
     named = f"{paths[0]} is" if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]} are"
     detail = "\n".join(f"{path}, {line}" for path, line in stubs.items())
-    return Diagnosis(Kind.UNFINISHED, f"{named} still to be written: put your lines in place of the raise.", detail)
+    return Diagnosis(
+        Kind.UNFINISHED,
+        f"{named} still to be written: replace the line raise NotImplementedError(...) with yours.",
+        detail,
+    )
 
 
 def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]:

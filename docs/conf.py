@@ -33,7 +33,7 @@ suppress_warnings = ["misc.highlighting_failure"]
 autodoc_member_order = "bysource"
 
 
-def mend_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Give captions of the navigation a level, and let the keyboard reach code that is wider than its box."""
     if "furo_navigation_tree" in context:
         context["furo_navigation_tree"] = context["furo_navigation_tree"].replace(
@@ -45,4 +45,4 @@ def mend_accessibility(app: Sphinx, page: str, template: str, context: dict[str,
 
 def setup(app: Sphinx) -> None:
     """Connect what this file adds, after the theme has made its part of a page."""
-    app.connect("html-page-context", mend_accessibility, priority=900)
+    app.connect("html-page-context", fix_accessibility, priority=900)

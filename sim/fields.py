@@ -57,7 +57,7 @@ def composed(path: Path) -> yaml.MappingNode:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         problem = " ".join(f"{error.context or ''} {error.problem or ''}".split())
-        remedy = "Mend the YAML here or just above; indent with spaces"
+        remedy = "Correct the YAML here or just above; indent with spaces"
         raise WorldError(
             f"this is not YAML: {problem}", remedy, path=name, line=mark.line + 1 if mark else None
         ) from None

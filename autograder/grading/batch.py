@@ -94,7 +94,7 @@ GradeEach = Callable[[Sequence[Request], OnResult], None]
 def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
     """Find the submissions at `paths`: each is one, or a folder of them.
 
-    A folder of submissions holds one file or folder a student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
+    A folder of submissions has one file or folder for each student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
 
     Raises:
         UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.

@@ -49,7 +49,7 @@ class InterfaceError(Exception):
 
 
 class DefinitionError(InterfaceError):
-    """A definition is wrong, and its author can mend it; names the file and, if it is one, the line's text."""
+    """A definition is wrong, and its author can correct it; names the file and, if it is one, the line's text."""
 
     def __init__(self, file: str, problem: str, line: str = "") -> None:
         where = f"{file}, line “{line[:120]}”" if line else file
@@ -204,7 +204,7 @@ class _Reader:
         if kind.pkg_name == self._package:
             if kind.type not in self._own:
                 raise self._error(
-                    f"there is no msg/{kind.type}.msg in {self._package}: write it, or mend the name", line
+                    f"there is no msg/{kind.type}.msg in {self._package}: write it, or correct the name", line
                 )
             inner = kind.type
         elif kind.pkg_name is not None:
@@ -230,7 +230,7 @@ def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str
             if not exists(package, None):
                 raise DefinitionError(definition.path, f"there is no package {package} with messages here", line)
             if not exists(package, name):
-                raise DefinitionError(definition.path, f"{package} has no message {name}: mend the name", line)
+                raise DefinitionError(definition.path, f"{package} has no message {name}: correct the name", line)
 
 
 def packages_used(definitions: tuple[Definition, ...]) -> Iterator[str]:

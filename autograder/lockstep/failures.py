@@ -46,13 +46,16 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,
-            f"Python cannot read your file: {crash.message}. Mend that line, then run the file again.",
+            f"Python cannot read your file: {crash.message}. Fix that line, then run the file again.",
             trace,
         )
     if crash.type == "NotImplementedError":
         frames = _FRAME.findall(trace)
         where = f", in {frames[-1]}" if frames else ""
-        sentence = f"A part of the exercise is still to be written{where}: put your code in place of the raise."
+        sentence = (
+            f"A part of the exercise is still to be written{where}: replace the line "
+            "raise NotImplementedError(...) with your code."
+        )
         return Diagnosis(Kind.UNFINISHED, sentence, trace)
     kind, what = _PHASES[crash.phase]
     if crash.type == "TypeError" and "in send_response" in crash.traceback:  # rclpy says no more than TypeError
@@ -67,7 +70,7 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
 
 
 def diagnose_ending(process: Process) -> Diagnosis:
-    """Return the diagnosis of a program that ended, or stopped to answer, and reported no exception."""
+    """Return the diagnosis of a program that ended, or no longer answers, and reported no exception."""
     detail = tail(process.output)
     if process.ending in _LIMITS:
         kind, sentence = _LIMITS[process.ending]
@@ -75,8 +78,8 @@ def diagnose_ending(process: Process) -> Diagnosis:
     if process.ending is None:
         return Diagnosis(
             Kind.STUCK,
-            "Your program runs on, but no longer answers in lockstep: leave rclpy's own functions, and descriptors "
-            "that your program did not open, as they are.",
+            "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not "
+            "close files that your program did not open.",
             detail,
         )
     status = process.returncode

@@ -42,11 +42,11 @@ def namespaces_failure() -> str | None:
 
 
 def require(tier: Tier) -> Tier:
-    """Return `tier` if this machine can give it, or raise an IsolationError that says why not and what mends it."""
+    """Return `tier` if this machine can give it, or raise an IsolationError that says why not and how to fix it."""
     failure = namespaces_failure() if tier is Tier.BUBBLEWRAP else None
     if failure is not None:
         raise IsolationError(
-            f"this machine cannot isolate submissions: {failure}. `autograder doctor` says what mends it; "
+            f"this machine cannot isolate submissions: {failure}. `autograder doctor` says how to fix it; "
             "`--isolation process` grades with the weaker tier, for code that you trust"
         )
     return tier

@@ -43,12 +43,12 @@ def read_image(path: Path) -> Shades:
     """
     try:
         if not path.is_file():
-            raise _error(path, "there is no such picture", "Put it beside the map's YAML, or mend 'image:' there")
+            raise _error(path, "there is no such picture", "Put it beside the map's YAML, or correct 'image:' there")
         if path.stat().st_size > MAX_BYTES:
             raise _error(path, f"the picture is larger than {MAX_BYTES // 1_000_000} MB", "Crop it or scale it down")
         data = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise _error(path, f"the picture can't be read ({error})", "Mend the name or the permissions") from None
+        raise _error(path, f"the picture can't be read ({error})", "Correct the name or the permissions") from None
     if data.startswith(_PNG_SIGNATURE):
         return _read_png(path, data)
     if data[:2] in (b"P2", b"P5"):

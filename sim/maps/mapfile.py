@@ -86,11 +86,11 @@ def _compose(path: Path) -> yaml.MappingNode:
     except UnicodeDecodeError:
         raise WorldError("this is not a text file", "Give a map's YAML, not its picture", path=str(path)) from None
     except (OSError, ValueError) as error:
-        raise WorldError(f"the file can't be read ({error})", "Mend the path", path=str(path)) from None
+        raise WorldError(f"the file can't be read ({error})", "Correct the path", path=str(path)) from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = mark.line + 1 if mark else None
-        raise WorldError(f"not YAML: {error.problem}", "Mend that line", path=str(path), line=line) from None
+        raise WorldError(f"not YAML: {error.problem}", "Correct that line", path=str(path), line=line) from None
     except (yaml.YAMLError, RecursionError) as error:
         problem = str(error).splitlines()[0]
         raise WorldError(f"not YAML: {problem}", "Write 'key: value' lines", path=str(path)) from None

@@ -59,7 +59,7 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     assert ("failed" in outcomes(stepped).values()) is (name != "reference")
     assert (stepped.time, stepped.time_note, stepped.held_up) == ("lockstep", "", 0.0)
     assert real.held_up > 0.0
-    assert (real.time, real.time_note) == ("real", "robot_controller was met in real time: that was asked for.")
+    assert (real.time, real.time_note) == ("real", "robot_controller ran in real time, because that was asked for.")
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_a_controller_with_a_wall_clock_timer_gets_its_marks_in_real_time(tmp_pa
     assert set(outcomes(result).values()) == {"passed"}
     assert result.time == "real"
     assert result.time_note == (
-        "robot_controller was met in real time: it has a timer on a clock that is not the ROS clock."
+        "robot_controller ran in real time, because it has a timer on a clock that is not the ROS clock."
     )
 
 
@@ -113,7 +113,7 @@ def test_a_node_that_spins_in_a_thread_gets_its_marks_in_real_time(
     result = grade(tmp_path, assignment, checks)
     assert outcomes(result, checks) == dict.fromkeys(checks, "passed")
     assert result.time == "real"
-    assert "was met in real time: it uses rclpy in threads of its own." in result.time_note
+    assert "ran in real time, because it uses rclpy in threads of its own." in result.time_note
 
 
 @pytest.mark.slow
@@ -130,8 +130,8 @@ def test_all_programs_run_in_real_time_if_one_of_them_cannot_be_stepped(tmp_path
     assert outcomes(result, checks) == dict.fromkeys(checks, "passed")
     assert (result.time, result.time_note) == (
         "real",
-        "status_monitor was met in real time: it uses rclpy in threads of its own. "
-        "So was what runs beside it: navigation_controller, sensor_processor.",
+        "status_monitor ran in real time, because it uses rclpy in threads of its own. "
+        "What runs beside it ran in real time, too: navigation_controller, sensor_processor.",
     )
 
 
@@ -174,9 +174,9 @@ def met(scratch: Path, text: str) -> Any:
 @pytest.mark.parametrize(
     ("reason", "words"),
     [
-        ("thread", "node was met in real time: it uses rclpy in threads of its own."),
-        ("sleep", "node was met in real time: it sleeps in a loop instead of spinning."),
-        ("clock", "node was met in real time: it has a timer on a clock that is not the ROS clock."),
+        ("thread", "node ran in real time, because it uses rclpy in threads of its own."),
+        ("sleep", "node ran in real time, because it sleeps in a loop instead of spinning."),
+        ("clock", "node ran in real time, because it has a timer on a clock that is not the ROS clock."),
     ],
 )
 def test_a_program_that_cannot_be_stepped_is_detected_and_runs_in_real_time(reason: str, words: str) -> None:

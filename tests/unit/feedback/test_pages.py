@@ -57,7 +57,7 @@ def test_the_page_shows_the_score_each_check_and_the_reason(make_result: MakeRes
 def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
-    note = "robot_controller was met in real time: it uses rclpy in threads of its own."
+    note = "robot_controller ran in real time, because it uses rclpy in threads of its own."
     page = Page(feedback.write(make_result(time="real", time_note=note), tmp_path))
     assert note in page.text
     assert "The machine was busy" not in page.text

@@ -46,7 +46,7 @@ def test_a_crash_is_named_by_its_phase(phase: str, kind: Kind, words: str) -> No
 def test_a_syntax_error_has_its_own_diagnosis(kind: str) -> None:
     diagnosis = diagnose_crash(Crash("import", kind, "expected ':' (robot.py, line 7)", "..."))
     assert diagnosis.kind is Kind.SYNTAX_ERROR
-    assert "Python cannot read your file: expected ':' (robot.py, line 7). Mend that line" in diagnosis.sentence
+    assert "Python cannot read your file: expected ':' (robot.py, line 7). Fix that line" in diagnosis.sentence
 
 
 def test_an_exception_without_a_message_is_named_by_its_type_alone() -> None:
@@ -108,7 +108,7 @@ def test_a_program_that_runs_but_no_longer_answers_is_not_reported_as_ended() ->
     with Process([sys.executable, "-I", "-c", "import signal; signal.pause()"], Limits()) as process:
         diagnosis = diagnose_ending(process)
     assert diagnosis.kind is Kind.STUCK
-    assert "no longer answers in lockstep" in diagnosis.sentence
+    assert "no longer answers the grader" in diagnosis.sentence
 
 
 def test_a_node_that_never_spins_and_a_node_that_hangs_have_different_diagnoses() -> None:

@@ -62,7 +62,10 @@ def test_a_build_of_unwritten_files_is_not_run(ws: Path, capsys: pytest.CaptureF
     for command in ("colcon build", "X=1 colcon --log-level error build --packages-select given mine | tail -n 1"):
         shell(f"true && {command}", workspace=ws)
         said = capsys.readouterr().out
-        assert said == "src/mine/setup.py is still to be written: put your lines in place of the raise.\n"
+        assert (
+            said
+            == "src/mine/setup.py is still to be written: replace the line raise NotImplementedError(...) with yours.\n"
+        )
     for command in ("echo colcon build --packages-select given", "echo colcon test"):
         shell(command, workspace=ws)
         assert capsys.readouterr().out == command.removeprefix("echo ") + "\n"

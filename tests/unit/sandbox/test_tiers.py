@@ -37,7 +37,7 @@ def test_without_bubblewrap_the_strong_tier_is_refused_with_the_remedy(tools: Pa
         require(Tier.BUBBLEWRAP)
     sentence = str(caught.value)
     assert "bubblewrap is not installed" in sentence
-    assert "`autograder doctor` says what mends it" in sentence
+    assert "`autograder doctor` says how to fix it" in sentence
     assert "`--isolation process`" in sentence
 
 

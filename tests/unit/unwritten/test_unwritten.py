@@ -42,7 +42,10 @@ def test_a_stub_in_what_colcon_reads_explains_a_failed_build(tmp_path: Path, nam
     path.write_text(f"{CODE_STUB}\n")
     found = explain(FAILED, tmp_path, "robot")
     assert found.kind is Kind.UNFINISHED
-    assert found.sentence == f"src/robot/{name} is still to be written: put your lines in place of the raise."
+    assert (
+        found.sentence
+        == f"src/robot/{name} is still to be written: replace the line raise NotImplementedError(...) with yours."
+    )
     assert found.detail.startswith(f"src/robot/{name}, line 2: raise NotImplementedError(")
 
 
