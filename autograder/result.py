@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
 from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import UsageError
-from autograder.talk import Row
+from autograder.exchanges import Exchange
 
 if TYPE_CHECKING:
     from jsonschema.protocols import Validator
@@ -53,7 +53,7 @@ class CheckResult:
     visibility: Visibility
     seconds: float  # wall time of the check
     holds: tuple[str, ...] = ()  # ids of the sentences of the contract that it holds
-    talk: tuple[Row, ...] = ()  # what the nodes were asked, and what they answered
+    talk: tuple[Exchange, ...] = ()  # what the nodes were asked, and what they answered
 
     @classmethod
     def of(

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.exchanges import ExchangeLog
 from autograder.lockstep.stepper import HOST
 from autograder.ros import RosEnvironment
 from autograder.ros.environment import LOGS_TO_STDOUT, WHEEL_BOOTSTRAP_VARIABLES, site_packages
 from autograder.sandbox import Limits, Mount, Sandbox
 from autograder.sandbox.limits import NODE
 from autograder.sandbox.spec import INTERPRETER
-from autograder.talk import Talk
 from autograder.time_record import TimeRecord
 
 
@@ -29,7 +29,7 @@ class Workspace:
     domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
     # What harnesses find out about time; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
-    talk: Talk = field(default_factory=Talk, compare=False)  # what harnesses ask and hear; copies share it
+    exchanges: ExchangeLog = field(default_factory=ExchangeLog, compare=False)  # copies share it
 
     @property
     def install(self) -> Path:

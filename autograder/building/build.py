@@ -13,9 +13,9 @@ from autograder.building.colcon import StoppedBuildError, colcon_build, require_
 from autograder.building.interface_bundle import install_bundle, interface_bundle
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.exercise_stubs import explain
 from autograder.packages import find_packages
 from autograder.result import Build
-from autograder.unwritten import explain
 from autograder.workspace import Workspace
 
 

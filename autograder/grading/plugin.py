@@ -106,7 +106,7 @@ class GradingPlugin:
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)
-        self._workspace.talk.take()  # what is said from now on is of this check
+        self._workspace.exchanges.take()  # those before this check are not its own
         for needed in check.depends if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'first "{self.results[needed].title}" has to pass')
@@ -133,7 +133,7 @@ class GradingPlugin:
         else:
             self.failures.append("".join(traceback.format_exception(error)))
             verdict = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
-        self.results[check.id] = replace(verdict, talk=self._workspace.talk.take() if self._scope.pictures else ())
+        self.results[check.id] = replace(verdict, talk=self._workspace.exchanges.take() if self._scope.pictures else ())
 
 
 def _declared_by(item: pytest.Item) -> Check | None:

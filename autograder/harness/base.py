@@ -17,8 +17,8 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness.goals import Actions, Goal, Stamped
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
+from autograder.harness.message_text import format_message
 from autograder.harness.steps import TICK_NS
-from autograder.harness.wording import words
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process
@@ -146,7 +146,7 @@ class Harness(ExitStack, ABC):
 
     def __enter__(self: AnyHarness) -> AnyHarness:
         self.callback(self._domain.close)
-        self._grader_node = GraderNode(self._domain.number, self._tell)
+        self._grader_node = GraderNode(self._domain.number, self._log_exchange)
         self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
@@ -202,7 +202,7 @@ class Harness(ExitStack, ABC):
             self._grader_node.ask(service_type, name, request, answers.append)
             if self.until(lambda: bool(answers), began + seconds - self.seconds):
                 return answers[0]
-        self._workspace.talk.add(self.seconds, "no answer", name, f"within {seconds:g} s")
+        self._workspace.exchanges.add(self.seconds, "no answer", name, f"within {seconds:g} s")
         return None
 
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
@@ -245,8 +245,8 @@ class Harness(ExitStack, ABC):
         received = self._received[topic]
         return lambda message, arrived_ns: received.append(Stamped(self._arrival_seconds(arrived_ns), message))
 
-    def _tell(self, what: str, name: str, message: Any) -> None:
-        self._workspace.talk.add(self.seconds, what, name, words(message))
+    def _log_exchange(self, what: str, name: str, message: Any) -> None:
+        self._workspace.exchanges.add(self.seconds, what, name, format_message(message))
 
     def _arrival_seconds(self, arrived_ns: int) -> float:
         """Return the ROS time, in seconds since the start, of an arrival at `arrived_ns` since the epoch."""

@@ -108,7 +108,7 @@ class Actions:
     def _on_feedback(self, topic: str, message: Any, arrived_ns: int) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
-            self._grader_node.tell("feedback", topic, message.feedback)
+            self._grader_node.on_exchange("feedback", topic, message.feedback)
             goal.feedback.append(Stamped(self._arrival_seconds(arrived_ns), message.feedback))
 
     def _on_status(self, message: Any, arrived_ns: int) -> None:

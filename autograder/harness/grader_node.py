@@ -27,12 +27,12 @@ NAME = "grader"
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
 
-OnTalk = Callable[[str, str, Any], None]
-"""Called with what happened, as in `autograder.talk.Row`, the name of the service or topic, and the message."""
+OnExchange = Callable[[str, str, Any], None]
+"""Called with what happened, as in `exchanges.Exchange`, the name of the service or topic, and the message."""
 
 
 @dataclass(eq=False)
-class Reader:
+class GraderReader:
     """A subscription or client of the grader's: something that takes messages."""
 
     kind: str  # subscription or client
@@ -58,18 +58,18 @@ class GraderNode:
         written: the publishers' channels, by topic.
         readers: all that takes messages.
         sent: messages by channel, since the programs were last told.
-        tell: is told of each request, and of what came back.
+        on_exchange: called at each request, response and feedback message.
     """
 
-    def __init__(self, domain: int, tell: OnTalk = lambda what, name, message: None) -> None:
-        self.tell = tell
+    def __init__(self, domain: int, on_exchange: OnExchange = lambda what, name, message: None) -> None:
+        self.on_exchange = on_exchange
         self.context = Context()
         with announcing_often():
             rclpy.init(args=[], context=self.context, domain_id=domain)
             self.node = Node(NAME, context=self.context, enable_rosout=False, start_parameter_services=False)
         self.publishers: dict[str, Any] = {}
         self.written: dict[str, str] = {}
-        self.readers: list[Reader] = []
+        self.readers: list[GraderReader] = []
         self.sent: Counter[str] = Counter()
         self._clients: dict[tuple[str, str], Any] = {}
         self._waiting: dict[tuple[int, int], Callable[[Any], None]] = {}  # by client and sequence number
@@ -109,7 +109,7 @@ class GraderNode:
 
         transient_local = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.readers.append(
-            Reader(
+            GraderReader(
                 "subscription",
                 channels.subscription_channels(topic, kind, qos),
                 subscription,
@@ -145,17 +145,17 @@ class GraderNode:
                 return True
 
             self._prefix = self._prefix or channels.own_prefix(self.node)
-            self.readers.append(Reader("client", (channels.response(name, kind, self._prefix),), client, take))
+            self.readers.append(GraderReader("client", (channels.response(name, kind, self._prefix),), client, take))
         return self._clients[(name, channel)]
 
     def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
         """Send a request to a service to which there is a client; `then` is called with the response."""
         client = self.client(kind, name)
-        self.tell("asked", name, request)
+        self.on_exchange("asked", name, request)
         sequence = client.handle.send_request(request)
 
         def answered(response: Any) -> None:
-            self.tell("answered", name, response)
+            self.on_exchange("answered", name, response)
             then(response)
 
         self._waiting[(id(client), sequence)] = answered

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.exercise_stubs import explain
 from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, DefinitionError, InterfaceError, read
 from autograder.interfaces.prefix import RECIPE, GenerationError, build
 from autograder.packages import find_packages
 from autograder.ros.environment import site_packages
-from autograder.unwritten import explain
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
     from autograder.workspace import Workspace

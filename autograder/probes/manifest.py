@@ -9,8 +9,8 @@ from pathlib import Path
 from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ignore[import-untyped]
 
 from autograder.checks import CheckFailed
+from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.packages import MANIFEST, MAX_MANIFEST
-from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 PLACEHOLDER = "TODO"
 

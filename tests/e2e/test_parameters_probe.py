@@ -46,7 +46,7 @@ def asked(scratch: Path) -> Any:
             told.append(
                 [sorted(parameters.names()), parameters.values("speed", "mass"), answer.accepted, answer.reason]
             )
-            said.append([[row.what, row.name, row.text] for row in workspace.talk.take()])
+            said.append([[row.what, row.name, row.text] for row in workspace.exchanges.take()])
     with SteppedHarness(workspace, "pkg", "closed") as harness:
         parameters = NodeParameters(harness, "/tuned")
         for ask in (lambda: parameters.values("speed"), parameters.names):
@@ -54,7 +54,7 @@ def asked(scratch: Path) -> Any:
                 ask()
             except CheckFailed as failed:
                 told.append(str(failed))
-    said.append([[row.what, row.text] for row in workspace.talk.take()])
+    said.append([[row.what, row.text] for row in workspace.exchanges.take()])
     return told, said
 
 

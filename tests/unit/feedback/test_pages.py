@@ -16,9 +16,9 @@ from autograder.checks import Check, Outcome
 from autograder.checks.contract import contract
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
+from autograder.exchanges import Exchange
 from autograder.feedback.text import NOT_GRADED
 from autograder.result import Artifact, CheckResult, Result, from_json
-from autograder.talk import Row
 
 MakeResult = Callable[..., Result]
 
@@ -248,7 +248,7 @@ def test_requests_to_a_node_and_its_responses_are_shown_as_text_in_a_table(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
     attack = "message: '</td><script>alert(1)</script>\u202e'"
-    talk = (Row(1.25, "asked", "/<b>/enable", "data: True"), Row(1.3, "answered", "/enable", attack))
+    talk = (Exchange(1.25, "asked", "/<b>/enable", "data: True"), Exchange(1.3, "answered", "/enable", attack))
     result = make_result()
     result = replace(result, checks=(replace(result.checks[0], talk=talk), *result.checks[1:]))
     page = Page(feedback.write(from_json(result.to_json()), tmp_path))

@@ -250,20 +250,20 @@ def test_a_check_gets_only_the_messages_of_its_own_set_up_and_call(grade: Grade)
     text = """
         @pytest.fixture
         def prepared(workspace):
-            workspace.talk.add(0.5, "asked", "/prepare", "")
+            workspace.exchanges.add(0.5, "asked", "/prepare", "")
             yield
-            workspace.talk.add(9.0, "asked", "/tidy_up", "")
+            workspace.exchanges.add(9.0, "asked", "/tidy_up", "")
 
         @check(points=1, group="g")
         def test_first(prepared, workspace):
             '''The first.'''
-            workspace.talk.add(1.0, "answered", "/go", "success: False")
+            workspace.exchanges.add(1.0, "answered", "/go", "success: False")
             expect(False, "no")
 
         @check(points=1, group="g")
         def test_second(workspace):
             '''The second.'''
-            workspace.talk.add(2.0, "asked", "/stop", "")
+            workspace.exchanges.add(2.0, "asked", "/stop", "")
     """
     said = {name: [row.name for row in result.talk] for name, result in grade(text).results.items()}
     assert said == {"first": ["/prepare", "/go"], "second": ["/stop"]}

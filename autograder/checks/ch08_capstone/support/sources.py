@@ -7,9 +7,9 @@ from pathlib import Path
 
 from autograder.checks import CheckFailed
 from autograder.diagnosis import OK, Diagnosis, Kind
+from autograder.exercise_stubs import explain
 from autograder.harness import Workspace
 from autograder.packages import find_packages
-from autograder.unwritten import explain
 
 
 def source_of(workspace: Workspace, package: str) -> Path:

@@ -19,6 +19,7 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.sources import source_of
+from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe, test_runs
@@ -27,7 +28,6 @@ from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
 from autograder.probes.test_reports import Report, TestRun
 from autograder.probes.versions import Version
-from autograder.unwritten import STILL_TO_BE_WRITTEN
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 MUTANT = ("a mutant",)

@@ -22,12 +22,12 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.exercise_stubs import explain
 from autograder.harness import AutoHarness, Stamped, Workspace
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
 from autograder.probes.parameters import NodeParameters, Value, override_arguments
 from autograder.time_record import LOCKSTEP
-from autograder.unwritten import explain
 
 STEP = 0.1  # s between two messages
 NANOSECONDS = 250_000_000  # of each stamp, beside its seconds

@@ -11,7 +11,7 @@ from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.harness.wording import words
+from autograder.harness.message_text import format_message
 
 REQUEST = SetParametersAtomically.Request(parameters=[Parameter("speed", value=0.35).to_parameter_msg()])
 REFUSAL = SetParametersAtomically.Response(result=SetParametersResult(successful=False, reason="<script>no"))
@@ -30,8 +30,8 @@ REFUSAL = SetParametersAtomically.Response(result=SetParametersResult(successful
     ],
 )
 def test_a_message_is_formatted_as_one_line(message: Any, said: str) -> None:
-    assert words(message) == said
+    assert format_message(message) == said
 
 
 def test_a_long_text_is_cut() -> None:
-    assert len(words(Trigger.Response(message="x" * 1_000_000))) < 300
+    assert len(format_message(Trigger.Response(message="x" * 1_000_000))) < 300

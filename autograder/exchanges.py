@@ -1,4 +1,4 @@
-"""What the grader asked a student's nodes during a check, and what they answered, in time, for the feedback."""
+"""The requests of the grader to a student's nodes during a check, and their responses, for the feedback."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from autograder.plain_text import clean
 
 MAX_ROWS = 20  # at the start of a check, and as many at its end
-MAX_CHARACTERS = 300  # in a row
+MAX_CHARACTERS = 300  # of a name or text
 
 
 @dataclass(frozen=True)
-class Row:
-    """A request, or what came back."""
+class Exchange:
+    """A request, a response, a feedback message, or no answer."""
 
     seconds: float  # of ROS time since the program started
     what: str  # "asked", "answered", "feedback" or "no answer"
@@ -21,20 +21,20 @@ class Row:
 
 
 @dataclass
-class Talk:
-    """The rows of the running check. Its workspace carries it to the harnesses; the grading takes them."""
+class ExchangeLog:
+    """The exchanges of the running check. A workspace shares it with its harnesses, and the grader reads it."""
 
-    _rows: list[Row] = field(default_factory=list)
+    _rows: list[Exchange] = field(default_factory=list)
 
     def add(self, seconds: float, what: str, name: str, text: str) -> None:
-        """Add a row. Of too many, the first and the last are kept."""
+        """Add an exchange. Of too many, the first and the last are kept."""
         text = clean(text)
         shown = text if len(text) <= MAX_CHARACTERS else text[: MAX_CHARACTERS - 1] + "…"
-        self._rows.append(Row(round(seconds, 3), what, name[:MAX_CHARACTERS], shown))
+        self._rows.append(Exchange(round(seconds, 3), what, name[:MAX_CHARACTERS], shown))
         if len(self._rows) > 2 * MAX_ROWS:
             del self._rows[MAX_ROWS]
 
-    def take(self) -> tuple[Row, ...]:
-        """Return the rows, and forget them."""
+    def take(self) -> tuple[Exchange, ...]:
+        """Return the exchanges, and forget them."""
         rows, self._rows = tuple(self._rows), []
         return rows

@@ -1,4 +1,4 @@
-"""A message in a line of words, of a bounded length whatever is in it."""
+"""Formats a ROS message as one short line."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ MAX_CHARACTERS = 200  # of a text
 _KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
 
 
-def words(message: Any) -> str:
-    """Return what a message says; empty texts and lists in it, and the numbers of goals, are left out."""
+def format_message(message: Any) -> str:
+    """Return a message's fields, of a bounded length; empty texts and lists, and UUIDs, are left out."""
     fields = {name: getattr(message, name) for name in message.get_fields_and_field_types()}
     shown = {name: _value(value) for name, value in fields.items() if not isinstance(value, UUID)}
     return ", ".join(f"{name}: {text}" for name, text in shown.items() if text not in ("''", "[]", "{}"))
@@ -27,7 +27,7 @@ def _value(value: Any) -> str:
             return f"of the unknown type {value.type}"
         value = parameter_value_to_python(value)
     if hasattr(value, "get_fields_and_field_types"):
-        return f"{{{words(value)}}}"
+        return f"{{{format_message(value)}}}"
     if isinstance(value, str | bytes):
         return repr(value[:MAX_CHARACTERS]) + "…" * (len(value) > MAX_CHARACTERS)
     if isinstance(value, float):

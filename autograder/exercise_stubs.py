@@ -1,4 +1,4 @@
-"""Files of an exercise that nobody has written yet: they hold the stub that a release has in the answer's place."""
+"""Finds files of an exercise that hold the stub of a release: their student has not written them yet."""
 
 from __future__ import annotations
 
