@@ -8,7 +8,7 @@ programs steer the simulated robot, in any harness except `LaunchHarness`. `Shar
 from autograder.harness.auto import AutoHarness
 from autograder.harness.base import Harness, Program
 from autograder.harness.drive import drive
-from autograder.harness.goals import Goal, Stamped
+from autograder.harness.goals import Goal, ReceivedMessage
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.shared import Shared
 from autograder.harness.stepped import SteppedHarness
@@ -20,8 +20,8 @@ __all__ = [
     "Harness",
     "Program",
     "RealTimeHarness",
+    "ReceivedMessage",
     "Shared",
-    "Stamped",
     "SteppedHarness",
     "Workspace",
     "drive",

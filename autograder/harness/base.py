@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
-from autograder.harness.goals import Actions, Goal, Stamped
+from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
 from autograder.harness.message_text import format_message
 from autograder.harness.steps import TICK_NS
@@ -98,7 +98,7 @@ class Harness(ExitStack, ABC):
         often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # who start together find each other at once
         self._sandbox = replace(plain, mounts=(*plain.mounts, Mount(PROFILES)), environment=often)
         self._offers, self._listens = dict(offers or {}), dict(listens or {})
-        self._received: dict[str, list[Stamped]] = {topic: [] for topic in self._listens}
+        self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._listens}
 
     # What each kind of harness defines.
 
@@ -179,7 +179,7 @@ class Harness(ExitStack, ABC):
             self.step(min(self.tick_ns, left))
             left -= self.tick_ns
 
-    def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[Stamped]:
+    def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
         """Return what was published on a topic of `listens` after `since` and up to `until`, in s since the start."""
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
@@ -243,7 +243,7 @@ class Harness(ExitStack, ABC):
 
     def _receiver(self, topic: str) -> OnMessage:
         received = self._received[topic]
-        return lambda message, arrived_ns: received.append(Stamped(self._arrival_seconds(arrived_ns), message))
+        return lambda message, arrived_ns: received.append(ReceivedMessage(self._arrival_seconds(arrived_ns), message))
 
     def _log_exchange(self, what: str, name: str, message: Any) -> None:
         self._workspace.exchanges.add(self.seconds, what, name, format_message(message))

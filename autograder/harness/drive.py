@@ -13,7 +13,7 @@ from sensor_msgs.msg import LaserScan
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness.base import Harness
-from autograder.harness.goals import Stamped
+from autograder.harness.goals import ReceivedMessage
 from autograder.plain_text import clean
 from autograder.sandbox import Process
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
@@ -37,7 +37,7 @@ class Drive:
     """A robot's run with what the programs wrote in it, their messages on /cmd_vel, and all that they ever wrote."""
 
     recording: Recording
-    commands: tuple[Stamped, ...]
+    commands: tuple[ReceivedMessage, ...]
     output: str
 
 
@@ -95,11 +95,11 @@ def _hear(harness: Harness, seconds: float, recorder: Recorder, heard: dict[Proc
             recorder.log.add(seconds, _LOGGED.sub(r"\1 ", line))
 
 
-def _command(stamped: Stamped) -> Command:
+def _command(received: ReceivedMessage) -> Command:
     try:
-        return twist_to_command(stamped.message)
+        return twist_to_command(received.message)
     except ValueError as error:
-        sentence = f"At t = {stamped.seconds:.1f} s your node published a command that no motor can obey: {error}."
+        sentence = f"At t = {received.seconds:.1f} s your node published a command that no motor can obey: {error}."
         raise StudentError(Diagnosis(Kind.UNUSABLE_COMMAND, sentence)) from None
 
 

@@ -15,7 +15,7 @@ from autograder.harness.grader_node import requested_qos
 
 
 @dataclass(frozen=True)
-class Stamped:
+class ReceivedMessage:
     """A message of the student's program, and when it came, in s of ROS time since the program started."""
 
     seconds: float
@@ -37,7 +37,7 @@ class Goal:
 
     id: Any = None
     accepted: bool | None = None
-    feedback: list[Stamped] = field(default_factory=list)
+    feedback: list[ReceivedMessage] = field(default_factory=list)
     status: int = GoalStatus.STATUS_UNKNOWN
     result: Any = None
     cancelled: bool | None = None
@@ -109,7 +109,7 @@ class Actions:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
             self._grader_node.on_exchange("feedback", topic, message.feedback)
-            goal.feedback.append(Stamped(self._arrival_seconds(arrived_ns), message.feedback))
+            goal.feedback.append(ReceivedMessage(self._arrival_seconds(arrived_ns), message.feedback))
 
     def _on_status(self, message: Any, arrived_ns: int) -> None:
         for status in message.status_list:

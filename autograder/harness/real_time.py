@@ -69,7 +69,7 @@ class RealTimeHarness(Harness):
         return self.wait_for(lambda: self._alive() and condition(), seconds)
 
     def rate(self, topic: str, since: float) -> float:
-        return usual_rate([stamped.seconds for stamped in self.messages(topic, since=since)], self.seconds - since)
+        return usual_rate([received.seconds for received in self.messages(topic, since=since)], self.seconds - since)
 
     def stop(self, number: signal.Signals, seconds: float) -> int | None:
         """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""

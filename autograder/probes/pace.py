@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from autograder.harness import Stamped
+from autograder.harness import ReceivedMessage
 from autograder.time_record import LOCKSTEP, REAL
 
 # Of the period. In lockstep an error of a tenth is seen; in real time a busy machine holds messages up.
 TOLERANCES = {LOCKSTEP: 0.08, REAL: 0.25}
 
 
-def mean_period(messages: Sequence[Stamped]) -> float:
+def mean_period(messages: Sequence[ReceivedMessage]) -> float:
     """Return the mean time between messages in s; infinity if there are fewer than two."""
     return (messages[-1].seconds - messages[0].seconds) / (len(messages) - 1) if len(messages) > 1 else math.inf
 

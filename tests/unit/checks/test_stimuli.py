@@ -10,15 +10,15 @@ from geometry_msgs.msg import Twist
 from autograder.checks import CheckFailed
 from autograder.checks.ch02_nodes.support.robot import describe_command, expect_forward, expect_stop, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.harness import Stamped
+from autograder.harness import ReceivedMessage
 
 
-def _commands(*pairs: tuple[float, float]) -> list[Stamped]:
+def _commands(*pairs: tuple[float, float]) -> list[ReceivedMessage]:
     made = []
     for linear, angular in pairs:
         command = Twist()
         command.linear.x, command.angular.z = linear, angular
-        made.append(Stamped(0.0, command))
+        made.append(ReceivedMessage(0.0, command))
     return made
 
 

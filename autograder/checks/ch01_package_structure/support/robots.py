@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 
 from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.harness import Stamped, SteppedHarness, Workspace
+from autograder.harness import ReceivedMessage, SteppedHarness, Workspace
 
 CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
 TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and its numbers go through unchanged
@@ -72,7 +72,7 @@ def expect_alarm(harness: SteppedHarness, distance: float, wanted: bool) -> None
     expect(seen is wanted, f"With something at {distance:.2f} m the alarm is {seen}, it should be {wanted}.")
 
 
-def _is(step: Stamped, linear: float, angular: float) -> bool:
+def _is(step: ReceivedMessage, linear: float, angular: float) -> bool:
     return bool(abs(step.message.linear.x - linear) <= TOLERANCE and abs(step.message.angular.z - angular) <= TOLERANCE)
 
 

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 
 from autograder.checks import expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, FORWARD, PACKAGE, TOLERANCE, TURN
-from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness import AutoHarness, ReceivedMessage, Workspace
 from autograder.harness.drive import SCAN_SECONDS
 
 OFFERS = {"/scan": LaserScan, "/status": String}
@@ -27,7 +27,7 @@ class Robot(AutoHarness):
     def __init__(self, workspace: Workspace, clock_rate: float = 1.0) -> None:
         super().__init__(workspace, PACKAGE, EXECUTABLE, offers=OFFERS, listens=LISTENS, clock_rate=clock_rate)
 
-    def see(self, scan: LaserScan, seconds: float = 1.0, *, late: float = 0.0) -> list[Stamped]:
+    def see(self, scan: LaserScan, seconds: float = 1.0, *, late: float = 0.0) -> list[ReceivedMessage]:
         """Show a scan ten times a second; return the commands that came once the controller had time to react."""
         began = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
@@ -40,7 +40,7 @@ class Robot(AutoHarness):
         self.publish("/scan", scan)
         self.run(seconds)
 
-    def left_alone(self, seconds: float) -> list[Stamped]:
+    def left_alone(self, seconds: float) -> list[ReceivedMessage]:
         """Show nothing for a while; return the commands of that time."""
         began = self.seconds
         self.run(seconds)
@@ -60,17 +60,17 @@ def qos_mismatch(robot: Robot) -> str:
     return ""
 
 
-def expect_forward(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
+def expect_forward(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command drives straight on."""
     _expect(commands, FORWARD, 0.0, situation, "drive straight on at 0.3 m/s", fraction)
 
 
-def expect_turn(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
+def expect_turn(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command turns left on the spot."""
     _expect(commands, 0.0, TURN, situation, "turn left on the spot at 0.5 rad/s", fraction)
 
 
-def expect_stop(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
+def expect_stop(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
     _expect(commands, 0.0, 0.0, situation, "publish zero velocity", fraction)
 
@@ -86,7 +86,12 @@ def describe_command(command: Twist) -> str:
 
 
 def _expect(
-    commands: Sequence[Stamped], linear: float, angular: float, situation: str, wanted: str, fraction: float = 0.0
+    commands: Sequence[ReceivedMessage],
+    linear: float,
+    angular: float,
+    situation: str,
+    wanted: str,
+    fraction: float = 0.0,
 ) -> None:
     expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.", fraction=fraction)
     wrong = [

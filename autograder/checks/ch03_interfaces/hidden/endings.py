@@ -13,7 +13,7 @@ from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, 
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import PATIENCE
 from autograder.checks.ch03_interfaces.support.driver import COMMANDS, LOOK, Driver, stopped
-from autograder.harness import Goal, Stamped
+from autograder.harness import Goal, ReceivedMessage
 from autograder.time_record import LOCKSTEP, REAL
 
 check = group("action", doc=contract.ACTION)
@@ -153,7 +153,7 @@ def test_drive_blind(tardy_driver: Driver) -> None:
     expect(length <= LONGEST, f"The reason has {length} characters, instead of at most {LONGEST}.", fraction=0.75)
 
 
-def _push(driver: Driver, distance: float) -> tuple[Goal, list[Stamped]]:
+def _push(driver: Driver, distance: float) -> tuple[Goal, list[ReceivedMessage]]:
     """Push a robot whose wheels do not turn once on its way; return the goal, which has ended, and its commands."""
     before = len(driver.messages(COMMANDS))
     goal = driver.start(1.0, 0.4)
@@ -177,7 +177,7 @@ def _is_given_up_rolling_back(driver: Driver) -> bool:
     return given_up
 
 
-def _driving(commands: list[Stamped]) -> float:
+def _driving(commands: list[ReceivedMessage]) -> float:
     """Return the seconds from the first command to drive to the last."""
     came = [stamped.seconds for stamped in commands if stamped.message.linear.x != 0.0]
     return came[-1] - came[0] if came else 0.0

@@ -14,7 +14,7 @@ from autograder.checks import expect
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness import AutoHarness, ReceivedMessage, Workspace
 from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
 from autograder.harness.steps import FINEST_TICK_NS
 from autograder.probes.pace import mean_period
@@ -69,7 +69,7 @@ class Robot(AutoHarness):
         """Ask for a change of several parameters in one request, numbers in the types that the node declares."""
         return self.parameters.change(as_declared(values, self.initial))
 
-    def see(self, distance: float, seconds: float = 0.5) -> list[Stamped]:
+    def see(self, distance: float, seconds: float = 0.5) -> list[ReceivedMessage]:
         """Show a wall at `distance` metres straight ahead, ten times a second; return the commands once settled."""
         began = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):

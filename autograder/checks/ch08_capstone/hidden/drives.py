@@ -13,7 +13,7 @@ import numpy as np
 from autograder.checks.ch02_nodes.hidden import terrain
 from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
 from autograder.checks.ch08_capstone.support.system import System
-from autograder.harness import Stamped, drive
+from autograder.harness import ReceivedMessage, drive
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
 RADIUS = 0.18  # m
@@ -29,7 +29,7 @@ class Driven:
     recording: Recording
     seconds: float
     began: float
-    commands: tuple[Stamped, ...]
+    commands: tuple[ReceivedMessage, ...]
 
 
 class Drives:

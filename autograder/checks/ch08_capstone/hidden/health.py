@@ -23,7 +23,7 @@ from autograder.checks.ch08_capstone.support.contract import (
     WATCHED,
 )
 from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem, System, describe_report
-from autograder.harness import Stamped
+from autograder.harness import ReceivedMessage
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.pace import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
@@ -133,7 +133,7 @@ def _expect_silence_said(system: System, topic: str) -> None:
     _expect_reports(late, FAILED, {topic}, situation, fraction=0.85)
 
 
-def _tell(system: System, topics: Sequence[str], seconds: float, **distances: float) -> Sequence[Stamped]:
+def _tell(system: System, topics: Sequence[str], seconds: float, **distances: float) -> Sequence[ReceivedMessage]:
     """Send the lone monitor a message on each topic ten times a second; return the reports after the time to react.
 
     The clearance is valid and free to all sides, but for these distances.
@@ -149,7 +149,7 @@ def _tell(system: System, topics: Sequence[str], seconds: float, **distances: fl
     return system.messages(began + SETTLED).reports
 
 
-def _expect_stamped(system: System, report: Stamped) -> None:
+def _expect_stamped(system: System, report: ReceivedMessage) -> None:
     """Fail the check unless a report's stamp is the ROS time at which it was made."""
     stamp = report.message.header.stamp
     came = system.harness.now_ns / 1e9 - (system.seconds - report.seconds)
@@ -159,7 +159,7 @@ def _expect_stamped(system: System, report: Stamped) -> None:
 
 
 def _expect_reports(
-    reports: Sequence[Stamped], level: int, silent: set[str], situation: str, *, fraction: float = 0.0
+    reports: Sequence[ReceivedMessage], level: int, silent: set[str], situation: str, *, fraction: float = 0.0
 ) -> None:
     """Fail the check unless there is a report, and each one has this level and names these topics."""
     expect(bool(reports), f"{situation}, no report came on health.", fraction=fraction)
@@ -172,6 +172,6 @@ def _expect_reports(
         )
 
 
-def _silent(report: Stamped) -> set[str]:
+def _silent(report: ReceivedMessage) -> set[str]:
     """Return the topics that a report calls silent."""
     return {str(topic).lstrip("/") for topic in report.message.silent}

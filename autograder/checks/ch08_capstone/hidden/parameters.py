@@ -18,7 +18,7 @@ from autograder.checks.ch08_capstone.support.contract import (
     PROCESSOR,
 )
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
-from autograder.harness import Stamped, Workspace
+from autograder.harness import ReceivedMessage, Workspace
 from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
@@ -180,7 +180,7 @@ def _said_of_change_in_turn(system: System) -> list[str]:
     return []
 
 
-def _settled(system: System, *parts: Part) -> Sequence[Stamped]:
+def _settled(system: System, *parts: Part) -> Sequence[ReceivedMessage]:
     """Show an open space, then these things in it; return the commands that followed."""
     system.see(OPEN)
     return system.see(scan(*parts, fill=3.0)).commands

@@ -23,7 +23,7 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
-from autograder.harness import AutoHarness, Program, Shared, Stamped, Workspace
+from autograder.harness import AutoHarness, Program, ReceivedMessage, Shared, Workspace
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.installed import look
 from autograder.probes.parameters import NodeParameters
@@ -38,9 +38,9 @@ ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
 class Received:
     """The messages of the system during a stretch of time, in the order in which they came."""
 
-    clearances: tuple[Stamped, ...]
-    commands: tuple[Stamped, ...]
-    reports: tuple[Stamped, ...]
+    clearances: tuple[ReceivedMessage, ...]
+    commands: tuple[ReceivedMessage, ...]
+    reports: tuple[ReceivedMessage, ...]
 
 
 class System:
@@ -202,7 +202,7 @@ class SharedSystem:
         return System(self._workspace, kinds, self._needed, self._clock_rate, self._absent)
 
 
-def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float = 0.0) -> None:
+def expect_still(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should be told to stand still.")
     bad = next((c for c in commands if not (_near(c.message.linear.x, 0.0) and _near(c.message.angular.z, 0.0))), None)
@@ -210,7 +210,9 @@ def expect_still(commands: Sequence[Stamped], situation: str, *, fraction: float
     expect(bad is None, f"{situation}, the robot {did}: it should stand still.", fraction=fraction)
 
 
-def expect_driving(commands: Sequence[Stamped], situation: str, fastest: float, *, fraction: float = 0.0) -> None:
+def expect_driving(
+    commands: Sequence[ReceivedMessage], situation: str, fastest: float, *, fraction: float = 0.0
+) -> None:
     """Fail the check unless every command drives forward, at most at `fastest` m/s."""
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
     bad = next((c for c in commands if not 0.0 < c.message.linear.x <= fastest + TOLERANCE), None)
@@ -223,7 +225,7 @@ def expect_driving(commands: Sequence[Stamped], situation: str, fastest: float, 
 
 
 def expect_turning(
-    commands: Sequence[Stamped], situation: str, side: str, fastest: float, *, fraction: float = 0.0
+    commands: Sequence[ReceivedMessage], situation: str, side: str, fastest: float, *, fraction: float = 0.0
 ) -> None:
     """Fail the check unless every command turns on the spot to a side, at most at `fastest` rad/s."""
     expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should turn.")

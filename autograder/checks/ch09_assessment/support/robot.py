@@ -23,7 +23,7 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.exercise_stubs import explain
-from autograder.harness import AutoHarness, Stamped, Workspace
+from autograder.harness import AutoHarness, ReceivedMessage, Workspace
 from autograder.interfaces import load_from
 from autograder.packages import find_packages
 from autograder.probes.parameters import NodeParameters, Value, override_arguments
@@ -68,7 +68,7 @@ class NodeHarness(AutoHarness):
         self._types, self._name = types, name
         self._out, self._in = next(iter(listens)), next(iter(offers), "")
 
-    def heard(self, since: float = -1.0) -> list[Stamped]:
+    def heard(self, since: float = -1.0) -> list[ReceivedMessage]:
         """Return what it has published."""
         return self.messages(self._out, since=since)
 
