@@ -24,7 +24,7 @@ from autograder.result import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
-from autograder.sandbox.launcher import heed_interrupts
+from autograder.sandbox.launcher import restore_sigint
 
 # The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
 # A busy machine is slow, and that is no failure.
@@ -38,7 +38,7 @@ _OURS = Domain()
 _NEXT = itertools.count(_OURS.number)  # one that was just left may still have somebody in it who is on the way out
 activate(domain=_OURS.number)
 os.environ.update(LOGS_TO_STDOUT)  # as for students' programs in the grader and in notebooks
-heed_interrupts()  # programs end on Ctrl-C also when the tests are a job in the background
+restore_sigint()  # programs end on Ctrl-C also when the tests are a job in the background
 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")

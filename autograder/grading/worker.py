@@ -30,7 +30,7 @@ from autograder.intake import write_tree
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
-from autograder.sandbox.launcher import heed_interrupts
+from autograder.sandbox.launcher import restore_sigint
 from autograder.sandbox.tiers import Tier
 from autograder.time_record import REAL
 from autograder.workspace import Workspace
@@ -162,7 +162,7 @@ class Grading:
 
 def prepare() -> None:
     """Prepare this process for grading: interrupts reach it, and ROS can be imported."""
-    heed_interrupts()
+    restore_sigint()
     activate()
 
 

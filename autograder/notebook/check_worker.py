@@ -22,7 +22,7 @@ from autograder.notebook.worker_client import RECORDING, REPLY_FILE
 from autograder.result import write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
-from autograder.sandbox.launcher import current_tier, heed_interrupts
+from autograder.sandbox.launcher import current_tier, restore_sigint
 from autograder.sandbox.tiers import Tier
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ SEED = 1  # of the visible checks' inputs
 def main() -> None:
     """Run the request in the file that the command line names."""
     request = json.loads(Path(sys.argv[1]).read_text())
-    heed_interrupts()
+    restore_sigint()
     ros = activate()
     from autograder.workspace import Workspace  # once ROS is switched on: it reaches rclpy, and so does what builds
 

@@ -26,7 +26,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from autograder.prefork.emulation import become, forget, set_command_line
+from autograder.prefork.emulation import emulate_start, forget, set_command_line
 from autograder.prefork.request import MAX_BYTES
 
 _PR_SET_CHILD_SUBREAPER = 36
@@ -166,5 +166,5 @@ def _run(request: dict[str, Any], fds: list[int]) -> None:
     os.chdir(request["cwd"])
     out: Any = sys.stdout
     out.reconfigure(line_buffering=os.isatty(1) and not out.write_through)
-    exec(*become(request["words"], request["environment"], base))
+    exec(*emulate_start(request["words"], request["environment"], base))
     sys.exit()

@@ -10,12 +10,12 @@ import threading
 from collections.abc import Mapping
 from typing import Any
 
-from autograder.prefork.request import Request
+from autograder.prefork.request import ForkRequest
 
-# The command in a program's place: says that the sandbox stands, and ends with the program's exit status.
-HOLDER = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
+# What bubblewrap starts in a forked program's place: it says that the sandbox stands, and ends with its exit status.
+PLACEHOLDER_COMMAND = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
 TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a machine that is busy
-_ROOM = 2048  # bytes of command line, which a program's own child can overwrite with its own
+_ARGV_BYTES = 2048  # bytes of command line, which a program's own child can overwrite with its own
 
 
 class ForkError(Exception):
@@ -36,7 +36,7 @@ class ForkServer:
         self._socket.settimeout(TIMEOUT)
         with theirs:
             self._popen = subprocess.Popen(
-                [sys.executable, "-m", "autograder.prefork", str(theirs.fileno()), profile, " " * _ROOM],
+                [sys.executable, "-m", "autograder.prefork", str(theirs.fileno()), profile, " " * _ARGV_BYTES],
                 stdin=subprocess.DEVNULL,
                 env=dict(environment),
                 pass_fds=(theirs.fileno(),),
@@ -49,7 +49,7 @@ class ForkServer:
         """The server's process id."""
         return self._popen.pid
 
-    def spawn(self, request: Request, status: int) -> int:
+    def spawn(self, request: ForkRequest, status: int) -> int:
         """Fork a program into a sandbox that stands; return its process id, or raise a ForkError.
 
         Args:

@@ -25,13 +25,13 @@ _HIGH = 500  # where nothing is in the way of the numbers that descriptors are t
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
-def join(holder: int) -> int:
-    """Join the namespaces of the process `holder`, but for its user namespace; return a descriptor of that one.
+def join(placeholder: int) -> int:
+    """Join the namespaces of the process `placeholder`, but for its user namespace; return a descriptor of that one.
 
     This process becomes the master of the user namespace that owns the others, which the kernel grants to the user who
     has made it. Its next child is in the pid namespace, too.
     """
-    theirs, ours = Path(f"/proc/{holder}/ns"), Path("/proc/self/ns")
+    theirs, ours = Path(f"/proc/{placeholder}/ns"), Path("/proc/self/ns")
     others = [_open(theirs / name) for name in _NAMESPACES if not (theirs / name).samefile(ours / name)]
     user = _open(theirs / "user")
     join_user(fcntl.ioctl(_open(theirs / "mnt"), _NS_GET_USERNS))
@@ -68,8 +68,8 @@ def limit(limits: dict[str, tuple[int, int]]) -> None:
         resource.setrlimit(getattr(resource, name), (soft, hard))
 
 
-def drop() -> None:
-    """Give up every capability, and the calls that a sandbox does not get, for ever."""
+def drop_privileges() -> None:
+    """Give up every capability, and the system calls that a sandbox does not get."""
     for capability in range(int(Path("/proc/sys/kernel/cap_last_cap").read_text()) + 1):
         _check(_libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0))
     _check(_libc.prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0))

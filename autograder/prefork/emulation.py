@@ -20,7 +20,9 @@ Program = tuple[CodeType, dict[str, Any]]
 _ARG_START = 45  # among the fields of /proc/self/stat behind the name, before _ARG_END, proc_pid_stat(5)
 
 
-def become(command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], **given: Any) -> Program:
+def emulate_start(
+    command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], **given: Any
+) -> Program:
     """Make this interpreter like one that was started with a command line; return its code and its globals.
 
     Args:

@@ -13,17 +13,17 @@ MAX_FDS = 16
 
 
 @dataclass(frozen=True)
-class Request:
+class ForkRequest:
     """One program to fork."""
 
     command: list[str]  # its script and arguments
     environment: dict[str, str]  # all its environment variables
     workdir: str  # its working folder
     limits: dict[str, tuple[int, int]]  # the kernel's limits on it, soft and hard, by their names in `resource`
-    holder: int  # the process in the sandbox that holds the program's place
+    placeholder: int  # the process in the sandbox that waits for the program's exit status
     groups: list[str]  # the folders of the sandbox's control group
     # The numbers of the descriptors that the program gets. The request comes with them, and before them with
-    # the one on which the holder waits for the program's exit status.
+    # the one on which the placeholder waits for the program's exit status.
     fds: list[int]
 
     def to_bytes(self) -> bytes:
@@ -31,6 +31,6 @@ class Request:
         return json.dumps(asdict(self)).encode()
 
     @classmethod
-    def from_bytes(cls, data: bytes) -> Request:
+    def from_bytes(cls, data: bytes) -> ForkRequest:
         """Read a request from its JSON."""
         return cls(**json.loads(data))

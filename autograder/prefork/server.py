@@ -1,6 +1,6 @@
 """A fork server's process: it forks a program for each request.
 
-It is trusted, lives outside every sandbox, and runs no line of a student's. For each request a child, the attendant,
+It is trusted, lives outside every sandbox, and runs no line of a student's. For each request a child, the supervisor,
 enters the sandbox that bubblewrap has made, forks the program's process there, and writes its exit status to the
 process that bubblewrap waits for. The program's process gives up all rights (`confinement.py`) before it reads anything
 of a student's, and then becomes the program.
@@ -22,9 +22,9 @@ from pathlib import Path
 
 from autograder.prefork import confinement
 from autograder.prefork.children import fork_children
-from autograder.prefork.emulation import Program, become, forget
+from autograder.prefork.emulation import Program, emulate_start, forget
 from autograder.prefork.profiles import PROFILES
-from autograder.prefork.request import MAX_BYTES, MAX_FDS, Request
+from autograder.prefork.request import MAX_BYTES, MAX_FDS, ForkRequest
 
 
 def main() -> Program:
@@ -43,7 +43,7 @@ def main() -> Program:
     request = serve(requests)
     forget(("autograder",))
     namespace = {"fork_children": partial(fork_children, profile.own)} if profile.forks else {}
-    return become(request.command, {**request.environment, "PWD": request.workdir}, base, **namespace)
+    return emulate_start(request.command, {**request.environment, "PWD": request.workdir}, base, **namespace)
 
 
 def _release() -> None:
@@ -53,7 +53,7 @@ def _release() -> None:
             setattr(sys.modules[module], name, None)
 
 
-def serve(requests: socket.socket) -> Request:
+def serve(requests: socket.socket) -> ForkRequest:
     """Fork for each request, and end when there are no more; return in the process of a program, with its request.
 
     A request is received by the child that it is for: a program finds nothing of earlier ones in its memory.
@@ -66,9 +66,9 @@ def serve(requests: socket.socket) -> Request:
             if not data:
                 os._exit(0)
             os.write(told, b"1")
-            request = Request.from_bytes(data)
+            request = ForkRequest.from_bytes(data)
             with _reporting(requests):
-                if not _attend(requests, request, fds[0]):
+                if not _supervise(requests, request, fds[0]):
                     _confine(requests, request, fds[1:])
                     return request
             os._exit(0)
@@ -92,12 +92,12 @@ def _reporting(requests: socket.socket) -> Iterator[None]:
         os._exit(1)
 
 
-def _attend(requests: socket.socket, request: Request, status_fd: int) -> bool:
-    """Be the attendant of one program until its end; return at once, and False, in the program's own process."""
+def _supervise(requests: socket.socket, request: ForkRequest, status_fd: int) -> bool:
+    """Supervise one program until its end; return at once, and False, in the program's own process."""
     for group in request.groups:
         (Path(group) / "cgroup.procs").write_text("0")
-    output = os.open(f"/proc/{request.holder}/fd/2", os.O_WRONLY)
-    inner = confinement.join(request.holder)
+    output = os.open(f"/proc/{request.placeholder}/fd/2", os.O_WRONLY)
+    inner = confinement.join(request.placeholder)
     program = os.fork()
     if program == 0:
         os.setsid()
@@ -113,11 +113,11 @@ def _attend(requests: socket.socket, request: Request, status_fd: int) -> bool:
     return True
 
 
-def _confine(requests: socket.socket, request: Request, fds: list[int]) -> None:
+def _confine(requests: socket.socket, request: ForkRequest, fds: list[int]) -> None:
     """Give up whatever is left of the outside, the socket of the requests last of all."""
     os.chdir(request.workdir)
     with socket.socket(fileno=confinement.place(fds, request.fds, requests.detach())) as kept:
         with _reporting(kept):
             confinement.limit(request.limits)
-            confinement.drop()
+            confinement.drop_privileges()
         kept.send(b'{"entered": true}')

@@ -13,8 +13,8 @@ import threading
 from pathlib import Path
 
 from autograder.prefork import seccomp
-from autograder.prefork.client import HOLDER, TIMEOUT, ForkError, ForkServer
-from autograder.prefork.request import Request
+from autograder.prefork.client import PLACEHOLDER_COMMAND, TIMEOUT, ForkError, ForkServer
+from autograder.prefork.request import ForkRequest
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
 from autograder.sandbox import bubblewrap, cgroup
 from autograder.sandbox.cgroup import ControlGroup
@@ -37,8 +37,8 @@ def current_tier() -> Tier:
     return Tier(os.environ.get(TIER_VARIABLE, Tier.PROCESS.value))
 
 
-def heed_interrupts() -> None:
-    """Let what this process will start hear Ctrl-C; call it in the main thread.
+def restore_sigint() -> None:
+    """Let SIGINT end what this process will start; call it in the main thread.
 
     A shell's background job ignores SIGINT, and all its descendants inherit that: the same node would end on Ctrl-C
     when it is graded in the foreground, and not when it is graded in the background.
@@ -78,7 +78,7 @@ def _started(
     group: ControlGroup,
     pass_fds: tuple[int, ...] = (),
     stdin: int = subprocess.DEVNULL,
-    held: bool = False,
+    is_placeholder: bool = False,
 ) -> Process:
     contained = current_tier() is Tier.BUBBLEWRAP
     with tempfile.TemporaryFile() as calls:
@@ -98,7 +98,7 @@ def _started(
             writable=(Path("/tmp"), Path("/dev/shm"), spec.workdir) if contained else (),
             group=group,
             stdin=stdin,
-            held=held,
+            is_placeholder=is_placeholder,
         )
 
 
@@ -112,12 +112,12 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profil
     status, theirs = socket.socketpair()
     with status:
         with theirs:
-            process = _started(HOLDER, spec, group, stdin=theirs.fileno(), held=True)
+            process = _started(PLACEHOLDER_COMMAND, spec, group, stdin=theirs.fileno(), is_placeholder=True)
         try:
             status.settimeout(TIMEOUT)
             if not status.recv(1):
                 raise ForkError(f"the sandbox was not made: {process.output}")
-            request = Request(
+            request = ForkRequest(
                 command,
                 dict(spec.environment),
                 str(spec.workdir),
@@ -126,7 +126,7 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profil
                 list(map(str, group.folders)),
                 list(pass_fds),
             )
-            process.entered(server.spawn(request, status.fileno()))
+            process.adopt(server.spawn(request, status.fileno()))
         except (ForkError, TimeoutError) as error:
             process.kill()
             _servers[profile] = None

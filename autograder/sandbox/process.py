@@ -50,7 +50,7 @@ class Process:
         group: a control group that the command enters, closed after its end; leaving the block waits for it.
         writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
         stdin: its standard input.
-        held: the command only holds the place of a program that will be `entered`, whose time counts from then.
+        is_placeholder: the command waits for a program that it will `adopt`; the time counts from then.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class Process:
         group: ControlGroup | None = None,
         writable: tuple[Path, ...] = (),
         stdin: int = subprocess.DEVNULL,
-        held: bool = False,
+        is_placeholder: bool = False,
     ) -> None:
         self._group = group
         self._contained = contained
@@ -74,8 +74,8 @@ class Process:
         self._output = bytearray()
         self._ending: Ending | None = None
         self._lock = threading.Lock()
-        self._entered: tuple[int, ...] = ()
-        self._started = math.inf if held else time.monotonic()
+        self._adopted: tuple[int, ...] = ()
+        self._started = math.inf if is_placeholder else time.monotonic()
         self._popen = subprocess.Popen(
             command,
             stdin=stdin,
@@ -126,15 +126,15 @@ class Process:
         """Return the processor time that its processes of now have used."""
         return cpu_seconds(self._measure().pids)
 
-    def entered(self, pid: int) -> None:
-        """Take in a process that has joined the sandbox from outside: from now on it is the student's own."""
-        self._entered = (pid,)
+    def adopt(self, pid: int) -> None:
+        """Watch a process, too, that has joined the sandbox from outside: it is the student's own."""
+        self._adopted = (pid,)
         self._started = time.monotonic()
 
     def innermost(self) -> int:
         """Return the process id of the student's own process below the sandbox's helpers."""
-        if self._entered:
-            return self._entered[0]
+        if self._adopted:
+            return self._adopted[0]
         pid = self.pid
         while name(pid) == "bwrap" and (below := children(pid)):
             pid = below[0]
@@ -159,7 +159,7 @@ class Process:
         self._watcher.join(10.0)
 
     def _measure(self) -> Tree:
-        return measure(self._popen.pid, *self._entered, most=self._limits.threads)
+        return measure(self._popen.pid, *self._adopted, most=self._limits.threads)
 
     def _files(self) -> int:
         """Count the files on the file systems that it can write to; none once it is gone."""

@@ -10,9 +10,9 @@ import pytest
 CHILD = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)"
 PARENT = f"""
 import subprocess, sys
-from autograder.sandbox.launcher import heed_interrupts
+from autograder.sandbox.launcher import restore_sigint
 if sys.argv[1] == "heed":
-    heed_interrupts()
+    restore_sigint()
 subprocess.run([sys.executable, "-c", {CHILD!r}], check=True)
 """
 

@@ -83,9 +83,9 @@ def test_time_is_limited() -> None:
 
 
 def test_the_time_limit_of_a_forked_program_starts_when_it_enters() -> None:
-    with Process(_python("import signal; signal.pause()"), Limits(wall_seconds=0.2), held=True) as process:
+    with Process(_python("import signal; signal.pause()"), Limits(wall_seconds=0.2), is_placeholder=True) as process:
         assert not process.wait(1.0)
-        process.entered(process.pid)
+        process.adopt(process.pid)
         assert process.wait(LONG)
         assert process.ending is Ending.WALL_TIME
 
