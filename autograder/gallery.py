@@ -22,7 +22,7 @@ class Gallery:
 
     folder: Path  # folder that gets the pictures
     check: str = ""  # id of the check, the first part of the file names
-    closed: bool = False  # whether nothing is saved
+    disabled: bool = False  # whether nothing is saved
     recordings: bool = False  # whether whole recordings are saved, too
     # Records of the pictures that were saved. The galleries of all checks share this list.
     artifacts: list[Artifact] = field(default_factory=list)
@@ -52,7 +52,7 @@ class Gallery:
             rules: what became of each rule that the run was judged by, by the rule in words; its times count from the
                 start of the run.
         """
-        if self.closed:
+        if self.disabled:
             return
         import sim.view  # matplotlib is slow to import, and most checks have no picture
 

@@ -1,4 +1,4 @@
-"""Building what a suite wants: a build that fails ends the grading, or is something that the checks see."""
+"""Builds the packages of a suite. A build that fails ends the grading, or is what the checks examine."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from autograder.workspace import Workspace
 
 
 @dataclass(frozen=True)
-class Observed:
-    """How building a suite's packages went all together, and by package; OK for one that was built."""
+class BuildOutcome:
+    """The build of a suite's packages, and a diagnosis of each package; OK for one that was built."""
 
     build: Build
     diagnoses: Mapping[str, Diagnosis]
 
     @property
     def diagnosis(self) -> Diagnosis:
-        """The first package's that was not built, or OK."""
+        """The diagnosis of the first package that was not built, or OK."""
         return next((found for found in self.diagnoses.values() if found is not OK), OK)
 
 
@@ -70,7 +70,7 @@ def build(workspace: Workspace, wanted: tuple[str, ...]) -> Build:
     return Build(True, round(time.monotonic() - started, 2), tuple(sorted(found)))
 
 
-def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> Observed:
+def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> BuildOutcome:
     """Build packages of a workspace.
 
     Where a build may fail, and does, each package is built by itself, so that one's error is not the other's. Colcon
@@ -83,7 +83,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     source = workspace.root / "src"
     try:
         require_packages(source, packages, whole=not may_fail)
-        return Observed(build(workspace, packages), dict.fromkeys(packages, OK))
+        return BuildOutcome(build(workspace, packages), dict.fromkeys(packages, OK))
     except StudentError as error:
         if not may_fail or isinstance(error, StoppedBuildError):
             raise StudentError(explain(error.diagnosis, source, *packages)) from None
@@ -104,7 +104,7 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
     seen = tuple(sorted({name for each in builds for name in each.packages}))
     log = "\n".join(filter(None, (each.log for each in builds)))
     seconds = round(math.fsum(each.seconds for each in builds), 2)
-    return Observed(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
+    return BuildOutcome(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
 
 
 def _missing(source: Path, name: str, found: dict[str, Path]) -> str:

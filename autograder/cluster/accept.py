@@ -14,7 +14,7 @@ from autograder.checks import suites
 from autograder.cluster.exceptions import AnswerError
 from autograder.cluster.parcel import Answer
 from autograder.exceptions import UsageError
-from autograder.grading.batch import Request
+from autograder.grading.batch import GradingRequest
 from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, not_graded
 from autograder.result import Result, Status, from_json, write_atomically, write_json
 
@@ -23,7 +23,7 @@ RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
 MAX_PIXELS = 25_000_000
 
 
-def accept(data: object, request: Request, sha256: str) -> Result:
+def accept(data: object, request: GradingRequest, sha256: str) -> Result:
     """Check a worker's answer, a packed `Answer`; write its files to the request's folder, and return the result.
 
     `sha256` is the digest of the submission that was sent. Raises AnswerError if the answer is none to the request, or
@@ -43,7 +43,7 @@ def accept(data: object, request: Request, sha256: str) -> Result:
     return write(result, request)
 
 
-def give_up(request: Request, why: str, log: str) -> Result:
+def give_up(request: GradingRequest, why: str, log: str) -> Result:
     """Write and return the result of a submission that the cluster did not grade.
 
     `why` is a sentence for the result, `log` what an instructor reads beside it.
@@ -54,14 +54,14 @@ def give_up(request: Request, why: str, log: str) -> Result:
     return write(not_graded(suite, request.student, request.seed, request.isolation, why), request)
 
 
-def write(result: Result, request: Request) -> Result:
+def write(result: Result, request: GradingRequest) -> Result:
     """Write the result with the student's name, which is not sent to workers."""
     named = replace(result, student=request.student)
     write_json(request.out / RESULT, named.to_json())
     return named
 
 
-def _result(data: bytes, request: Request, sha256: str) -> Result:
+def _result(data: bytes, request: GradingRequest, sha256: str) -> Result:
     try:
         result = from_json(json.loads(data), source="a worker's answer")
     except (ValueError, UsageError, RecursionError) as error:

@@ -24,7 +24,7 @@ from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.machine import difference, resource
 from autograder.cluster.parcel import Parcel
 from autograder.exceptions import StudentError
-from autograder.grading.batch import OnResult, Request
+from autograder.grading.batch import GradingRequest, OnResult
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout, read_files
 
@@ -39,7 +39,7 @@ Grade = Callable[[bytes], bytes]
 class _Pending:
     """A submission that a worker grades, its digest, and how often it was sent."""
 
-    request: Request
+    request: GradingRequest
     sha256: str
     parcel: bytes
     tries: int = 1
@@ -47,7 +47,7 @@ class _Pending:
 
 def grade_on(
     client: Client,
-    requests: Sequence[Request],
+    requests: Sequence[GradingRequest],
     on_result: OnResult,
     *,
     report: Callable[[str], None],
@@ -104,7 +104,7 @@ class _Dispatch:
     def __init__(
         self,
         client: Client,
-        requests: Sequence[Request],
+        requests: Sequence[GradingRequest],
         on_result: OnResult,
         report: Callable[[str], None],
         grade: Grade,
@@ -167,7 +167,7 @@ class _Dispatch:
                 self._refused.add(address)
                 self._report(f"The worker {address} is refused: {why}.")
 
-    def _packed(self, requests: Sequence[Request]) -> Iterator[_Pending]:
+    def _packed(self, requests: Sequence[GradingRequest]) -> Iterator[_Pending]:
         """Yield what has to be sent; report the results of the rest."""
         for request in requests:
             stored = request.stored()

@@ -30,7 +30,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Request:
+class GradingRequest:
     """One submission of a class to grade into the folder `out`; `resume` says whether a stored result counts."""
 
     student: str
@@ -74,7 +74,7 @@ class Request:
             isolation=self.isolation,
         )
 
-    def take_over(self, result: Result, folder: Path) -> Result:
+    def store_copy(self, result: Result, folder: Path) -> Result:
         """Store the result of an equal submission, whose files lie in `folder`, as that of this one."""
         clear(self.out)
         shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run)}
@@ -88,7 +88,7 @@ class Request:
         return own
 
 
-GradeEach = Callable[[Sequence[Request], OnResult], None]
+GradeEach = Callable[[Sequence[GradingRequest], OnResult], None]
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
@@ -147,10 +147,10 @@ def grade_all(
         The results, in the order of `entries`. Ctrl-C lets end what has begun, and leaves the rest to `resume`.
     """
     requests = [
-        Request(entry.student, entry.path, assignment, seed, isolation, out / entry.student, resume)
+        GradingRequest(entry.student, entry.path, assignment, seed, isolation, out / entry.student, resume)
         for entry in entries
     ]
-    equal: dict[str, list[Request]] = {}
+    equal: dict[str, list[GradingRequest]] = {}
     for request in requests:
         submission = request.submission()
         equal.setdefault(submission.graded_sha256 if submission else f"of {request.student}", []).append(request)
@@ -159,7 +159,7 @@ def grade_all(
 
     def book(result: Result) -> None:
         graded, *others = first[result.student]
-        for other in (result, *(request.stored() or request.take_over(result, graded.out) for request in others)):
+        for other in (result, *(request.stored() or request.store_copy(result, graded.out) for request in others)):
             results[other.student] = other
             on_result(other)
 

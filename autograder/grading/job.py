@@ -18,7 +18,7 @@ class Scope:
     first_loss: bool = False  # whether to stop at the first check that does not pass
     pictures: bool = True  # whether checks leave pictures
     recordings: bool = False  # whether they leave whole recordings, too
-    built: str = ""  # a built workspace of other sources, which takes the place of a build; see `building.built`
+    built: str = ""  # a built workspace of other sources, which takes the place of a build; see `building.prebuilt`
 
 
 ALL = Scope()

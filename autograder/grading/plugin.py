@@ -1,4 +1,4 @@
-"""The pytest plug-in of a grading run: turns a suite's tests into check results, and nothing else into anything.
+"""The pytest plug-in of a grading: it turns a suite's tests into check results, and ignores everything else.
 
 The checks of every chapter, visible and hidden, have its fixtures. A chapter's own stand in its conftest.py, or in the
 one module that uses them. A harness for several checks is kept by `autograder.harness.Shared`.
@@ -60,8 +60,8 @@ class GradingPlugin:
         self._seconds: dict[str, float] = {}
 
     @property
-    def enough(self) -> bool:
-        """Whether no more checks need to be run: one did not pass, and the first that does not is all that is asked."""
+    def is_finished(self) -> bool:
+        """Whether the scope asks for the first check that does not pass alone, and one did not pass."""
         return self._scope.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")
@@ -94,7 +94,7 @@ class GradingPlugin:
         check = _declared_by(item)
         if check is not None:
             self._record(check, call)
-        if self.enough:
+        if self.is_finished:
             item.session.shouldstop = "a check did not pass"
 
     def pytest_configure(self, config: pytest.Config) -> None:

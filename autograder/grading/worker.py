@@ -49,7 +49,7 @@ class Grading:
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
         domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
-        self._gallery = Gallery(job.out, closed=not job.scope.pictures, recordings=job.scope.recordings)
+        self._gallery = Gallery(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
         self._build: Build | None = None
@@ -95,7 +95,7 @@ class Grading:
         """Read, extract and build; return what was wrong with a build that the suite lets fail."""
         from autograder import intake
         from autograder.building.build import build_workspace
-        from autograder.building.built import take_built
+        from autograder.building.prebuilt import copy_prebuilt
 
         with self._phase("intake"):
             submission = intake.read_submission(self._job.path, self._job.assignment)
@@ -103,13 +103,15 @@ class Grading:
             packages = submission.source
         if submission.notebook is not None:
             with self._phase("notebook"):
-                from autograder.grading import extract  # Jupyter is slow to import, and not every submission needs it
+                from autograder.grading import (
+                    run_notebook,  # Jupyter is slow to import, and not every submission needs it
+                )
 
                 write_tree(submission.extra, self._folder)
                 write_tree(packages, self._folder / "ws" / "src")
                 self._add_given(self._folder / "ws" / "src")
                 original = layout.source_notebook(self._job.assignment)
-                extract.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
+                run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
                 # The notebook could write links and devices to all of this. Only plain files of it are taken.
                 packages = intake.read_packages(self._folder / "ws")
                 self._clear()
@@ -117,7 +119,7 @@ class Grading:
         write_tree(packages, source)
         with self._phase("build"):
             if built := self._job.scope.built:
-                seen = take_built(Path(built), self._workspace, self._suite.packages)
+                seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
             else:
                 seen = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
             # A set-up script could write to the sources as well. Checks read what was handed in.
@@ -144,7 +146,7 @@ class Grading:
             run(self._suite.files, plugin)
         wanted = self._job.scope.only or [check.id for check in self._suite.checks]
         missing = set(wanted) - set(plugin.results)
-        if missing and not plugin.failures and not plugin.enough:
+        if missing and not plugin.failures and not plugin.is_finished:
             plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
         if plugin.failures:
             raise GraderError("\n".join(plugin.failures))

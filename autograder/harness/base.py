@@ -266,4 +266,6 @@ class Harness(ExitStack, ABC):
             )
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
         if not matched:
-            raise GraderError(f"the grader and the student's node did not meet within {MATCH_SECONDS:.0f} s")
+            raise GraderError(
+                f"the grader and the student's node did not discover each other within {MATCH_SECONDS:.0f} s"
+            )

@@ -26,7 +26,7 @@ C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection
 
 
 @dataclass(frozen=True)
-class Job:
+class InterfaceBuildJob:
     """A package that is built."""
 
     package: str
@@ -75,7 +75,7 @@ def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
     return tuple(path.rpartition(".")[0] + ".idl" for path in texts)
 
 
-def share_parsing(job: Job) -> None:
+def share_parsing(job: InterfaceBuildJob) -> None:
     """Parse each .idl, and let the generators take what came of it."""
     parser = import_module("rosidl_parser.parser")
     locator_of = import_module("rosidl_parser.definition").IdlLocator
@@ -84,7 +84,7 @@ def share_parsing(job: Job) -> None:
         parser.parse_idl_file(locator_of(job.prefix / "share" / job.package, file))
 
 
-def arguments(job: Job, generator: str, **more: Any) -> str:
+def arguments(job: InterfaceBuildJob, generator: str, **more: Any) -> str:
     """Write a generator's arguments file; return its path."""
     out = job.out(generator)
     for kind in {Path(file).parts[0] for file in job.files}:
@@ -105,7 +105,7 @@ def arguments(job: Job, generator: str, **more: Any) -> str:
     return str(path)
 
 
-def generate(job: Job) -> None:
+def generate(job: InterfaceBuildJob) -> None:
     """Run all generators, in two processes: what needs the type hashes here, the rest in a fork."""
     python = import_module("rosidl_generator_py.generate_py_impl")
     descriptions = import_module("rosidl_generator_type_description")
@@ -155,7 +155,7 @@ def both(here: Callable[[], None], aside: Callable[[], None]) -> None:
         raise RuntimeError("a generator failed")
 
 
-def install(job: Job) -> None:
+def install(job: InterfaceBuildJob) -> None:
     """Lay out what dependants and `load` look for: Python, headers, type descriptions, manifest, index."""
     package, share = job.package, job.prefix / "share"
     site = site_packages(job.prefix) / package
@@ -190,7 +190,7 @@ def main() -> None:
     work.mkdir()
     prefixes = tuple(Path(path) for path in recipe["prefixes"])
     files = adapt(prefix, recipe["package"], recipe["texts"])
-    job = Job(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
+    job = InterfaceBuildJob(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
     share_parsing(job)
     generate(job)
     install(job)

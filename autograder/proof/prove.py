@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from autograder.grading.batch import Request
+from autograder.grading.batch import GradingRequest
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.cases import Case
@@ -45,7 +45,7 @@ def prove(
         with tempfile.TemporaryDirectory(prefix="proof-") as name:
             path, place = _write(case, Path(name) / case.name), out / case.assignment / case.name
             whole = not case.scope.only
-            request = Request(case.name, path, case.assignment, seed, workers.tier, place, resume=whole)
+            request = GradingRequest(case.name, path, case.assignment, seed, workers.tier, place, resume=whole)
             result = request.stored() or grade_submission(
                 path,
                 case.assignment,

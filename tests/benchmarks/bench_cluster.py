@@ -17,7 +17,7 @@ from autograder.cluster.connection import LOCAL, connected
 from autograder.cluster.dispatch import grade_on
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading.batch import Request
+from autograder.grading.batch import GradingRequest
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
 from autograder.result import Result
@@ -48,12 +48,12 @@ def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[
     return spent, sum(result.seconds for result in results)
 
 
-def _request(folder: Path, number: int) -> Request:
+def _request(folder: Path, number: int) -> GradingRequest:
     source = folder / "class" / str(number) / "src" / "package"
     source.mkdir(parents=True)
     (source / "package.xml").write_text(str(number))
     (source / "node.py").write_text(SOURCE)
-    return Request(str(number), source.parents[1], ASSIGNMENT, 7, Tier.PROCESS, folder / "out" / str(number))
+    return GradingRequest(str(number), source.parents[1], ASSIGNMENT, 7, Tier.PROCESS, folder / "out" / str(number))
 
 
 def _answered(pauses: Sequence[float], data: bytes) -> bytes:

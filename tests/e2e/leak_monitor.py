@@ -20,7 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from autograder.grading.batch import Entry, OnResult, Request, grade_all
+from autograder.grading.batch import Entry, GradingRequest, OnResult, grade_all
 from autograder.grading.job import Scope
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import DEFAULT_SEED, grade_submission
@@ -66,7 +66,7 @@ def _held(group: cgroup.ControlGroup) -> int:
 def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str]) -> None:
     """Grade submissions, two at once."""
 
-    def one(request: Request) -> Result:
+    def one(request: GradingRequest) -> Result:
         return grade_submission(
             request.path,
             assignment,
@@ -76,7 +76,7 @@ def _grade(place: str, assignment: str, entries: list[list[str]], only: list[str
             scope=Scope(only=tuple(only)),
         )
 
-    def each(requests: Sequence[Request], on_done: OnResult) -> None:
+    def each(requests: Sequence[GradingRequest], on_done: OnResult) -> None:
         map_parallel(one, requests, jobs=2, on_done=on_done)
 
     found = tuple(Entry(student, Path(path)) for student, path in entries)

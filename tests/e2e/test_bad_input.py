@@ -17,7 +17,7 @@ def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
     """Run cells in the sandboxed kernel; return what each printed, and which processes are left of it."""
     from nbformat.v4 import new_code_cell, new_notebook
 
-    from autograder.grading import extract
+    from autograder.grading import run_notebook
     from autograder.harness import Workspace
     from autograder.ros import activate
 
@@ -25,8 +25,8 @@ def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
     folder.mkdir()
     home.mkdir()
     book = new_notebook(cells=[new_code_cell(cell) for cell in cells])
-    extract.CELL_SECONDS = 8
-    extract.execute(book, folder, Workspace(scratch / "ws", activate(), home))
+    run_notebook.CELL_SECONDS = 8
+    run_notebook.execute(book, folder, Workspace(scratch / "ws", activate(), home))
     deadline = time.monotonic() + 30
     while (left := _kernels()) and time.monotonic() < deadline:
         threading.Event().wait(0.05)

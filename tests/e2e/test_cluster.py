@@ -23,7 +23,7 @@ from autograder.cluster.exceptions import ClusterError
 from autograder.cluster.machine import resource
 from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading.batch import Request
+from autograder.grading.batch import GradingRequest
 from autograder.grading.pipeline import refused
 from autograder.intake import detect_layout
 from autograder.proof.mutants import mutants, write_mutant, write_reference
@@ -108,14 +108,16 @@ def test_a_class_survives_kills_of_workers_scheduler_and_client(tmp_path: Path, 
 
 
 @pytest.fixture
-def requests(tmp_path: Path) -> list[Request]:
+def requests(tmp_path: Path) -> list[GradingRequest]:
     """What is asked for three submissions, each another one."""
     found = []
     for student in ("alice", "bob", "carol"):
         package = tmp_path / student / "src" / "package"
         package.mkdir(parents=True)
         (package / "package.xml").write_text(student)
-        found.append(Request(student, tmp_path / student, ASSIGNMENT, 7, Tier.PROCESS, tmp_path / "out" / student))
+        found.append(
+            GradingRequest(student, tmp_path / student, ASSIGNMENT, 7, Tier.PROCESS, tmp_path / "out" / student)
+        )
     return found
 
 
@@ -133,7 +135,7 @@ def answered(data: bytes) -> bytes:
 
 
 def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
-    requests: list[Request], tmp_path: Path
+    requests: list[GradingRequest], tmp_path: Path
 ) -> None:
     with connected(LOCAL, 1, tmp_path) as client:
         results: list[Result] = []
@@ -145,7 +147,7 @@ def test_a_submission_that_kills_two_workers_is_not_graded_and_the_others_are(
 
 
 def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
-    requests: list[Request], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    requests: list[GradingRequest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
     other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).version, "another")

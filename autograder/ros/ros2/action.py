@@ -17,7 +17,7 @@ from rclpy.action import (
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import add_values, filled, given_values
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session, signals_held_back
 
 _STATUS = {
@@ -38,7 +38,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         actions = sorted(get_action_names_and_types(session.node))
@@ -59,7 +59,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _info(args: argparse.Namespace) -> Outcome:
+def _info(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         name = graph.full_topic_name(session.node, args.action_name)
         session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
@@ -92,7 +92,7 @@ def _type_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action_name", help="Name of the ROS action to get type (e.g. '/fibonacci')")
 
 
-def _type(args: argparse.Namespace) -> Outcome:
+def _type(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         name = graph.full_topic_name(session.node, args.action_name)
         session.wait_for(lambda: name in dict(get_action_names_and_types(session.node)))
@@ -110,7 +110,7 @@ def _send_goal_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
 
 
-def _send_goal(args: argparse.Namespace) -> Outcome:
+def _send_goal(args: argparse.Namespace) -> ExitCode:
     from rosidl_runtime_py import message_to_yaml
 
     action_class = graph.load_class(args.action_type, "action")

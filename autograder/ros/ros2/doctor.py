@@ -14,7 +14,7 @@ from importlib import metadata
 from autograder.ros import find
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.exceptions import NotCoveredError
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import Session, add_session_arguments, open_session
 
 Row = tuple[str, object]
@@ -138,7 +138,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("verb", nargs="?", metavar="hello", help="Not covered by this stand-in")
 
 
-def _run(args: argparse.Namespace) -> Outcome:
+def _run(args: argparse.Namespace) -> ExitCode:
     if args.verb is not None:
         raise NotCoveredError(f"`ros2 doctor {args.verb}`")
     checks = [check for check in CHECKS if not (args.exclude_packages and check.name == "package")]

@@ -9,7 +9,7 @@ from typing import Any
 
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.interface_text import unfold
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 
 _KINDS = (("m", "msg", "Messages"), ("s", "srv", "Services"), ("a", "action", "Actions"))
 
@@ -34,7 +34,7 @@ def _chosen(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tu
     return [(plural, getters[kind](packages)) for _, kind, plural in _KINDS if not asked or kind in asked]
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     for heading, by_package in _chosen(args):
         print(f"{heading}:")
         for package in sorted(by_package):
@@ -43,7 +43,7 @@ def _list(args: argparse.Namespace) -> Outcome:
     return None
 
 
-def _packages(args: argparse.Namespace) -> Outcome:
+def _packages(args: argparse.Namespace) -> ExitCode:
     for package in sorted({package for _, by_package in _chosen(args) for package in by_package}):
         print(package)
     return None
@@ -54,7 +54,7 @@ def _package_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("package_name", help="Name of the ROS package (e.g. 'std_msgs')")
 
 
-def _package(args: argparse.Namespace) -> Outcome:
+def _package(args: argparse.Namespace) -> ExitCode:
     try:
         chosen = _chosen(args, (args.package_name,))
     except LookupError as error:
@@ -75,7 +75,7 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
     which.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
 
 
-def _show(args: argparse.Namespace) -> Outcome:
+def _show(args: argparse.Namespace) -> ExitCode:
     name = _name(args.type)
     lines = unfold(name, _read, comments=not args.no_comments, nested_comments=args.all_comments)
     try:
@@ -97,7 +97,7 @@ def _proto_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-quotes", action="store_true", help="Omit the outer quotes")
 
 
-def _proto(args: argparse.Namespace) -> Outcome:
+def _proto(args: argparse.Namespace) -> ExitCode:
     from rosidl_runtime_py import message_to_yaml
     from rosidl_runtime_py.utilities import get_interface
 

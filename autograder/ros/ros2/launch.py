@@ -9,7 +9,7 @@ from pathlib import Path
 
 from autograder.ros.ros2 import packages
 from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, Ros2Error
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 
 OVERRIDE = "OVERRIDE_LAUNCH_PROCESS_OUTPUT"  # read by `launch`, the real one or its stand-in
 _SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -67,7 +67,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _run(args: argparse.Namespace) -> Outcome:
+def _run(args: argparse.Namespace) -> ExitCode:
     path, words = find_launch_file(args.package_name, args.launch_file_name, args.launch_arguments)
     arguments = launch_arguments(words)
     if args.launch_prefix is not None:

@@ -10,7 +10,7 @@ from lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import Session, add_session_arguments, open_session
 
 GET_STATE = "lifecycle_msgs/srv/GetState"
@@ -23,7 +23,7 @@ def _nodes_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
 
 
-def _nodes(args: argparse.Namespace) -> Outcome:
+def _nodes(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         names = _lifecycle_nodes(session, include_hidden=args.all)
@@ -40,7 +40,7 @@ def _get_arguments(parser: argparse.ArgumentParser) -> None:
     _hidden_argument(parser)
 
 
-def _get(args: argparse.Namespace) -> Outcome:
+def _get(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         if args.node_name:
             name = _find(session, args)
@@ -59,7 +59,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-a", "--all", action="store_true", help="Display all existing transitions")
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         name = _find(session, args)
         for found in _transitions(session, name, "get_transition_graph" if args.all else "get_available_transitions"):
@@ -78,7 +78,7 @@ def _set_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("transition", help="The lifecycle transition")
 
 
-def _set(args: argparse.Namespace) -> Outcome:
+def _set(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         name = _find(session, args)
         available = [found.transition for found in _transitions(session, name, "get_available_transitions")]

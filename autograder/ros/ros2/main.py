@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from autograder.ros import RosError, activate
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.parsing import Command, Outcome, parse
+from autograder.ros.ros2.parsing import Command, ExitCode, parse
 
 STAND_INS = Path(__file__).parents[1] / "standins"
 
@@ -42,7 +42,7 @@ COMMANDS = {
 }
 
 
-def main(argv: Sequence[str] | None = None) -> Outcome:
+def main(argv: Sequence[str] | None = None) -> ExitCode:
     """Run `ros2` and return its exit code, or the text of an error (for `sys.exit`, which prints it and exits with 1).
 
     Ctrl-C gives 2 and SIGTERM 15, as in the real one.
@@ -53,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> Outcome:
     except RosError as error:
         return str(error)
     if importlib.util.find_spec("ros2cli") is not None:
-        outcome: Outcome = importlib.import_module("ros2cli.cli").main(argv=arguments)
+        outcome: ExitCode = importlib.import_module("ros2cli.cli").main(argv=arguments)
         return outcome
     if str(STAND_INS) not in sys.path:
         sys.path.append(str(STAND_INS))

@@ -11,7 +11,7 @@ from rclpy.action import (
 )
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
 
@@ -21,7 +21,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         names = graph.node_names(session, include_hidden=args.all)
@@ -42,7 +42,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _info(args: argparse.Namespace) -> Outcome:
+def _info(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         wanted = graph.find_node(session, args.node_name)
         if wanted is None or wanted.full_name != args.node_name:  # it takes full names alone, as the real command

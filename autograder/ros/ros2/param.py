@@ -17,7 +17,7 @@ from rclpy.parameter import parameter_value_to_python
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.param_client import NodeParameters, nested
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import add_session_arguments, open_session
 
 _TYPES = {
@@ -69,7 +69,7 @@ def _pattern(text: str) -> re.Pattern[str]:
         raise argparse.ArgumentTypeError(f"'{text}' is not a regular expression: {error}") from None
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     if args.node_name:
         with _parameters(args) as parameters:
             _print_names(parameters, args)
@@ -102,7 +102,7 @@ def _get_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--hide-type", action="store_true", help="Hide the type information")
 
 
-def _get(args: argparse.Namespace) -> Outcome:
+def _get(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         values = parameters.values([args.parameter_name])
     if not values:
@@ -125,7 +125,7 @@ def _set_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("value", help="Value of the parameter")
 
 
-def _set(args: argparse.Namespace) -> Outcome:
+def _set(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         result = parameters.set(args.parameter_name, args.value)
     return _report(result, "Set parameter successful", "Setting parameter failed")
@@ -136,13 +136,13 @@ def _delete_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("parameter_name", help="Name of the parameter")
 
 
-def _delete(args: argparse.Namespace) -> Outcome:
+def _delete(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         result = parameters.delete(args.parameter_name)
     return _report(result, "Deleted parameter successfully", "Deleting parameter failed")
 
 
-def _report(result: Any, done: str, failed: str) -> Outcome:
+def _report(result: Any, done: str, failed: str) -> ExitCode:
     """Say how a change went. The real command exits with 0 even when the node refused, so this one does."""
     reason = f": {result.reason}" if result.reason else ""
     print(f"{done if result.successful else failed}{reason}", file=sys.stdout if result.successful else sys.stderr)
@@ -154,7 +154,7 @@ def _describe_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("parameter_names", nargs="+", help="Names of the parameters")
 
 
-def _describe(args: argparse.Namespace) -> Outcome:
+def _describe(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         for descriptor in parameters.descriptors(args.parameter_names):
             print(*describe(descriptor), sep="\n")
@@ -179,7 +179,7 @@ def describe(descriptor: ParameterDescriptor) -> Iterator[str]:
         yield f"    Additional constraints: {descriptor.additional_constraints}"
 
 
-def _dump(args: argparse.Namespace) -> Outcome:
+def _dump(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         names = parameters.names([])
         values = [parameter_value_to_python(value) for value in parameters.values(names)]
@@ -196,7 +196,7 @@ def _load_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-use-wildcard", action="store_true", help="Do not load parameters in the '/**' namespace")
 
 
-def _load(args: argparse.Namespace) -> Outcome:
+def _load(args: argparse.Namespace) -> ExitCode:
     with _parameters(args) as parameters:
         for name, result in parameters.load(Path(args.parameter_file), not args.no_use_wildcard):
             _report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")

@@ -15,7 +15,7 @@ from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, NotCoveredEr
 STAND_IN_NOTE = f"This is a stand-in for ros2cli, without a daemon. The real one: {HOW_TO_GET_THE_REAL_ONE}."
 
 # What a verb returns: nothing or 0 for success, another exit code, or a text for stderr (exit code 1).
-Outcome = int | str | None
+ExitCode = int | str | None
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Verb:
     name: str
     summary: str
     add_arguments: Callable[[argparse.ArgumentParser], None]
-    run: Callable[[argparse.Namespace], Outcome]
+    run: Callable[[argparse.Namespace], ExitCode]
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Command:
 
 def parse(
     commands: dict[str, Command], argv: Sequence[str]
-) -> tuple[Callable[[argparse.Namespace], Outcome], argparse.Namespace]:
+) -> tuple[Callable[[argparse.Namespace], ExitCode], argparse.Namespace]:
     """Parse a whole command line.
 
     Returns:

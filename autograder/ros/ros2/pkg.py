@@ -8,14 +8,14 @@ from pathlib import Path
 
 from autograder.ros.ros2 import packages, pkg_create
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 
 
 def _no_arguments(parser: argparse.ArgumentParser) -> None:
     """Take none."""
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     for name in packages.package_names():
         print(name)
     return None
@@ -26,7 +26,7 @@ def _prefix_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--share", action="store_true", help="Show share directory for the package")
 
 
-def _prefix(args: argparse.Namespace) -> Outcome:
+def _prefix(args: argparse.Namespace) -> ExitCode:
     prefix = _prefix_or_error(args.package_name)
     print(prefix / "share" / args.package_name if args.share else prefix)
     return None
@@ -37,7 +37,7 @@ def _executables_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--full-path", action="store_true", help="Show the full path of the executables")
 
 
-def _executables(args: argparse.Namespace) -> Outcome:
+def _executables(args: argparse.Namespace) -> ExitCode:
     names = [args.package_name] if args.package_name else packages.package_names()
     for name in names:
         for path in packages.executables_of(name):
@@ -50,7 +50,7 @@ def _xml_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-t", "--tag", help="The XML tag to output, e.g. 'version'")
 
 
-def _xml(args: argparse.Namespace) -> Outcome:
+def _xml(args: argparse.Namespace) -> ExitCode:
     path = _prefix_or_error(args.package_name) / "share" / args.package_name / "package.xml"
     if not path.is_file():
         return f"Could not find the package.xml of '{args.package_name}', expected at {path}"

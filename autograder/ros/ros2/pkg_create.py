@@ -14,7 +14,7 @@ from pathlib import Path
 
 from autograder.ros.ros2 import pkg_templates as templates
 from autograder.ros.ros2.exceptions import NotCoveredError, Ros2Error
-from autograder.ros.ros2.parsing import Outcome
+from autograder.ros.ros2.parsing import ExitCode
 from autograder.ros.ros2.pkg_templates import LICENCE_TEXTS, PackageSpec
 
 MANIFEST, LICENCE = "package.xml", "LICENSE"
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--library-name", help="name of the empty library")
 
 
-def run(args: argparse.Namespace) -> Outcome:
+def run(args: argparse.Namespace) -> ExitCode:
     """Write a new package below the destination directory."""
     if args.license == "?":
         print("Supported licenses:", *LICENCE_TEXTS, sep="\n")

@@ -7,7 +7,7 @@ import time
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import add_values, filled, given_values
-from autograder.ros.ros2.parsing import Outcome, Verb, positive_float
+from autograder.ros.ros2.parsing import ExitCode, Verb, positive_float
 from autograder.ros.ros2.session import NAMED_QUIET, add_session_arguments, open_session
 
 
@@ -20,7 +20,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     _hidden_argument(parser)
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         services = graph.service_names_and_types(session, include_hidden=args.include_hidden_services)
@@ -38,7 +38,7 @@ def _type_arguments(parser: argparse.ArgumentParser) -> None:
     _hidden_argument(parser)
 
 
-def _type(args: argparse.Namespace) -> Outcome:
+def _type(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         types = graph.types_of_service(session, args.service_name)
     for name in types:
@@ -51,7 +51,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("service_name", help="Name of the ROS service to get info (e.g. '/talker/list_parameters')")
 
 
-def _info(args: argparse.Namespace) -> Outcome:
+def _info(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         types = graph.types_of_service(session, args.service_name)
         if not types:
@@ -72,7 +72,7 @@ def _find_arguments(parser: argparse.ArgumentParser) -> None:
     _hidden_argument(parser)
 
 
-def _find(args: argparse.Namespace) -> Outcome:
+def _find(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         services = graph.service_names_and_types(session, include_hidden=args.include_hidden_services)
@@ -97,7 +97,7 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _call(args: argparse.Namespace) -> Outcome:
+def _call(args: argparse.Namespace) -> ExitCode:
     service_class = graph.load_class(args.service_type, "srv")
     request, _ = filled(service_class.Request, given_values(args, "values"), "field", stamps=False)
     with open_session(args) as session:

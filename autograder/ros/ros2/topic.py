@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from autograder.ros.ros2 import graph, topic_echo, topic_pub, topic_rate
-from autograder.ros.ros2.parsing import Outcome, Verb
+from autograder.ros.ros2.parsing import ExitCode, Verb
 from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
 
 
@@ -24,7 +24,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _list(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         topics = graph.topic_names_and_types(session, include_hidden=args.include_hidden_topics)
@@ -62,7 +62,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _info(args: argparse.Namespace) -> Outcome:
+def _info(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         types = graph.types_of_topic(session, args.topic_name)
         if not types:
@@ -88,7 +88,7 @@ def _type_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
 
 
-def _type(args: argparse.Namespace) -> Outcome:
+def _type(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         types = graph.types_of_topic(session, args.topic_name)
         for name in types:
@@ -105,7 +105,7 @@ def _find_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
 
 
-def _find(args: argparse.Namespace) -> Outcome:
+def _find(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
         session.settle()
         topics = graph.topic_names_and_types(session, include_hidden=args.include_hidden_topics)

@@ -11,7 +11,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.parsing import Outcome, positive_float, unsigned_int
+from autograder.ros.ros2.parsing import ExitCode, positive_float, unsigned_int
 from autograder.ros.ros2.qos import add_qos_arguments, profile_to_listen_with
 from autograder.ros.ros2.session import add_session_arguments, open_session
 
@@ -60,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-i", "--include-message-info", action="store_true", help="Show the associated message info")
 
 
-def run(args: argparse.Namespace) -> Outcome:
+def run(args: argparse.Namespace) -> ExitCode:
     """Print the messages of a topic until interrupted (or `--once`, `--timeout`)."""
     fields = _fields(args.field)
     accept = message_filter(args.filter_expr)

@@ -13,7 +13,7 @@ from rclpy.publisher import Publisher
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.filling import add_values, filled, given_values
-from autograder.ros.ros2.parsing import Outcome, positive_float, unsigned_int
+from autograder.ros.ros2.parsing import ExitCode, positive_float, unsigned_int
 from autograder.ros.ros2.qos import add_qos_arguments, chosen_profile
 from autograder.ros.ros2.session import Session, add_session_arguments, open_session
 
@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
 
 
-def run(args: argparse.Namespace) -> Outcome:
+def run(args: argparse.Namespace) -> ExitCode:
     """Publish a message at a rate, until interrupted or as often as asked."""
     times = 1 if args.once else args.times
     wanted = args.wait_matching_subscriptions

@@ -14,7 +14,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import qos_profile_sensor_data
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.parsing import Outcome, positive_int
+from autograder.ros.ros2.parsing import ExitCode, positive_int
 from autograder.ros.ros2.session import add_session_arguments, open_session
 from autograder.ros.ros2.topic_echo import message_filter
 
@@ -101,7 +101,7 @@ def hz_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
 
 
-def hz(args: argparse.Namespace) -> Outcome:
+def hz(args: argparse.Namespace) -> ExitCode:
     """Print the rate of a topic's messages once a second, until interrupted."""
     accept = message_filter(args.filter_expr)
     arrivals: deque[int] = deque(maxlen=args.window + 1)
@@ -137,7 +137,7 @@ def bw_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
 
 
-def bw(args: argparse.Namespace) -> Outcome:
+def bw(args: argparse.Namespace) -> ExitCode:
     """Print the bandwidth of a topic once a second, until interrupted."""
     arrivals: deque[tuple[int, int]] = deque(maxlen=args.window)
 
@@ -158,7 +158,7 @@ def _measure(
     start: Callable[[Clock], tuple[Callable[[Any], None], Callable[[], object]]],
     *,
     raw: bool,
-) -> Outcome:
+) -> ExitCode:
     """Subscribe once the topic is there, and print what the measurement reports once a second."""
     with open_session(args) as session:
         message_class = graph.message_class_of(session, topic, blocking=True)

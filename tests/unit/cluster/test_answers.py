@@ -18,7 +18,7 @@ from autograder.cluster.accept import accept, give_up
 from autograder.cluster.exceptions import AnswerError, ClusterError
 from autograder.cluster.parcel import MAX_ANSWER, Answer, Parcel
 from autograder.exceptions import StudentError
-from autograder.grading.batch import Request
+from autograder.grading.batch import GradingRequest
 from autograder.grading.pipeline import refused
 from autograder.intake import SubmittedFile, read_submission
 from autograder.result import Artifact, CheckResult, Result, Status
@@ -29,8 +29,8 @@ SHA256 = "a" * 64
 
 
 @pytest.fixture
-def request_(tmp_path: Path) -> Request:
-    return Request("Zoë", tmp_path / "submission", CHAPTER, 7, Tier.BUBBLEWRAP, tmp_path / "out")
+def request_(tmp_path: Path) -> GradingRequest:
+    return GradingRequest("Zoë", tmp_path / "submission", CHAPTER, 7, Tier.BUBBLEWRAP, tmp_path / "out")
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_a_parcel_writes_no_file_outside_its_folder(name: str) -> None:
         Parcel.unpack(data)
 
 
-def test_an_answer_is_stored_under_the_student_s_name(request_: Request, result: Result) -> None:
+def test_an_answer_is_stored_under_the_student_s_name(request_: GradingRequest, result: Result) -> None:
     told = with_run(result, "turns.run.json")
     taken = accept(answer(told, **{"turns.png": png(), "turns.run.json": b"{}"}), request_, SHA256)
     assert taken == replace(told, student="Zoë")
@@ -145,14 +145,14 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
     }
 
 
-def test_a_hostile_answer_is_refused_and_writes_nothing(request_: Request, result: Result) -> None:
+def test_a_hostile_answer_is_refused_and_writes_nothing(request_: GradingRequest, result: Result) -> None:
     for name, (data, why) in hostile(result).items():
         with pytest.raises(AnswerError, match=why):
             pytest.fail(f"{name}: {accept(data, request_, SHA256)}")
         assert not request_.out.exists(), name
 
 
-def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(request_: Request) -> None:
+def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(request_: GradingRequest) -> None:
     given_up = give_up(request_, "The 2 workers that had this submission died.", "KilledWorker\n")
     assert given_up.status is Status.NOT_GRADED
     assert given_up.diagnosis.sentence.startswith("The 2 workers that had this submission died. This is no zero")

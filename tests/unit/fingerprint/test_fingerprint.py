@@ -108,7 +108,7 @@ def test_the_version_of_a_suite_is_the_digest_of_all_files_that_it_reads() -> No
 def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     code = (
         "import json, sys\n"
-        "import autograder.grading.worker, autograder.grading.extract, autograder.building.interface_bundle\n"
+        "import autograder.grading.worker, autograder.grading.run_notebook, autograder.building.interface_bundle\n"
         "from autograder.checks import suites\n"
         "[suites.hidden(name) for name in suites.graded()]\n"
         "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"

@@ -1,4 +1,4 @@
-"""A gallery keeps the pictures of checks with their fingerprints. A closed gallery keeps none."""
+"""A gallery keeps the pictures of checks with their fingerprints. A disabled gallery keeps none."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_a_picture_is_saved_under_the_check_with_the_fingerprint_of_the_run(tmp_
 
 
 def test_a_closed_gallery_writes_no_picture(tmp_path: Path) -> None:
-    gallery = Gallery(tmp_path / "out", closed=True)
+    gallery = Gallery(tmp_path / "out", disabled=True)
     gallery.of("touches_nothing").track("track", RECORDING, "The robot drives on.")
     assert gallery.artifacts == []
     assert not (tmp_path / "out").exists()

@@ -68,9 +68,9 @@ def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
     """
     assert list(grade(text).results) == ["right", "wrong", "later"]
     plugin = grade(text, Scope(first_loss=True))
-    assert (list(plugin.results), plugin.enough, plugin.failures) == (["right", "wrong"], True, [])
+    assert (list(plugin.results), plugin.is_finished, plugin.failures) == (["right", "wrong"], True, [])
     plugin = grade(text, Scope(only=("right", "later"), first_loss=True))
-    assert (list(plugin.results), plugin.enough) == (["right", "later"], False)
+    assert (list(plugin.results), plugin.is_finished) == (["right", "later"], False)
 
 
 def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(grade: Grade) -> None:

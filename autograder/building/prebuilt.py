@@ -1,4 +1,4 @@
-"""Takes a built workspace in place of a build, for sources that differ from it only in files that colcon copies.
+"""Copies a built workspace in place of a build, for sources that differ from it only in files that colcon copies.
 
 The proof grades thousands of versions of the reference, and to build each would take longer than to grade it.
 """
@@ -8,14 +8,14 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from autograder.building.build import Observed
+from autograder.building.build import BuildOutcome
 from autograder.building.interface_bundle import relocate
 from autograder.diagnosis import OK
 from autograder.result import Build
 from autograder.workspace import Workspace
 
 
-def take_built(built: Path, workspace: Workspace, packages: tuple[str, ...]) -> Observed:
+def copy_prebuilt(built: Path, workspace: Workspace, packages: tuple[str, ...]) -> BuildOutcome:
     """Copy the folders `install` and `build` of a built workspace, and put the files of `src` that differ into them.
 
     An installed file that has the name and the text of a file in `built`/src is a copy of it. Where `built` has no
@@ -35,4 +35,4 @@ def take_built(built: Path, workspace: Workspace, packages: tuple[str, ...]) -> 
                     copy.write_bytes(text)
                     for compiled in copy.parent.glob(f"__pycache__/{path.stem}.*"):
                         compiled.unlink()
-    return Observed(Build(True, 0.0, packages), dict.fromkeys(packages, OK))
+    return BuildOutcome(Build(True, 0.0, packages), dict.fromkeys(packages, OK))
