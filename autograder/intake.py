@@ -21,10 +21,10 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError, UsageError
 
 MAX_FILES = 2000
-MAX_FILE = 16 * 1024 * 1024  # bytes
-MAX_TOTAL = 64 * 1024 * 1024  # bytes
+MAX_FILE_BYTES = 16 * 1024 * 1024
+MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_DEPTH = 16  # parts of a path
-MAX_NAME = 200  # bytes of a path; file systems allow 255 for each part
+MAX_PATH_BYTES = 200  # file systems allow 255 for each part
 IGNORED = frozenset(
     {"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".git", ".pytest_cache", "__MACOSX"}
 )
@@ -180,23 +180,23 @@ def _require_tree(entries: list[SubmittedFile]) -> None:
 
 
 class _Budget:
-    """Counts bytes before they are read, so that no more than `MAX_TOTAL` are ever in memory."""
+    """Counts bytes before they are read, so that no more than `MAX_TOTAL_BYTES` are ever in memory."""
 
     def __init__(self) -> None:
-        self._left = MAX_TOTAL
+        self._left = MAX_TOTAL_BYTES
 
     def read(
         self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False
     ) -> SubmittedFile:
         if len(path.parts) > MAX_DEPTH:
             raise _unsafe(f"folders are nested more than {MAX_DEPTH} deep")
-        if len(os.fsencode(path)) > MAX_NAME:
-            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_NAME} bytes")
-        if size > MAX_FILE:
-            raise _unsafe(f"{path} is larger than {MAX_FILE // 2**20} MiB")
+        if len(os.fsencode(path)) > MAX_PATH_BYTES:
+            raise _unsafe(f"the name {str(path)[:60]!r}... is longer than {MAX_PATH_BYTES} bytes")
+        if size > MAX_FILE_BYTES:
+            raise _unsafe(f"{path} is larger than {MAX_FILE_BYTES // 2**20} MiB")
         self._left -= size
         if self._left < 0:
-            raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB in all")
+            raise _unsafe(f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB in all")
         return SubmittedFile(path, read(), executable)
 
 
@@ -231,8 +231,8 @@ def _walk(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
 
 
 def _from_zip(path: Path, budget: _Budget) -> list[SubmittedFile]:
-    if path.stat().st_size > MAX_TOTAL:
-        raise _unsafe(f"it is larger than {MAX_TOTAL // 2**20} MiB")
+    if path.stat().st_size > MAX_TOTAL_BYTES:
+        raise _unsafe(f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB")
     try:
         with zipfile.ZipFile(path) as archive:
             infos = archive.infolist()

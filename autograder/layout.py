@@ -31,8 +31,8 @@ import yaml
 from autograder.exceptions import UsageError
 
 ROOT = Path(__file__).resolve().parent.parent  # of the autograder and the simulator
-FILE = "course.yaml"
-VARIABLE = "AUTOGRADER_COURSE"
+COURSE_FILE = "course.yaml"
+COURSE_VARIABLE = "AUTOGRADER_COURSE"
 SHARED_WORLDS = ROOT / "assets" / "worlds"  # those that come with the simulator
 # Ignores the files that tools create in a working folder; for `shutil.copytree`.
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
@@ -57,12 +57,12 @@ class Course:
     @classmethod
     def read(cls, root: Path) -> Course:
         """Read the course in a folder. Raises UsageError if there is none, or its file is wrong."""
-        path = root / FILE
+        path = root / COURSE_FILE
         try:
             data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
             found = cls(root, **{**data, "released": tuple(data.get("released", ()))})
         except OSError:
-            raise UsageError(f"{root} is no course: it has no {FILE}; --course names another folder") from None
+            raise UsageError(f"{root} is no course: it has no {COURSE_FILE}; --course names another folder") from None
         except (yaml.YAMLError, AttributeError, TypeError) as error:
             lines = ", ".join(field.name for field in fields(cls)[1:])
             raise UsageError(f"{path}: {error}; the lines of this file are {lines}") from None
@@ -84,18 +84,18 @@ class Course:
     def parts(self) -> tuple[str, ...]:
         """The paths of what the course is made of, whether it has all of it or not."""
         named = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
-        return (FILE, *named, *self.released)
+        return (COURSE_FILE, *named, *self.released)
 
 
 def _chosen() -> Path:
     """Return the folder of the course; around the working folder, where the autograder alone was installed."""
-    around = (folder for folder in (ROOT, Path.cwd(), *Path.cwd().parents) if (folder / FILE).is_file())
-    return Path(os.environ.get(VARIABLE) or next(around, ROOT)).resolve()
+    around = (folder for folder in (ROOT, Path.cwd(), *Path.cwd().parents) if (folder / COURSE_FILE).is_file())
+    return Path(os.environ.get(COURSE_VARIABLE) or next(around, ROOT)).resolve()
 
 
 COURSE = Course.read(_chosen())
 if COURSE.root != ROOT:
-    os.environ[VARIABLE] = str(COURSE.root)  # what is started from here may have another working folder
+    os.environ[COURSE_VARIABLE] = str(COURSE.root)  # what is started from here may have another working folder
 CHAPTERS = COURSE.root / COURSE.chapters
 SOLUTIONS = COURSE.root / COURSE.solutions
 CHECKS = COURSE.root / COURSE.checks

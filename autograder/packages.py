@@ -12,7 +12,7 @@ DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buil
 
 
 @dataclass(frozen=True)
-class PackageTexts:
+class PackageSummary:
     """The name, dependencies and groups in a package.xml. `probes.manifest` validates, this does not."""
 
     name: str
@@ -20,10 +20,10 @@ class PackageTexts:
     groups: frozenset[str]
 
 
-def read_texts(manifest: Path) -> PackageTexts:
-    """Read a package.xml of at most `MAX_MANIFEST` bytes; an `ElementTree.ParseError` if it is not well-formed."""
+def read_summary(manifest: Path) -> PackageSummary:
+    """Read a package.xml; an `ElementTree.ParseError` if it is not well-formed."""
     root = ET.fromstring(manifest.read_bytes())
-    return PackageTexts(
+    return PackageSummary(
         name=root.findtext("name", "").strip(),
         depends=tuple(each.text.strip() for tag in DEPENDS for each in root.iter(tag) if each.text),
         groups=frozenset((each.text or "").strip() for each in root.iter("member_of_group")),
@@ -43,7 +43,7 @@ def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
             broken[manifest.parent] = f"src/{where} is larger than {MAX_MANIFEST // 1024} KiB: shorten it."
             continue
         try:
-            found[read_texts(manifest).name] = manifest.parent
+            found[read_summary(manifest).name] = manifest.parent
         except ET.ParseError as error:
             sentence = f"src/{where} is not well-formed XML ({error}): correct that line for colcon."
             broken[manifest.parent] = sentence

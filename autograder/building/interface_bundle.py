@@ -19,7 +19,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import Cache
 from autograder.interfaces.prefix import identity
-from autograder.packages import MANIFEST, read_texts
+from autograder.packages import MANIFEST, read_summary
 from autograder.workspace import Workspace
 
 GROUP = "rosidl_interface_packages"
@@ -91,9 +91,9 @@ def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:
         name = pending.pop()
         if name not in seen:
             seen.add(name)
-            pending += [other for other in read_texts(found[name] / MANIFEST).depends if other in found]
+            pending += [other for other in read_summary(found[name] / MANIFEST).depends if other in found]
     return seen
 
 
 def _is_interface(folder: Path) -> bool:
-    return GROUP in read_texts(folder / MANIFEST).groups and (folder / "CMakeLists.txt").is_file()
+    return GROUP in read_summary(folder / MANIFEST).groups and (folder / "CMakeLists.txt").is_file()

@@ -14,10 +14,10 @@ from typing import Any
 import msgpack
 
 from autograder.cluster.exceptions import AnswerError, ClusterError
-from autograder.intake import MAX_FILES, MAX_TOTAL, SubmittedFile
+from autograder.intake import MAX_FILES, MAX_TOTAL_BYTES, SubmittedFile
 from autograder.sandbox import Tier
 
-MAX_PARCEL = MAX_TOTAL + MAX_FILES * 512  # bytes: the files of a submission, and their names
+MAX_PARCEL = MAX_TOTAL_BYTES + MAX_FILES * 512  # bytes: the files of a submission, and their names
 MAX_ANSWER = 64 * 1024 * 1024  # bytes
 MAX_ANSWER_FILES = 200
 

@@ -45,7 +45,7 @@ def write_bundle(out: Path, names: tuple[str, ...] = (), newest: str = "") -> li
         bundle = Path(scratch) / out.name
         copy_tool(COPIED, bundle)
         _withhold(bundle)
-        copy_course((layout.FILE, layout.COURSE.worlds, *layout.COURSE.released), bundle)
+        copy_course((layout.COURSE_FILE, layout.COURSE.worlds, *layout.COURSE.released), bundle)
         checks = [path for path in layout.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
         copy_course((str(path.relative_to(layout.COURSE.root)) for path in checks), bundle)
         for chapter in chosen:

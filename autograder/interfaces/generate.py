@@ -19,7 +19,7 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from autograder.interfaces import compile as compiling
-from autograder.packages import read_texts
+from autograder.packages import read_summary
 from autograder.ros.environment import site_packages
 
 C_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
@@ -55,7 +55,7 @@ def closure(prefixes: tuple[Path, ...], packages: list[str]) -> tuple[str, ...]:
         if name in found or share is None or not any((share / kind).is_dir() for kind in ("msg", "srv", "action")):
             continue
         found.add(name)
-        pending += read_texts(share / "package.xml").depends
+        pending += read_summary(share / "package.xml").depends
     return tuple(sorted(found))
 
 

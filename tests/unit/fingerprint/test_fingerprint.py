@@ -57,7 +57,7 @@ LINES = "name: few\ntitle: A course with few files\nchecks: autograder/checks\nw
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course with few files."""
-    for name, text in {**READ, layout.FILE: LINES}.items():
+    for name, text in {**READ, layout.COURSE_FILE: LINES}.items():
         _write(tmp_path / name, text)
     monkeypatch.setattr(layout, "ROOT", tmp_path)
     monkeypatch.setattr(layout, "COURSE", Course.read(tmp_path))
@@ -76,7 +76,7 @@ def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
     course: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = course / "other"
-    _write(other / layout.FILE, "name: other\ntitle: Another\n")
+    _write(other / layout.COURSE_FILE, "name: other\ntitle: Another\n")
     _write(other / "checks/ch02_nodes/hidden/graph.py", "")
     monkeypatch.setattr(layout, "COURSE", Course.read(other))
     read = {str(path.relative_to(course)) for path in files(CHAPTER)}

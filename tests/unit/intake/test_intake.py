@@ -188,7 +188,7 @@ def test_links_and_pipes_in_a_folder_are_refused(tmp_path: Path, make: Callable[
 def test_too_many_too_deep_and_too_long_are_refused(tmp_path: Path) -> None:
     many = {f"src/pkg/{n}": b"" for n in range(intake.MAX_FILES + 1)}
     deep = {"src/" + "d/" * intake.MAX_DEPTH + "x": b""}
-    long = {"src/" + "漢" * (intake.MAX_NAME // 3): b""}  # 3 bytes each
+    long = {"src/" + "漢" * (intake.MAX_PATH_BYTES // 3): b""}  # 3 bytes each
     for files, why in ((many, "more than 2000 files"), (deep, "nested more than 16 deep"), (long, "longer than 200")):
         kind, sentence = _refused(_zip(tmp_path / "a.zip", files))
         assert kind is Kind.UNSAFE_ARCHIVE
@@ -205,7 +205,7 @@ def test_folders_nested_without_a_file_are_refused_too(tmp_path: Path) -> None:
 def test_a_file_that_is_too_large_is_never_read(tmp_path: Path) -> None:
     root = _write(tmp_path / "bob", TREE)
     with (root / "ws/src/huge").open("wb") as stream:
-        stream.truncate(intake.MAX_FILE + 1)  # sparse: no byte of it is on the disk
+        stream.truncate(intake.MAX_FILE_BYTES + 1)  # sparse: no byte of it is on the disk
     assert "ws/src/huge is larger than 16 MiB" in _refused(root)[1]
 
 
@@ -213,12 +213,12 @@ def test_files_that_are_too_large_together_are_refused(tmp_path: Path) -> None:
     root = _write(tmp_path / "bob", TREE)
     for number in range(5):
         with (root / f"ws/src/{number}").open("wb") as stream:
-            stream.truncate(intake.MAX_FILE)
+            stream.truncate(intake.MAX_FILE_BYTES)
     assert "larger than 64 MiB in all" in _refused(root)[1]
 
 
 def test_a_zip_bomb_is_refused_by_the_size_that_it_states(tmp_path: Path) -> None:
-    bomb = _zip(tmp_path / "a.zip", {"ws/src/bomb": b"\0" * (intake.MAX_FILE + 1)})
+    bomb = _zip(tmp_path / "a.zip", {"ws/src/bomb": b"\0" * (intake.MAX_FILE_BYTES + 1)})
     assert bomb.stat().st_size < 100_000
     assert "ws/src/bomb is larger than 16 MiB" in _refused(bomb)[1]
 

@@ -14,7 +14,7 @@ LINES = "name: small\ntitle: A small course\n"
 
 
 def course(folder: Path, lines: str) -> Course:
-    (folder / layout.FILE).write_text(lines)
+    (folder / layout.COURSE_FILE).write_text(lines)
     return Course.read(folder)
 
 
@@ -27,7 +27,7 @@ def test_a_course_needs_a_name_and_a_title_and_all_else_has_a_default(tmp_path: 
 def test_a_course_file_names_the_folders_and_the_files_that_students_get(tmp_path: Path) -> None:
     small = course(tmp_path, LINES + "checks: suites\nreleased: [chapters/commands.md]\n")
     assert small.checks == "suites"
-    assert {"suites", "chapters/commands.md", layout.FILE} <= set(small.parts)
+    assert {"suites", "chapters/commands.md", layout.COURSE_FILE} <= set(small.parts)
 
 
 @pytest.mark.parametrize(
@@ -64,11 +64,11 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
     inside = tmp_path / "chapters" / "01_first"
     inside.mkdir(parents=True)
     monkeypatch.chdir(inside)
-    monkeypatch.delenv(layout.VARIABLE, raising=False)
+    monkeypatch.delenv(layout.COURSE_VARIABLE, raising=False)
     assert layout._chosen() == layout.ROOT  # the one around the autograder comes first
     monkeypatch.setattr(layout, "ROOT", tmp_path / "site-packages")
     assert layout._chosen() == tmp_path
-    monkeypatch.setenv(layout.VARIABLE, str(inside))
+    monkeypatch.setenv(layout.COURSE_VARIABLE, str(inside))
     assert layout._chosen() == inside
 
 
