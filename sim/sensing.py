@@ -51,7 +51,7 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
     body = simulation.scene.bodies[index]
     distances = _ranges(simulation, source, index, lidar, body)
     noise = normal(words(body.range_key, source.tick, lidar.beams)) if lidar.noise > 0.0 else NOTHING
-    ranges, intensities = simulation.scene.engine.finish(
+    ranges, intensities = simulation.scene.engine.to_readings(
         distances, noise, lidar.noise, lidar.range_min, lidar.range_max, lidar.intensities
     )
     if lidar.dropout > 0.0 or faults.sectors:

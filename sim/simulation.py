@@ -153,14 +153,14 @@ def _coast(
 ) -> None:
     body, vector = run.body, run.vector
     command, command_ns = run.order
-    coast = simulation.scene.engine.coast
+    advance_free = simulation.scene.engine.advance_free
     dt = tick_ns / 1e9
     obeyed = min(max(-((time_ns - command_ns - body.watchdog_ns) // tick_ns), 0), ticks)
     if obeyed:
-        coast(vector, command.linear, command.angular, obeyed, dt, body.limits, body.drift, noise)
+        advance_free(vector, command.linear, command.angular, obeyed, dt, body.limits, body.drift, noise)
     if obeyed < ticks:
         _tell_watchdog(run, time_ns + obeyed * tick_ns, tick_ns, events)
-        coast(vector, 0.0, 0.0, ticks - obeyed, dt, body.limits, body.drift, noise[obeyed:])
+        advance_free(vector, 0.0, 0.0, ticks - obeyed, dt, body.limits, body.drift, noise[obeyed:])
     run.collided = False
 
 
@@ -173,7 +173,7 @@ def _push(
         _tell_watchdog(run, time_ns, tick_ns, events)
         command = REST
     touch = np.zeros(6)
-    hit = simulation.scene.engine.push(
+    hit = simulation.scene.engine.advance_in_contact(
         run.vector,
         command.linear,
         command.angular,

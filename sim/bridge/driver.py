@@ -1,4 +1,4 @@
-"""A run that messages are made of: which commands go in, and what is due to be sent after each tick. No ROS in here."""
+"""Steps a simulation for the ROS node, and says what is due to be sent after each tick. It imports no ROS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who computes: the array engine (numpy) or the compiled one (numba), chosen by name, with the same bits from both.
+"""Selects the engine by its name: arrays (numpy) or compiled (numba), with the same bits from both.
 
 What is guaranteed: the same simulation and the same commands give the same states (float64) and the same scans
 (float32), bit for bit, from either engine, in any order of calls, on any processor with IEEE 754 doubles. Between a
@@ -17,7 +17,7 @@ EngineName = Literal["numpy", "numba", "auto"]
 
 
 def engine(name: EngineName) -> Any:
-    """Return the module that computes. Raises EngineError for a name that is unknown or not installed.
+    """Return the module of an engine. Raises EngineError for a name that is unknown or not installed.
 
     numba is imported here and nowhere else: neither `import sim` nor the array engine needs it.
     """

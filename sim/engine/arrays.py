@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.engine import motion
-from sim.engine.exact import DOUBT
+from sim.engine.exact import ERROR_BOUND
 from sim.engine.loops import SMALL, wall_into
-from sim.engine.motion import push
+from sim.engine.motion import advance_in_contact
 from sim.engine.pairs import LIMIT, NOTHING, TANGENT, TOUCHING, circle_inverse, wall_hit
 from sim.engine.readings import STRENGTH
 from sim.engine.shapes import FAR, gap
@@ -25,12 +25,12 @@ from sim.engine.trig import TAU, sincos
 Floats = NDArray[np.float64]
 Float32s = NDArray[np.float32]
 
-__all__ = ["coast", "fan", "finish", "gap", "nearest", "push", "rays"]
+__all__ = ["advance_free", "advance_in_contact", "fan", "gap", "nearest", "rays", "to_readings"]
 
 # How far, in radians, numpy's arctan2 and the arithmetic after it may be off, with a wide margin.
 BEARING_ERROR = 1e-12
 # Above so many walls it pays to leave out first those that are out of reach.
-WORTH_A_LOOK = 200
+MIN_WALLS_TO_FILTER = 200
 # A run of beams is looked for where it begins, and a turn earlier too, as it may go on past the end of a turn.
 LAPS = np.array(((0.0,), (1.0,)))
 
@@ -55,7 +55,7 @@ def fan(
     dy += x
     best = np.empty(table.shape[1])
     best.fill(NOTHING)
-    if walls.shape[1] > WORTH_A_LOOK:
+    if walls.shape[1] > MIN_WALLS_TO_FILTER:
         x1, x2, y1, y2 = walls[:4]
         beside = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
         beside |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
@@ -183,13 +183,13 @@ def _rays_into(best: Floats, walls: Floats, origins: Floats, directions: Floats)
     vx, vy = x1 - ox, y1 - oy
     one, two = dx * vy, dy * vx
     before = one - two
-    unsure = np.abs(before) <= DOUBT * (np.abs(one) + np.abs(two))
+    unsure = np.abs(before) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
     one, two = dx * (y2 - oy), dy * (x2 - ox)
     after = one - two
-    unsure |= np.abs(after) <= DOUBT * (np.abs(one) + np.abs(two))
+    unsure |= np.abs(after) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
     one, two = vx * ey, vy * ex
     h = one - two
-    unsure |= np.abs(h) <= 2.0 * DOUBT * (np.abs(one) + np.abs(two))
+    unsure |= np.abs(h) <= 2.0 * ERROR_BOUND * (np.abs(one) + np.abs(two))
     hit = ((before > 0.0) != (after > 0.0)) & ((h > 0.0) == (after > 0.0)) & ~unsure
     inverse = dx * (ey / (h + NOTHING)) - dy * (ex / (h + NOTHING))
     m = np.abs(vx) + np.abs(vy)
@@ -217,10 +217,10 @@ def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
     return best
 
 
-def finish(
+def to_readings(
     ranges: Floats, noise: Floats, sigma: float, range_min: float, range_max: float, strengths: bool
 ) -> tuple[Float32s, Float32s]:
-    """Turn distances into float32 ranges and intensities: see `readings.finish`."""
+    """Turn distances into float32 ranges and intensities: see `readings.to_readings`."""
     far = ranges > range_max
     if len(noise):
         ranges = ranges + sigma * noise
@@ -236,10 +236,10 @@ def finish(
     return result, returns
 
 
-def coast(
+def advance_free(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
-    """Advance a robot where nothing is in its way: `motion.coast` on lists, which Python reads faster than arrays."""
+    """Do `motion.advance_free` on lists, which Python reads faster than arrays."""
     numbers: Any = robot.tolist()
-    motion.coast(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
+    motion.advance_free(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
     robot[:] = numbers

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 SPLITTER = 134217729.0  # 2**27 + 1
 # A determinant of two products of rounded differences is off by less than (3 + 16 eps) eps times the sum of the
 # products' sizes, eps = 2**-53 (Shewchuk's ccwerrboundA); one more eps allows for a rounded edge vector.
-DOUBT = 8.9e-16
+ERROR_BOUND = 8.9e-16
 
 
 def two_sum(a: float, b: float) -> tuple[float, float]:
@@ -74,7 +74,7 @@ def side(dx: float, dy: float, ox: float, oy: float, px: float, py: float) -> in
     left = dx * (py - oy)
     right = dy * (px - ox)
     determinant = left - right
-    doubt = DOUBT * (abs(left) + abs(right))
+    doubt = ERROR_BOUND * (abs(left) + abs(right))
     if determinant > doubt:
         return 1
     if determinant < -doubt:

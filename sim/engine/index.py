@@ -12,7 +12,7 @@ from sim.engine.traverse import MARGIN
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-WORTH_A_GRID = 300
+MIN_WALLS_FOR_GRID = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.engine.exact import DOUBT, orientation, side
+from sim.engine.exact import ERROR_BOUND, orientation, side
 from sim.engine.pairs import LIMIT, NOTHING, TOUCHING, circle_inverse, wall_inverse
 from sim.engine.trig import PI, TAU, sincos
 
@@ -67,7 +67,7 @@ def wall_into(
     right = vy * ex
     h = left - right
     turn = 1 if h > 0.0 else -1
-    if abs(h) <= 2.0 * DOUBT * (abs(left) + abs(right)):
+    if abs(h) <= 2.0 * ERROR_BOUND * (abs(left) + abs(right)):
         turn = orientation(ox, oy, px, py, qx, qy)
     if turn == 0 and vx * wx + vy * wy <= 0.0:
         best[:] = TOUCHING  # the sensor stands on the wall

@@ -74,7 +74,7 @@ def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats)
         robot[13] = tt + r
 
 
-def coast(
+def advance_free(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
     """Advance `robot` by `ticks` ticks of `dt` seconds towards the speeds v and w, where nothing is in its way.
@@ -134,7 +134,7 @@ def sweep(
     return 1.0
 
 
-def push(
+def advance_in_contact(
     robot: Floats,
     v: float,
     w: float,

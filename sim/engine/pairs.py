@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from sim.engine.exact import DOUBT, circle_distance, line_distance, orientation, side
+from sim.engine.exact import ERROR_BOUND, circle_distance, line_distance, orientation, side
 
 LIMIT = 1000.0
 TANGENT = 1e-6
@@ -89,7 +89,7 @@ def wall_hit(
     right = vy * ex
     h = left - right
     turn = 1 if h > 0.0 else -1
-    if abs(h) <= 2.0 * DOUBT * (abs(left) + abs(right)):
+    if abs(h) <= 2.0 * ERROR_BOUND * (abs(left) + abs(right)):
         turn = orientation(ox, oy, px, py, qx, qy)
     if turn == 0:
         if vx * (qx - ox) + vy * (qy - oy) <= 0.0:

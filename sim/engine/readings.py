@@ -14,7 +14,7 @@ Float32s = NDArray[np.float32]
 STRENGTH = 1000.0
 
 
-def finish(
+def to_readings(
     ranges: Floats, noise: Floats, sigma: float, range_min: float, range_max: float, strengths: bool
 ) -> tuple[Float32s, Float32s]:
     """Return the ranges and the intensities (beams,) of distances (beams,) in metres.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.engine.exact import DOUBT
+from sim.engine.exact import ERROR_BOUND
 from sim.engine.loops import circle_into
 from sim.engine.pairs import NOTHING, TOUCHING, circle_inverse, wall_hit, wall_inverse
 from sim.engine.trig import sincos
@@ -81,7 +81,7 @@ def walk(
     per_cell = 1.0 / cell
     column = min(max(int((x + enter * dx) * per_cell), 0), columns - 1)
     row = min(max(int((y + enter * dy) * per_cell), 0), rows - 1)
-    doubt = 4.0 * DOUBT * (abs(x) + abs(y) + wide + high)
+    doubt = 4.0 * ERROR_BOUND * (abs(x) + abs(y) + wide + high)
     right = 1 if dx > 0.0 else -1
     ahead = 1 if dy > 0.0 else -1
     across = (cell * (column + (right + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER

@@ -203,8 +203,8 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     robot = np.zeros(14)
     other = robot.copy()
     limits, drift, noise = np.array([1.0, 1.0, 9.0, 9.0]), np.zeros(3), np.zeros((4, 2))
-    motion.coast(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
-    arrays.coast(other, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    motion.advance_free(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    arrays.advance_free(other, 0.5, 0.3, 4, 0.02, limits, drift, noise)
     np.testing.assert_array_equal(robot, other)
 
 
