@@ -69,9 +69,9 @@ def drive(
     origin = harness.now_ns
     command: Command | None = None
     end = round(seconds * 1e9)
-    heard: dict[Process, int] = {}
-    if harness.seconds > 0.0:  # what was written before belongs to something else
-        _hear(harness, 0.0, Recorder(simulation, state), heard)
+    recorded: dict[Process, int] = {}
+    if harness.seconds > 0.0:  # what was written before is of another run
+        _record_output(harness, 0.0, Recorder(simulation, state), recorded)
     while state.time_ns < end and not until(state):
         target = min(state.time_ns + harness.tick_ns, end)
         state = _move(simulation, state, command, target, recorder)
@@ -79,18 +79,18 @@ def drive(
             _sense(harness, simulation, state, origin, recorder, alter_scan)
         before = len(harness.messages("/cmd_vel"))
         harness.step(target - (harness.now_ns - origin))
-        _hear(harness, target / 1e9, recorder, heard)
+        _record_output(harness, target / 1e9, recorder, recorded)
         fresh = harness.messages("/cmd_vel")[before:]
         command = _command(fresh[-1]) if fresh else None
     return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
 
 
-def _hear(harness: Harness, seconds: float, recorder: Recorder, heard: dict[Process, int]) -> None:
-    """Record the lines that the programs have ended since the last time; `heard` counts their bytes."""
+def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorded: dict[Process, int]) -> None:
+    """Record the lines that the programs have ended since the last time; `recorded` counts their bytes."""
     for process in harness.processes:
-        text = process.written(heard.get(process, 0))
+        text = process.written(recorded.get(process, 0))
         end = text.rfind(b"\n") + 1
-        heard[process] = heard.get(process, 0) + end
+        recorded[process] = recorded.get(process, 0) + end
         for line in clean(text[:end].decode("utf-8", errors="replace")).split("\n"):
             recorder.log.add(seconds, _LOGGED.sub(r"\1 ", line))
 

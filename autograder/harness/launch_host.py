@@ -18,8 +18,8 @@ from typing import NoReturn
 PR_SET_CHILD_SUBREAPER = 36
 
 
-def hold(child: int, descriptor: int) -> NoReturn:
-    """Tell the end of a child, and stay."""
+def report_exit(child: int, descriptor: int) -> NoReturn:
+    """Write the exit status of a child to a descriptor once it has ended, and wait to be killed."""
     _, status = os.waitpid(child, 0)
     os.write(descriptor, f"{os.waitstatus_to_exitcode(status)}\n".encode())
     while True:
@@ -27,13 +27,13 @@ def hold(child: int, descriptor: int) -> NoReturn:
 
 
 def main() -> None:
-    """Hold a child, or be it."""
+    """Run `ros2` in a child whose end is reported, or in this process."""
     descriptor = sys.argv.pop(1)
     if descriptor != "-":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
         child = os.fork()
         if child:
-            hold(child, int(descriptor))
+            report_exit(child, int(descriptor))
         os.close(int(descriptor))
     if fork_children := globals().get("fork_children"):  # given by `prefork`
         fork_children()

@@ -1,8 +1,7 @@
-"""Meeting others at once: a DDS participant that goes on announcing itself while it is young and after.
+"""Faster DDS discovery: a participant announces itself ten times a second.
 
 Fast DDS announces a participant five times in its first half second, and then every 3 s. Measured with the wheels, a
-participant that joins others is as often as not found only by the next of these: after 3 s, where 0.3 s would do. Who
-looks at a graph, or waits for nodes that start one after another, announces itself ten times a second instead.
+participant that joins others is as often as not found only by the next of these: after 3 s, where 0.3 s would do.
 """
 
 from __future__ import annotations

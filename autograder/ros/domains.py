@@ -1,4 +1,4 @@
-"""ROS domains of one's own: no two that ask here, on one machine, get the same.
+"""Claims a `ROS_DOMAIN_ID` that no other caller on this machine has.
 
 A claim is a socket of the operating system's: it ends with its process, however that ends, and reaches as far as a
 domain does on one machine, its network namespace. Programs that choose a domain without asking are not kept out.

@@ -1,4 +1,4 @@
-"""A call that comes through only the n-th time."""
+"""Calls a function at the n-th request."""
 
 from __future__ import annotations
 

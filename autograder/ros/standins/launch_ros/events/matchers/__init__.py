@@ -1,4 +1,4 @@
-"""Which node is meant."""
+"""Matchers that select a node by its name."""
 
 from __future__ import annotations
 
