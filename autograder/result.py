@@ -88,7 +88,7 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Build:
-    """The result of building the student's packages. `log` is the end of what colcon said of those that failed."""
+    """The result of building the student's packages. `log` is the end of colcon's output on those that failed."""
 
     ok: bool
     seconds: float

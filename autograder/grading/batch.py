@@ -157,7 +157,7 @@ def grade_all(
     first = {group[0].student: group for group in equal.values()}
     results: dict[str, Result] = {}
 
-    def book(result: Result) -> None:
+    def store(result: Result) -> None:
         graded, *others = first[result.student]
         for other in (result, *(request.stored() or request.store_copy(result, graded.out) for request in others)):
             results[other.student] = other
@@ -165,9 +165,9 @@ def grade_all(
 
     chosen = [group[0] for group in first.values()]
     if grade_each is not None:
-        grade_each(chosen, book)
+        grade_each(chosen, store)
     else:
-        map_parallel(lambda request: request.stored() or request.grade(), chosen, jobs=jobs, on_done=book)
+        map_parallel(lambda request: request.stored() or request.grade(), chosen, jobs=jobs, on_done=store)
     return tuple(results[entry.student] for entry in entries)
 
 

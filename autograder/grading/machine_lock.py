@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 
 class MachineLock:
-    """Who wants the machine alone waits until all others are done; whoever comes meanwhile waits as well."""
+    """A caller of `exclusive` waits until all others are done; callers that come after it wait for it."""
 
     def __init__(self) -> None:
         self._turn = threading.Lock()  # of those who come; one who waits for the machine alone holds it

@@ -34,7 +34,7 @@ ScanFilter = Callable[[Scan, float], Scan | None]
 
 @dataclass(frozen=True)
 class Drive:
-    """A robot's run with what the programs wrote in it, their messages on /cmd_vel, and all that they ever wrote."""
+    """A robot's run with the programs' log lines, their messages on /cmd_vel, and all their output."""
 
     recording: Recording
     commands: tuple[ReceivedMessage, ...]

@@ -16,7 +16,7 @@ from autograder.harness.grader_node import requested_qos
 
 @dataclass(frozen=True)
 class ReceivedMessage:
-    """A message of the student's program, and when it came, in s of ROS time since the program started."""
+    """A message of the student's program, and its arrival in s of ROS time since the program started."""
 
     seconds: float
     message: Any

@@ -54,15 +54,15 @@ class Stop:
     left: tuple[str, ...]
 
 
-def start(words: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
-    """Start `ros2 WORDS...`, the real one where there is one, else the stand-in.
+def start(arguments: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
+    """Start `ros2 ARGUMENTS...`, the real one where there is one, else the stand-in.
 
     Args:
-        words: the arguments.
+        arguments: of `ros2`.
         spec: from `sandbox`.
         status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
     """
-    command = [sys.executable, str(HOST), "-" if status is None else str(status), *words]
+    command = [sys.executable, str(HOST), "-" if status is None else str(status), *arguments]
     return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
@@ -115,9 +115,9 @@ class LaunchHarness(contextlib.ExitStack):
         self._domain = Domain(workspace.domain + next(_NUMBERS))
         plain = sandbox(replace(workspace, domain=self._domain.number))
         self._sandbox = replace(plain, environment={**plain.environment, **(environment or {})})
-        words = [f"{name}:={value}" for name, value in (arguments or {}).items()]
+        assignments = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, it is the launch's own task to pass Ctrl-C on.
-        self._words = ("launch", "--noninteractive", package, file, *words)
+        self._command = ("launch", "--noninteractive", package, file, *assignments)
         self._listens = dict(listens or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._listens}
         self._status_text = b""
@@ -133,7 +133,7 @@ class LaunchHarness(contextlib.ExitStack):
         self.callback(os.close, self._pipe)
         os.set_blocking(self._pipe, False)
         try:
-            self.process = self.enter_context(start(self._words, self._sandbox, theirs))
+            self.process = self.enter_context(start(self._command, self._sandbox, theirs))
         except BaseException:
             self.close()
             raise
@@ -207,7 +207,7 @@ class LaunchHarness(contextlib.ExitStack):
         """Return the running executables of packages, in the order of their process ids."""
         found = []
         for pid in sorted(measure(self.process.innermost()).pids):
-            # A script is the second word, behind its interpreter; a process that has ended has no words.
+            # A script is the second argument, behind its interpreter; a process that has ended has none.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
         return found

@@ -160,8 +160,8 @@ class _Reader:
                 sections[-1].append(line)
         wanted = SECTIONS[self._kind]
         if len(sections) != wanted:
-            said = f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {PARTS[self._kind]}"
-            raise self._error(said)
+            problem = f"{len(sections) - 1} separator lines ---, {wanted - 1} are needed: {PARTS[self._kind]}"
+            raise self._error(problem)
         return sections
 
     def _read_section(self, lines: list[str]) -> None:

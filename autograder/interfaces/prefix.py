@@ -56,8 +56,8 @@ def build(
         "underlays": [str(path) for path in underlays],
         "prefixes": [str(path) for path in prefixes],
     }
-    told = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
-    key = hashlib.sha256(told.encode()).hexdigest()[:40]
+    identity_text = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
+    key = hashlib.sha256(identity_text.encode()).hexdigest()[:40]
     return (cache or Cache.default("interfaces")).get(key, partial(_make, package, json.dumps(recipe)))
 
 

@@ -46,8 +46,8 @@ class ControlGroup:
     def ran_out(self) -> bool:
         """Return whether the kernel has ended a process because the group's memory was used up."""
         folder = self.by_controller.get("memory")
-        said = folder and _read(folder / "memory.events") + _read(folder / "memory.oom_control")
-        return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in (said or "").splitlines())
+        events = folder and _read(folder / "memory.events") + _read(folder / "memory.oom_control")
+        return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in (events or "").splitlines())
 
     def close(self) -> None:
         """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""

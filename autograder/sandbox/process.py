@@ -162,12 +162,12 @@ class Process:
         return measure(self._popen.pid, *self._adopted, most=self._limits.threads)
 
     def _files(self) -> int:
-        """Count the files on the file systems that it can write to; none once it is gone."""
+        """Return the number of files on the file systems that it can write to; 0 once it is gone."""
         root, found = f"/proc/{self.innermost()}/root", 0
         for folder in self._writable:
             with suppress(OSError):
-                told = os.statvfs(f"{root}{folder}")
-                found += told.f_files - told.f_ffree
+                statistics = os.statvfs(f"{root}{folder}")
+                found += statistics.f_files - statistics.f_ffree
         return found
 
     def _end(self, why: Ending) -> None:

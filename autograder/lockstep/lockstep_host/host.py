@@ -262,8 +262,8 @@ class Host:
 
     def _describe(self) -> dict[str, Any]:
         self.hooks.changed = False
-        told = {"early": self.counts.fresh, "kept": self.counts.kept, "prefix": self._prefix()}
-        return {**describe(self.nodes()), **told}
+        counts = {"early": self.counts.fresh, "kept": self.counts.kept}
+        return {**describe(self.nodes()), **counts, "prefix": self._prefix()}
 
     def _prefix(self) -> str:
         return next((prefix for node in self.nodes() if (prefix := channels.own_prefix(node))), "")
