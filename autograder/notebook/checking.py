@@ -76,7 +76,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
     """
     if grading():  # the sandbox holds no checks
         return Notice("The hidden checks run after this notebook has been executed.")
-    if assignment not in (there := suites.checked()):
+    if assignment not in (there := suites.checkable_assignments()):
         raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
     with run_in_worker("check", Path(workspace), assignment=assignment) as (answer, _):
         diagnosis = answer["diagnosis"]
