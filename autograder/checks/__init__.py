@@ -19,8 +19,8 @@ from autograder import layout
 from autograder.checks.declaration import (
     Check,
     CheckFailed,
+    CheckRow,
     Outcome,
-    Row,
     Visibility,
     check,
     check_each_row,
@@ -37,8 +37,8 @@ if str(layout.CHECKS) not in __path__:
 __all__ = [
     "Check",
     "CheckFailed",
+    "CheckRow",
     "Outcome",
-    "Row",
     "Visibility",
     "check",
     "check_each_row",

@@ -107,7 +107,7 @@ class Declare(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class CheckRow:
     """A row of a table of checks that share a body; a table's own class adds what the body needs.
 
     Attributes:
@@ -122,7 +122,7 @@ class Row:
     holds: str | tuple[str, ...] = ()
 
 
-R = TypeVar("R", bound=Row)
+R = TypeVar("R", bound=CheckRow)
 
 
 def check(
@@ -231,7 +231,7 @@ def check_of(function: object) -> Check | None:
     return found if isinstance(found, Check) else None
 
 
-def _with_row(body: Callable[..., None], row: Row) -> Callable[..., None]:
+def _with_row(body: Callable[..., None], row: CheckRow) -> Callable[..., None]:
     """Return a test that calls a body with a row, and asks pytest for the body's fixtures."""
 
     @functools.wraps(body)

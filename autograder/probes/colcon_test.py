@@ -15,8 +15,8 @@ from autograder.building.colcon import HOST, colcon_command
 from autograder.checks import expect
 from autograder.probes.files import read_plain
 from autograder.probes.installed import Installed
-from autograder.probes.test_reports import MAX_BYTES, Claims, Report, parse_claims
-from autograder.probes.test_runs import sandboxed
+from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, parse_claims
+from autograder.probes.student_test_runs import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import COLCON_TEST
@@ -32,7 +32,7 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
 
     Returns:
         What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
-        be stopped, that of a second run, as in `test_runs.run`.
+        be stopped, that of a second run, as in `student_test_runs.run`.
     """
     first, _ = _colcon_test(workspace, package)
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package)[0]

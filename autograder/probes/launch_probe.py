@@ -123,7 +123,7 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
     what = [f"{', '.join(missing)} missing"] if missing else []
     what += [f"{', '.join(extra)} not asked for"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
-    reason = trouble(harness.output)
+    reason = failure(harness.output)
     parts = [f"{seen}: {'; '.join(near or what)}.", reason and f"What the launch said: {reason}"]
     raise CheckFailed(" ".join(filter(None, parts)))
 
@@ -133,7 +133,7 @@ def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Va
     found = harness.parameters(node, list(wanted))
     if found is None:
         raise CheckFailed(
-            f"{node} does not answer when it is asked for its parameters. {trouble(harness.output)}".strip()
+            f"{node} does not answer when it is asked for its parameters. {failure(harness.output)}".strip()
         )
     for name, value in wanted.items():
         given = found[name]
@@ -191,7 +191,7 @@ def node_names(output: str, program: str) -> set[str]:
     return {match["node"] for match in _NAMED.finditer(output) if match["name"] == program}
 
 
-def trouble(output: str) -> str:
+def failure(output: str) -> str:
     """Return in a line what went wrong by a launch's output; empty if it names nothing."""
     if caught := _CAUGHT.search(output):
         return " ".join(caught["what"].split())

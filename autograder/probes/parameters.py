@@ -1,8 +1,8 @@
 """A node's parameters: read and changed over its own services, and compared in sentences for the student.
 
     node = NodeParameters(harness, "/configured_node")
-    node.values("safety_distance")                       # {"safety_distance": 0.5}
-    node.change({"safety_distance": 9.0})                # Answer(accepted=False, reason="... out of range ...")
+    node.values("safety_distance")         # {"safety_distance": 0.5}
+    node.change({"safety_distance": 9.0})  # SetParametersReply(accepted=False, reason="... out of range ...")
 
 A student can forge what a node answers. It is shown shortened, and checks believe it only where behaviour agrees.
 """
@@ -41,7 +41,7 @@ TYPES = {
 
 
 @dataclass(frozen=True)
-class Answer:
+class SetParametersReply:
     """A node's answer to a request to change parameters; `reason` is its words when it refused, shortened."""
 
     accepted: bool
@@ -74,13 +74,13 @@ class NodeParameters:
         answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
         return {name: found.descriptors[0] for name, found in answers.items() if found.descriptors}
 
-    def change(self, values: Mapping[str, Value]) -> Answer:
+    def change(self, values: Mapping[str, Value]) -> SetParametersReply:
         """Ask the node to set parameters, all in one request."""
         request = SetParametersAtomically.Request(
             parameters=[Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
         )
         result = self._ask(SetParametersAtomically, "set_parameters_atomically", request).result
-        return Answer(result.successful, shortened(result.reason))
+        return SetParametersReply(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
         """Call one of the node's services; a CheckFailed says that there is none, or no answer."""

@@ -19,7 +19,7 @@ from autograder.checks.ch06_testing.support.assertions import (
 from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
 from autograder.harness import Workspace
 from autograder.probes.colcon_test import expect_ended
-from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source
+from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
 

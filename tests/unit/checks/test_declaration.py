@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from autograder.checks import CheckFailed, Row, Visibility, check, check_each_row, check_of, expect, group, hint
+from autograder.checks import CheckFailed, CheckRow, Visibility, check, check_each_row, check_of, expect, group, hint
 from autograder.exceptions import GraderError
 
 
@@ -68,13 +68,13 @@ def test_the_folder_decides_the_visibility_of_a_check_also_in_a_table(
 ) -> None:
     module = ModuleType("a_suite")
     text = """
-from autograder.checks import Row, check, check_each_row, group
+from autograder.checks import CheckRow, check, check_each_row, group
 
 @check(points=1, group="g")
 def test_one():
     'One.'
 
-@check_each_row(group("h"), [Row(id="two", title="Two.", points=2, hints=("how",), doc="d")])
+@check_each_row(group("h"), [CheckRow(id="two", title="Two.", points=2, hints=("how",), doc="d")])
 def body(row, robot):
     pass
 """
@@ -88,7 +88,7 @@ def body(row, robot):
 
 def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_fixtures() -> None:
     @dataclass(frozen=True, kw_only=True)
-    class Distance(Row):
+    class Distance(CheckRow):
         metres: float
 
     rows = [
@@ -111,7 +111,7 @@ def test_the_body_of_a_table_must_not_look_like_a_test() -> None:
     with pytest.raises(GraderError, match="body 'tests_all': its name must not start with 'test'"):
 
         @check_each_row(group("g"), ())
-        def tests_all(row: Row) -> None:
+        def tests_all(row: CheckRow) -> None:
             """A body."""
 
 

@@ -14,10 +14,10 @@ from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import source_of
 from autograder.harness import Workspace
-from autograder.probes import test_runs
-from autograder.probes.given import changed_files
-from autograder.probes.laid_fault import UNTIDY, expect_failures
-from autograder.probes.test_reports import Source, TestRun
+from autograder.probes import student_test_runs
+from autograder.probes.fault_injection import UNTIDY, expect_failures
+from autograder.probes.given_files import changed_files
+from autograder.probes.student_test_reports import Source, TestRun
 from autograder.probes.versions import read
 
 HINTS = (
@@ -67,13 +67,13 @@ ALARM = Given(
 
 def expect_given_tests(workspace: Workspace, given: Given) -> None:
     """Fail the check unless each given test passes on a right package, fails on a faulty one, and no file changed."""
-    taken = test_runs.take(workspace, given.package)
+    taken = student_test_runs.take(workspace, given.package)
     files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in given.tests}))
     absent = [name for name in files if name not in taken.tests]
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
     kept = {name: data for name, data in taken.files.items() if name.removeprefix("test/") in (name, *files)}
     source = Source(given.package, kept)  # of test/ the given files alone
-    (report,) = test_runs.run(
+    (report,) = student_test_runs.run(
         workspace, source, [TestRun(files, read(layout.SOLUTIONS / given.package, {}), conftest=False)]
     )
     failed = " and ".join(test.partition("::")[2] for test in report.failed)

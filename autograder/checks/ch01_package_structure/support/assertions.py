@@ -79,7 +79,7 @@ def expect_declared(needed: Collection[imports.Import], declared: Collection[str
     missing = imports.undeclared(needed, declared)
     total = first or len(needed)
     fraction = max(0.0, 1.0 - len(missing) / total) if total else 0.0
-    expect(not missing, f"package.xml does not declare everything: {imports.say(missing)}.", fraction=fraction)
+    expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
 
 
 def expect_executable(installed: Installed, name: str) -> None:

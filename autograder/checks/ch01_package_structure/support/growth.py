@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.harness import Workspace
-from autograder.probes.growth import install_with
+from autograder.probes.added_files import install_with
 from autograder.probes.installed import Installed
 
 

@@ -14,7 +14,7 @@ from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
 from autograder.checks.ch03_interfaces.support.hearing import expect_heard
 from autograder.checks.ch03_interfaces.support.reporter import BATTERY, JOINTS, TOPIC, Reporter, same
 from autograder.probes.late_joiner import kept_messages
-from autograder.probes.pace import is_paced, mean_period
+from autograder.probes.message_period import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
 check = group("status")

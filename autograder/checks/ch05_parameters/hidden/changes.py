@@ -11,7 +11,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, look, made, make
+from autograder.probes.calls import call, calls, look, made
 from autograder.probes.parameters import Value, differences, shortened
 from autograder.time_record import LOCKSTEP
 
@@ -214,17 +214,17 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
         workspace,
         f"{PACKAGE}.nodes.{EXECUTABLE}",
         call("init", module="rclpy"),
-        make("ConfiguredNode"),
-        make("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
-        make("list", module="builtins"),
+        call("ConfiguredNode"),
+        call("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
+        call("list", module="builtins"),
         call("append", made(2), on=3),
         look("timer", on=1),
         look("timer_period_ns", on=5),
         call("validate", made(3), on=1),
         look("timer", on=1),
         look("timer_period_ns", on=8),
-        make("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
-        make("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
+        call("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
+        call("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
         call("clear", on=3),
         call("append", made(10), on=3),
         call("validate", made(3), on=1),

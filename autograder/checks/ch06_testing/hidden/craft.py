@@ -12,7 +12,7 @@ from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
 from autograder.probes.installed import look
-from autograder.probes.test_reports import ClaimedOutcome
+from autograder.probes.student_test_reports import ClaimedOutcome
 
 check = group("craft")
 SHARED = ("launch", "config")  # folders of which setup.py installs the files

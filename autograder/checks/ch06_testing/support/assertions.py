@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
-from autograder.probes.test_reports import Report, Source
+from autograder.probes.student_test_reports import Report, Source
 from autograder.sandbox import Ending
 
 UNFINISHED = "still to be written"

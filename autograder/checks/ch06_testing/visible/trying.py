@@ -10,8 +10,8 @@ from autograder.checks.ch06_testing.support.assertions import expect_no_sleep, e
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
 from autograder.harness import Workspace
 from autograder.probes import linters
-from autograder.probes.test_reports import Report, Source, TestRun
-from autograder.probes.test_runs import run, take
+from autograder.probes.student_test_reports import Report, Source, TestRun
+from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
 
 Reports = dict[tuple[str, str], Report]
@@ -205,5 +205,5 @@ def test_linters(workspace: Workspace, source: Source) -> None:
 
 
 def _expect_objection(reports: Reports, name: str, what: str) -> None:
-    objects = reports[name, what].objects(reports[name, RIGHT])
+    objects = reports[name, what].detects_fault(reports[name, RIGHT])
     expect(objects, f"All tests in {name} pass on that mutant, too.")

@@ -23,9 +23,9 @@ from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, e
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, made, make
+from autograder.probes.calls import call, calls, made
 from autograder.probes.late_joiner import kept_messages
-from autograder.probes.namespaces import left_behind
+from autograder.probes.namespaces import missing_in_namespace
 from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence
 from autograder.time_record import LOCKSTEP
 
@@ -61,7 +61,7 @@ def test_late_joiners(workspace: Workspace) -> None:
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
     expect(kept == 1, f"A display that joins late got {kept} messages, not the last one alone.", fraction=0.5)
-    left = left_behind(workspace, PACKAGE, "robust_node", ("status",))
+    left = missing_in_namespace(workspace, PACKAGE, "robust_node", ("status",))
     expect(not left, left, fraction=0.5)
 
 
@@ -79,16 +79,13 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     expect(said == wanted, f"{sentence} instead of {wanted[min(wrong, 39)]!r}.", fraction=0.0)
     never, always = 0.0, 1.0
     steps = (call("read_sensor", made(0), never), call("read_sensor", made(0), always), call("random", on=0))
-    succeeded, failed, third = calls(workspace, ROBUST, make("Random", seed, module="random"), *steps)[1:]
+    succeeded, failed, third = calls(workspace, ROBUST, call("Random", seed, module="random"), *steps)[1:]
     ended = (succeeded.value, failed.raised)
     said_of = f"With the probabilities 0 and 1, read_sensor returned {ended[0]!r} and raised {ended[1] or 'nothing'}"
     expect(ended == ("Success", "SensorError"), f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
-    *_, equal = calls(
-        workspace,
-        ROBUST,
-        make("Mock", module="unittest.mock", **{"random.return_value": probability}),
-        call("read_sensor", made(0), probability),
-    )
+    returns: dict[str, Any] = {"random.return_value": probability}
+    generator = call("Mock", module="unittest.mock", **returns)
+    _, equal = calls(workspace, ROBUST, generator, call("read_sensor", made(0), probability))
     said_of = f"When the generator says {probability}, and the probability is that, read_sensor raised {equal.raised}"
     expect(equal.value == "Success", f"{said_of}: only a number below it is a failure.", fraction=0.5)
     twice_asked = random.Random(seed)
@@ -112,8 +109,8 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
         ROBUST,
         call("init", module="rclpy"),
         call("seed", seed, module="random"),
-        make("RobustNode"),
-        make("RobustNode", cli_args=["--ros-args", "-p", f"seed:={seed + 1}"]),
+        call("RobustNode"),
+        call("RobustNode", cli_args=["--ros-args", "-p", f"seed:={seed + 1}"]),
         call("random", module="random"),
         network=True,
     )
@@ -213,18 +210,18 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
     steps = [call("init", module="rclpy")]
     for bug in ("RuntimeError", "OSError", "ValueError"):
         bugs[bug] = {"random.side_effect": made(len(steps))}
-        steps.append(make(bug, "a bug", module="builtins"))
+        steps.append(call(bug, "a bug", module="builtins"))
     first = len(steps)
     for generator in bugs.values():
         number = len(steps)
         steps += [
-            make("Mock", module="unittest.mock", **generator),
-            make("RobustNode", generator=made(number), namespace="hall"),
+            call("Mock", module="unittest.mock", **generator),
+            call("RobustNode", generator=made(number), namespace="hall"),
             call("timer_callback", on=number + 1),
             call("get_namespace", on=number + 1),
         ]
     number = len(steps)  # of a node with the last generator, and with a seed
-    steps.append(make("RobustNode", generator=made(number - 4), cli_args=["--ros-args", "-p", "seed:=5"]))
+    steps.append(call("RobustNode", generator=made(number - 4), cli_args=["--ros-args", "-p", "seed:=5"]))
     *outcomes, _, seeded = calls(workspace, ROBUST, *steps, call("timer_callback", on=number), network=True)
     for i, bug in enumerate(bugs):
         built, called, within = outcomes[first + 4 * i + 1 : first + 4 * i + 4]

@@ -10,7 +10,7 @@ from autograder.checks import check, expect, hint
 from autograder.checks.ch07_best_practices.support import contract
 from autograder.checks.ch07_best_practices.support.robot import WORDS, Processor, Robust, expected, logged, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, made, make, same, value
+from autograder.probes.calls import call, calls, made, same, value
 from autograder.probes.parameters import NodeParameters
 
 BLIND_SECONDS = 6  # of scans without a distance
@@ -53,7 +53,7 @@ def test_mean_distance(workspace: Workspace) -> None:
 def test_data_processor(workspace: Workspace) -> None:
     """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
     steps = [
-        make("DataProcessor", 2),
+        call("DataProcessor", 2),
         *(call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
     ]
     _, first, *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
@@ -178,8 +178,8 @@ def test_shows_bugs(workspace: Workspace) -> None:
         workspace,
         contract.ROBUST,
         call("init", module="rclpy"),
-        make("range", 3, module="builtins"),
-        make("RobustNode", generator=made(1)),
+        call("range", 3, module="builtins"),
+        call("RobustNode", generator=made(1)),
         call("timer_callback", on=2),
         network=True,
     )

@@ -25,7 +25,7 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem, System, describe_report
 from autograder.harness import Stamped
 from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.pace import is_paced, mean_period
+from autograder.probes.message_period import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
 check = group("step_2")

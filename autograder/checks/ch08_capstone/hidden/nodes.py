@@ -37,8 +37,8 @@ from autograder.checks.ch08_capstone.support.system import (
     expect_turning,
 )
 from autograder.harness import Workspace
-from autograder.probes.namespaces import left_behind
-from autograder.probes.pace import is_paced, mean_period
+from autograder.probes.message_period import is_paced, mean_period
+from autograder.probes.namespaces import missing_in_namespace
 from autograder.time_record import LOCKSTEP
 
 check = group("step_2")
@@ -84,7 +84,9 @@ def test_monitor(shared_system: SharedSystem) -> None:
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
     """All names are relative: in a namespace, each node takes its topics and its service with it."""
-    left = [said for name in PROGRAMS if (said := left_behind(workspace, contract.PACKAGE, name, names_of(name)))]
+    left = [
+        said for name in PROGRAMS if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
+    ]
     expect(not left, " ".join(left))
 
 

@@ -10,8 +10,8 @@ from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import colcon_test, expect_ended
-from autograder.probes.test_reports import ClaimedOutcome, Report
-from autograder.probes.test_runs import take
+from autograder.probes.student_test_reports import ClaimedOutcome, Report
+from autograder.probes.student_test_runs import take
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")

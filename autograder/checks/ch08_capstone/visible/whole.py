@@ -21,11 +21,11 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe, test_runs
+from autograder.probes import launch_probe, student_test_runs
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
-from autograder.probes.test_reports import Report, TestRun
+from autograder.probes.student_test_reports import Report, TestRun
 from autograder.probes.versions import Version
 from autograder.unwritten import STILL_TO_BE_WRITTEN
 
@@ -52,7 +52,7 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
         if TESTS in wanted:
             version = Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
             wanted[MUTANT] = TestRun(TESTS, version, first_failure=True)
-        runs = test_runs.run(workspace, test_runs.take(workspace, PACKAGE), list(wanted.values()))
+        runs = student_test_runs.run(workspace, student_test_runs.take(workspace, PACKAGE), list(wanted.values()))
         return dict(zip(wanted, runs, strict=True))
 
     with ThreadPoolExecutor(1) as beside:
@@ -106,7 +106,7 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
 def test_sector_tests_notice(reports: Future[Reports]) -> None:
     """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
     said = reports.result()
-    expect(said[MUTANT].objects(said[TESTS]), "All of them pass on that mutant, too.")
+    expect(said[MUTANT].detects_fault(said[TESTS]), "All of them pass on that mutant, too.")
 
 
 @check(points=1, holds=("linters", "pytest"), group="step_7", depends=("package",), doc=contract.TESTING_DOC)

@@ -20,7 +20,7 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
-from autograder.probes.namespaces import left_behind
+from autograder.probes.namespaces import missing_in_namespace
 from autograder.time_record import LOCKSTEP
 
 check = group("nodes")
@@ -237,7 +237,7 @@ def test_relative(workspace: Workspace) -> None:
     left = [
         said
         for name, names in topics.items()
-        if (said := left_behind(workspace, contract.PACKAGE, name, names, plain=True))
+        if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
     ]
     expect(not left, " ".join(left))
 
