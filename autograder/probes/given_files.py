@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from pathlib import Path
-
-from autograder.probes.files import read_plain
-
-MAX_BYTES = 256 * 1024
+from collections.abc import Collection, Mapping
 
 
-def changed_files(source: Path, given: Path, folders: Collection[str]) -> list[str]:
+def changed_files(kept: Mapping[str, bytes], given: Mapping[str, bytes], folders: Collection[str]) -> list[str]:
     """Return the given files, below these folders of a package, that are missing or changed; white space is free.
 
     Args:
-        source: the student's package.
-        given: the package with the files as they were given.
+        kept: the student's files, by their paths below the package's folder.
+        given: the files as they were given, by the same paths.
         folders: names of folders of the package.
     """
-    files = [path for path in sorted(given.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
-    names = [path.relative_to(given) for path in files]
-    return [
-        str(name)
-        for name in names
-        if name.parts[0] in folders
-        and (read_plain(source / name, MAX_BYTES) or b"").split() != (given / name).read_bytes().split()
-    ]
+    mine = [name for name in given if name.partition("/")[0] in folders]
+    return [name for name in mine if kept.get(name, b"").split() != given[name].split()]

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from autograder.exceptions import UsageError
-
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
 READ_AS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
@@ -75,11 +73,6 @@ class Interface:
     path: str
     parts: tuple[Part, ...]
 
-    @property
-    def part_names(self) -> tuple[str, ...]:
-        """The parts' names; the one part of a message has none."""
-        return PARTS[self.path.partition("/")[0]]
-
 
 @dataclass(frozen=True)
 class Difference:
@@ -99,14 +92,11 @@ def parse(package: str, path: str, text: str) -> Interface:
 
     Raises:
         Unreadable: the build would refuse it.
-        UsageError: the path is none of a definition.
     """
     from rosidl_adapter import parser
 
     kind, _, file = path.partition("/")
     name = file.removesuffix(f".{kind}")
-    if kind not in PARTS or name == file:
-        raise UsageError(f"{path!r} is no definition's path: msg/Name.msg, srv/Name.srv or action/Name.action")
     if len(text) > MAX_BYTES:
         raise Unreadable(f"{path} is far larger than a definition.")
     try:
@@ -146,7 +136,7 @@ class _Comparison:
         self._part = wanted.parts[index]
         self._found = found.parts[index]
         others = [other for other in range(len(wanted.parts)) if other != index]
-        names = wanted.part_names
+        names = PARTS[wanted.path.partition("/")[0]]
         self._elsewhere = {
             name: names[other] for other in others for name in _names(found.parts[other]) - _names(wanted.parts[other])
         }

@@ -169,11 +169,11 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
     return [(match["name"], match["code"]) for match in _DIED.finditer(harness.output)]
 
 
-def expect_stopped(stop: Stop, status: int | None = 0) -> None:
-    """Fail the check unless the launch has ended, with this exit status (None: with any), and has left nothing."""
+def expect_stopped(stop: Stop) -> None:
+    """Fail the check unless the launch has ended, with exit status 0, and has left nothing."""
     expect(stop.status is not None, f"After {STOP_SECONDS:.0f} s it still ran, and had to be killed.")
     expect(not stop.left, f"It ended, but left a process running: {', '.join(stop.left)[:200]}.")
-    expect(status is None or stop.status == status, f"It ended with exit status {stop.status}, instead of {status}.")
+    expect(stop.status == 0, f"It ended with exit status {stop.status}, instead of 0.")
 
 
 def started(output: str) -> list[str]:

@@ -23,6 +23,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from autograder.checks import CheckFailed
 from autograder.harness import AutoHarness, Harness
+from autograder.probes.files import read_plain
 
 Value = bool | int | float | str | list[object] | None
 
@@ -164,22 +165,23 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
     A CheckFailed says what to do where it is missing, still to be written, no YAML, or not nested as ROS reads it.
     """
-    if not path.is_file():
+    if path.is_symlink() or not path.is_file():
         raise CheckFailed(
             f"{path.parent.name}/{path.name} is not installed: write it into the package's config folder."
         )
-    text = path.read_text(errors="replace")[: MAX_FILE + 1]
-    if len(text) > MAX_FILE:
+    data = read_plain(path, MAX_FILE)
+    if data is None:
         raise CheckFailed(f"{path.name} is far larger than a parameter file.")
+    text = data.decode(errors="replace")
     if "NotImplementedError" in text:
         raise CheckFailed(f"{path.name} is still to be written: put your lines in place of the raise.")
     try:
-        data = yaml.safe_load(text)
+        file = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
         raise CheckFailed(f"{path.name} is no YAML: {shortened(str(error))}.") from None
-    if not isinstance(data, dict):
+    if not isinstance(file, dict):
         raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
-    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in data.items()}
+    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:

@@ -46,11 +46,16 @@ class Version:
     scripts: Mapping[str, str]
 
 
+def read_files(folder: Path) -> dict[str, bytes]:
+    """Read a package's files, by their paths below its folder."""
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
 def read(folder: Path, scripts: Mapping[str, str]) -> Version:
     """Read a package's files, all but its tests."""
-    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
-    names = [path.relative_to(folder) for path in paths]
-    return Version({str(name): (folder / name).read_text() for name in names if name.parts[0] != "test"}, scripts)
+    files = read_files(folder)
+    return Version({name: data.decode() for name, data in files.items() if not name.startswith("test/")}, scripts)
 
 
 def obfuscate(version: Version, seed: int) -> Version:

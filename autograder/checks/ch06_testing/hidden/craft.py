@@ -11,6 +11,7 @@ from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
+from autograder.probes.given_files import changed_files
 from autograder.probes.installed import look
 from autograder.probes.student_test_reports import ClaimedOutcome
 
@@ -26,12 +27,9 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
-    given, kept = style(STYLES[0]).files, examination.source.files
-    changed = [
-        name
-        for name, text in given.items()
-        if name.split("/")[0] in GIVEN and kept.get(name, b"").split() != text.encode().split()
-    ]
+    given = style(STYLES[0]).files
+    texts = {name: text.encode() for name, text in given.items()}
+    changed = changed_files(examination.source.files, texts, GIVEN)
     expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
     # The runs install each version themselves, so only this sees what the student's own setup.py leaves out.
     installed = look(workspace.install, PACKAGE)
