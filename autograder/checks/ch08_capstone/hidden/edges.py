@@ -48,8 +48,8 @@ def said_of_edge(system: System) -> list[str]:
     """
     tried = []
     for half in EXACT_HALVES:
-        with system.changed(PROCESSOR, "half_angle", half) as accepted:
-            if accepted:
+        with system.changed(PROCESSOR, "half_angle", half) as reply:
+            if reply.accepted:
                 shown = scan(fill=3.0, beams=3)
                 shown.angle_min, shown.angle_increment, shown.angle_max = -half, half, half
                 shown.ranges = [1.0, 3.0, 1.0]

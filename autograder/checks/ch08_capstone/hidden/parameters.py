@@ -153,16 +153,14 @@ _CASES: tuple[tuple[str, str, float, Callable[[System], None]], ...] = (
 
 def _effect(system: System, node: str, name: str, value: float, look: Callable[[System], None]) -> str:
     """Change a parameter, look at what comes of it, and change it back; say what was wrong."""
-    asked = system.parameters(node)
-    answer = asked.change({name: value})
-    if not answer.accepted:
-        return f"{node} refuses {name} = {value:g}: {answer.reason}"
     try:
-        look(system)
+        with system.changed(node, name, value) as reply:
+            if not reply.accepted:
+                return f"{node} refuses {name} = {value:g}: {reply.reason}"
+            look(system)
     except CheckFailed as failed:
         return f"With {name} = {value:g}: {failed.message}"
     finally:
-        asked.change({name: PARAMETERS[node][name].default})
         system.see(OPEN)
     return ""
 
