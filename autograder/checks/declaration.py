@@ -51,7 +51,7 @@ class Outcome(str, Enum):
     NOT_CHECKED = "not_checked"
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The outcome as people read it, in feedback and in notebooks."""
         return self.value.replace("_", " ")
 

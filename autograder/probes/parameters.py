@@ -144,13 +144,13 @@ def _in_type_of(like: Value, value: Value) -> Value:
 def differences(values: Mapping[str, Value], wanted: Mapping[str, Value]) -> list[str]:
     """Say for each wanted parameter that has another value what it is and what it should be."""
     return [
-        f"{name} is {said(values.get(name))} instead of {said(value)}"
+        f"{name} is {value_text(values.get(name))} instead of {value_text(value)}"
         for name, value in wanted.items()
         if not same(values.get(name), value)
     ]
 
 
-def said(value: Value) -> str:
+def value_text(value: Value) -> str:
     """Put a value into words that tell 1 from 1.0 and from '1'."""
     return "not set" if value is None else shortened(repr(value))
 

@@ -15,7 +15,7 @@ from functools import cached_property
 from autograder.checks import CheckFailed, CheckRow, expect
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, PYTEST
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, PYTEST
 from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.colcon_test import colcon_test
@@ -74,7 +74,7 @@ class Examination:
         asked = {FILES[check] for check in self._checks if check in FILES}
         wanted = {
             name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD)
-            for name in LEAST
+            for name in MIN_TESTS
             if name in asked and name in self.source.tests
         }
         return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
@@ -84,7 +84,7 @@ class Examination:
         """The other runs: by file, and what is special about the version or the run."""
         wanted: dict[tuple[str, str], TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in (name for name in reversed(LEAST) if is_usable(name, self.trial.get(name))):
+        for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
             mine = self._wanted(name)
             whats = sorted(mine)
             self._draw(name, "order").shuffle(whats)

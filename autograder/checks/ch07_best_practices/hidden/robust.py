@@ -20,7 +20,7 @@ from autograder.checks.ch07_best_practices.support.contract import (
     ROBUST,
     RULE_STATUS,
 )
-from autograder.checks.ch07_best_practices.support.robot import WORDS, Robust, expected, logged
+from autograder.checks.ch07_best_practices.support.robot import STATUS, Robust, expected, logged
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
@@ -42,8 +42,8 @@ LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node says once a second on status how it goes; with a sensor that never fails, ok."""
     with Robust(workspace, failure_probability=0.0) as harness:
-        said = harness.hear(10)
-        rate = harness.rate(WORDS, 0.0)
+        said = harness.receive(10)
+        rate = harness.rate(STATUS, 0.0)
     expect(len(said) == 10, f"In 10 s it said {len(said)} times how it goes.")
     expect(abs(rate - 1.0) < 0.1, f"It said {rate:.1f} times a second how it goes, instead of once.")
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
@@ -55,10 +55,10 @@ def test_once_a_second(workspace: Workspace) -> None:
 def test_late_joiners(workspace: Workspace) -> None:
     """A node that joins late can have the last status immediately, in any namespace: it is offered transient local."""
     with Robust(workspace) as harness:
-        harness.hear(3)
-        offered = harness.node.get_publishers_info_by_topic(WORDS)
+        harness.receive(3)
+        offered = harness.node.get_publishers_info_by_topic(STATUS)
         # In real time it publishes while one joins.
-        kept = kept_messages(harness.node, WORDS, String) if harness.time == LOCKSTEP else 1
+        kept = kept_messages(harness.node, STATUS, String) if harness.time == LOCKSTEP else 1
     durable = [peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in offered]
     expect(bool(durable) and all(durable), "status is offered volatile: a display that joins late shows nothing.")
     expect(kept == 1, f"A display that joins late got {kept} messages, not the last one alone.", fraction=0.5)
@@ -72,7 +72,7 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
     seed, probability = draw.randint(1, 2**31 - 1), round(draw.uniform(0.4, 0.7), 2)
     with Robust(workspace, seed=seed, failure_probability=probability) as harness:
-        said = harness.hear(40)
+        said = harness.receive(40)
     wanted = expected(seed, probability, 40)
     wrong = next((i for i, (a, b) in enumerate(zip(said, wanted, strict=False)) if a != b), min(len(said), 40))
     got = said[wrong] if wrong < len(said) else "nothing"
@@ -102,7 +102,7 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     runs = []
     for _ in range(2):
         with Robust(workspace, failure_probability=0.5) as harness:
-            runs.append(harness.hear(50))
+            runs.append(harness.receive(50))
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
     seed = draw.randrange(10**6)
     *_, shared = calls(
@@ -126,12 +126,12 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
     most = draw.randint(2, 5)
     with Robust(workspace, failure_probability=1.0, max_errors=most) as harness:
-        said = harness.hear(most + 3)
+        said = harness.receive(most + 3)
     wanted = expected(1, 1.1, most + 3, most)
     expect(said == wanted, f"With max_errors {most} and a dead sensor it said {said}, instead of {wanted}.")
     seed = _shaky(draw)
     with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        said = harness.hear(READINGS)
+        said = harness.receive(READINGS)
     wanted = expected(seed, 0.5, READINGS, 1)
     wrong = next((i for i, (a, b) in enumerate(zip(said, wanted, strict=False)) if a != b), None)
     shown = f"reading {(wrong or 0) + 1} made it say {said[wrong or 0] if said else 'nothing'!r}"
@@ -143,9 +143,9 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
 def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
     """It logs failures as errors, at most one line in 5 s."""
     with Robust(workspace, failure_probability=1.0, max_errors=2) as harness:
-        harness.hear(4)
+        harness.receive(4)
         early = logged(harness.output, "ERROR")
-        harness.hear(26)
+        harness.receive(26)
         errors = logged(harness.output, "ERROR")
     failed = "Its sensor failed for 30 s, unstable from the third failure on"
     expect(errors > 0, f"{failed}, and it said nothing at level ERROR.")
@@ -157,7 +157,7 @@ def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
     seeds = itertools.count(draw.randint(1, 2**30))
     seed = next(seed for seed in seeds if expected(seed, 0.5, BY_TURNS).count("failed: 1 in a row") == rows)
     with Robust(workspace, seed=seed, failure_probability=0.5) as harness:
-        harness.hear(BY_TURNS)
+        harness.receive(BY_TURNS)
         errors = logged(harness.output, "ERROR")
     said = f"Its sensor failed and recovered by turns for {BY_TURNS} s, and it logged {errors} errors."
     expect(errors <= BY_TURNS // 5 + 1, said, fraction=0.5)
@@ -168,16 +168,16 @@ def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
 def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     """That it became unstable is logged as fatal, once in each row of failures."""
     with Robust(workspace, failure_probability=1.0, max_errors=3) as harness:
-        harness.hear(3)
+        harness.receive(3)
         early = logged(harness.output, "FATAL")
-        harness.hear(10)
+        harness.receive(10)
         fatal = logged(harness.output, "FATAL")
     expect(early == 0, "It logged as fatal what max_errors still allows.")
     expect(fatal == 1, f"It became unstable once, and logged {fatal} fatal messages.")
     seed = _shaky(draw)
     times = _rows(seed)
     with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        harness.hear(READINGS)
+        harness.receive(READINGS)
         fatal = logged(harness.output, "FATAL")
     expect(fatal == times, f"It became unstable {times} times, and logged {fatal} fatal messages.", fraction=0.5)
 
@@ -188,7 +188,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     """Each recovery is logged with the number of errors before it."""
     seed = _shaky(draw)
     with Robust(workspace, seed=seed, failure_probability=0.5, max_errors=1) as harness:
-        harness.hear(30)
+        harness.receive(30)
         output = harness.output
     said = ["ok", *expected(seed, 0.5, 30, 1)]
     counts = [int(a.split()[1]) for a, b in itertools.pairwise(said) if b == "ok" and a != "ok"]

@@ -20,7 +20,7 @@ from autograder.probes.calls import StepResult, call, calls, made, same, value
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
-HAIR = 1e-4  # m beyond a limit, more than what rounding does
+BEYOND_LIMIT = 1e-4  # m beyond a limit, more than what rounding does
 DEFAULT_HISTORY = 100
 SEQUENCES = {
     "a tuple": ("builtins", "tuple", ()),
@@ -75,7 +75,7 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
     rows = (
         ([near, far, near / 2, far * 2], [near, far, nan, nan], 0.0),
-        ([near - HAIR, far + HAIR], [nan, nan], 0.75),
+        ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [nan, nan], 0.75),
     )
     outcomes = calls(workspace, UTILS, *(call("mask_invalid", readings, near, far) for readings, _, _ in rows))
     for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):

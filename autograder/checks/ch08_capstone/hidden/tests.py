@@ -18,7 +18,7 @@ from autograder.probes.student_test_reports import Report, TestRun
 
 check = group("step_6")
 FILE = "test_sectors.py"
-LEAST = 4
+MIN_TESTS = 4
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def test_sector_tests_pass(examined: Examined) -> None:
         raise CheckFailed(f"On a right sectors.py, {len(report.failed)} tests fail: {first}: {said}")
     expect(report.passed, f"On a right sectors.py, pytest ran no test: {report.output.strip()[-300:]}")
     count = len(report.executed)
-    expect(count >= LEAST, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
+    expect(count >= MIN_TESTS, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
 
 
 @check(points=4, holds="sector-tests", depends=("sector_tests_pass",), doc=contract.REP_117)

@@ -72,7 +72,7 @@ def test_stamps(start: Start) -> None:
     for rate in (SLOW, 1.0):
         with start(THERMOMETER, clock_rate=rate) as harness:
             harness.run(2.2)
-            now_ns, now, heard = harness.now_ns, harness.seconds, harness.heard()
+            now_ns, now, heard = harness.now_ns, harness.seconds, harness.published()
         came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
         stamps = [stamped.message.stamp for stamped in heard]
         ages = [

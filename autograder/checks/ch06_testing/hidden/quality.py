@@ -7,7 +7,7 @@ from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
-from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
+from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
@@ -69,7 +69,7 @@ def test_colcon(examination: Examination) -> None:
     expect_ended(report)
     expect(bool(verdicts), "`colcon test` ran 0 tests.")
     files = {name.partition("::")[0] + ".py" for name in verdicts}
-    missing = [name for name in LEAST if name not in files]
+    missing = [name for name in MIN_TESTS if name not in files]
     expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
 
 
