@@ -1,4 +1,4 @@
-"""The checks: what a check is, and one package a chapter with the checks that judge it.
+"""The checks: what a check is, and one package for each chapter with the checks that judge it.
 
 The package of a chapter::
 

@@ -67,7 +67,7 @@ def test_subscribes_status(robot: Robot) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """All its topics are relative: in a namespace, it takes them with it."""
+    """All topic names are relative: in the namespace /a, scan is /a/scan."""
     left = missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, ("scan", "status", "cmd_vel"))
     expect(not left, left)
 

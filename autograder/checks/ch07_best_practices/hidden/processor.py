@@ -63,7 +63,7 @@ def test_sensor_qos(processor: Processor) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics of sensor_processor are relative: in a namespace, it takes them with it."""
+    """The topic names of sensor_processor are relative: in the namespace /a, scan is /a/scan."""
     left = missing_in_namespace(workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance"))
     expect(not left, left)
 

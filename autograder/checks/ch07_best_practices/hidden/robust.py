@@ -40,12 +40,12 @@ LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors
 @check(points=1, holds=("once-a-second", "ok"))
 @hint("create_timer(PERIOD, self.timer_callback) in __init__.", "Publish once in each call of timer_callback.")
 def test_once_a_second(workspace: Workspace) -> None:
-    """robust_node says once a second on status how it goes; with a sensor that never fails, ok."""
+    """robust_node publishes its state on status once a second; with a sensor that never fails, ok."""
     with Robust(workspace, failure_probability=0.0) as harness:
         said = harness.receive(10)
         rate = harness.rate(STATUS, 0.0)
-    expect(len(said) == 10, f"In 10 s it said {len(said)} times how it goes.")
-    expect(abs(rate - 1.0) < 0.1, f"It said {rate:.1f} times a second how it goes, instead of once.")
+    expect(len(said) == 10, f"In 10 s it published its state {len(said)} times.")
+    expect(abs(rate - 1.0) < 0.1, f"It published its state {rate:.1f} times a second, instead of once.")
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 

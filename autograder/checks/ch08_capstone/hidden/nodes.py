@@ -45,7 +45,7 @@ def test_monitor(shared_system: SharedSystem) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """All names are relative: in a namespace, each node takes its topics and its service with it."""
+    """The names of all topics and of the service are relative: in the namespace /a, scan is /a/scan."""
     left = [
         said for name in PROGRAMS if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
     ]

@@ -113,7 +113,7 @@ def test_sector_tests_notice(reports: Future[Reports]) -> None:
 @hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
-    """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
+    """Step 7: colcon will run your tests, and flake8 and pep257 report no errors."""
     named = runs_pytest(workspace, look(workspace.install, PACKAGE))
     expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
     absent = _absent(workspace, LINTERS)

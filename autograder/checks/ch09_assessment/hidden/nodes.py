@@ -228,7 +228,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics of all three nodes have plain queues and are relative: in a namespace, each takes them with it."""
+    """The topics have plain queues and relative names: in the namespace /a, temperature is /a/temperature."""
     topics = {
         THERMOMETER: ("temperature",),
         SMOOTHER: ("temperature", "smoothed"),
