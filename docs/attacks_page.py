@@ -34,7 +34,9 @@ OPEN = """
 def current() -> str:
     """Return the page as it should be."""
     described = [
-        (attack.id, assignment, attack.description) for assignment in suites.graded() for attack in attacks(assignment)
+        (attack.id, assignment, attack.description)
+        for assignment in suites.graded_assignments()
+        for attack in attacks(assignment)
     ]
     rows = [
         (str(number), row["attack"], "; ".join(row["submissions"]), _tests(row["tests"]))

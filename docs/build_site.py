@@ -133,7 +133,7 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
 def proof_table() -> str:
     """Return how much proves each suite, as a Markdown table."""
     rows = []
-    for name in suites.graded():
+    for name in suites.graded_assignments():
         suite = suites.hidden(name)
         variants = sum(case.kind is CaseKind.VARIANT for case in cases(name, quick=True))
         counts = (len(suite.checks), len(mutants(name)), variants)

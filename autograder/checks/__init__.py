@@ -1,4 +1,4 @@
-"""The checks: what a check is, and one package a chapter with the checks that judge it.
+"""The checks: what a check is, and one package for each chapter with the checks that judge it.
 
 The package of a chapter::
 
@@ -19,12 +19,12 @@ from autograder import layout
 from autograder.checks.declaration import (
     Check,
     CheckFailed,
+    CheckRow,
     Outcome,
-    Row,
     Visibility,
     check,
-    declared,
-    each,
+    check_each_row,
+    check_of,
     expect,
     group,
     hint,
@@ -37,12 +37,12 @@ if str(layout.CHECKS) not in __path__:
 __all__ = [
     "Check",
     "CheckFailed",
+    "CheckRow",
     "Outcome",
-    "Row",
     "Visibility",
     "check",
-    "declared",
-    "each",
+    "check_each_row",
+    "check_of",
     "expect",
     "group",
     "hint",

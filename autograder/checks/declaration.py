@@ -12,8 +12,8 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
         ...
         expect(turned, "it kept driving straight at a wall 0.6 m ahead")
 
-`check` itself takes the group as an argument, for a module whose checks belong to several. `each` declares a check for
-every row of a table. A check in a folder called `visible` is visible, any other is hidden.
+`check` itself takes the group as an argument, for a module whose checks belong to several. `check_each_row` declares a
+check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
 A check passes, fails (with the fraction of its points that was reached) or is not checked because a check that it
 depends on did not pass. Any other exception is the grader's own failure, never the student's zero.
@@ -51,7 +51,7 @@ class Outcome(str, Enum):
     NOT_CHECKED = "not_checked"
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The outcome as people read it, in feedback and in notebooks."""
         return self.value.replace("_", " ")
 
@@ -107,7 +107,7 @@ class Declare(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class CheckRow:
     """A row of a table of checks that share a body; a table's own class adds what the body needs.
 
     Attributes:
@@ -122,7 +122,7 @@ class Row:
     holds: str | tuple[str, ...] = ()
 
 
-R = TypeVar("R", bound=Row)
+R = TypeVar("R", bound=CheckRow)
 
 
 def check(
@@ -183,7 +183,7 @@ def hint(*texts: str) -> Callable[[F], F]:
     """
 
     def add(function: F) -> F:
-        if declared(function):
+        if check_of(function):
             raise GraderError(f"check {function.__name__!r}: its hints must stand below `check`, not above")
         function.__hints__ = (*texts, *getattr(function, "__hints__", ()))  # type: ignore[attr-defined]
         return function
@@ -191,7 +191,7 @@ def hint(*texts: str) -> Callable[[F], F]:
     return add
 
 
-def each(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
+def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
     """Declare a check for each row of a table, as a function `test_ID` of the module in which the body stands.
 
     The body takes a row, and then fixtures.
@@ -225,13 +225,13 @@ def expect(condition: bool, message: str, *, fraction: float = 0.0) -> None:
         raise CheckFailed(message, fraction=fraction)
 
 
-def declared(function: object) -> Check | None:
+def check_of(function: object) -> Check | None:
     """Return the check that a function declares, or None."""
     found = getattr(function, "__check__", None)
     return found if isinstance(found, Check) else None
 
 
-def _with_row(body: Callable[..., None], row: Row) -> Callable[..., None]:
+def _with_row(body: Callable[..., None], row: CheckRow) -> Callable[..., None]:
     """Return a test that calls a body with a row, and asks pytest for the body's fixtures."""
 
     @functools.wraps(body)

@@ -21,7 +21,7 @@ from functools import cache, cached_property
 from pathlib import Path
 
 from autograder import fingerprint
-from autograder.checks.declaration import Check, declared
+from autograder.checks.declaration import Check, check_of
 from autograder.exceptions import GraderError, UsageError
 
 HOME = "autograder.checks"
@@ -101,14 +101,14 @@ def visible(assignment: str) -> Suite:
     return read(HOME, assignment, VISIBLE)
 
 
-def graded() -> list[str]:
+def graded_assignments() -> list[str]:
     """Return the names of the assignments that have a hidden suite."""
-    return names(HOME, HIDDEN)
+    return assignments_with(HOME, HIDDEN)
 
 
-def checked() -> list[str]:
+def checkable_assignments() -> list[str]:
     """Return the names of the assignments that have visible checks."""
-    return names(HOME, VISIBLE)
+    return assignments_with(HOME, VISIBLE)
 
 
 def read(home: str, assignment: str, kind: str) -> Suite:
@@ -124,12 +124,12 @@ def read(home: str, assignment: str, kind: str) -> Suite:
         GraderError: it breaks the contract of a check.
     """
     package = f"{home}.ch{assignment}.{kind}"
-    if assignment not in (there := names(home, kind)):
+    if assignment not in (there := assignments_with(home, kind)):
         raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(there)}")
     described = importlib.import_module(package)
     modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
     files = tuple(Path(inspect.getfile(module)) for module in modules)
-    checks = [found for module in modules for value in vars(module).values() if (found := declared(value))]
+    checks = [found for module in modules for value in vars(module).values() if (found := check_of(value))]
     _require_order(assignment, checks)
     return Suite(
         assignment,
@@ -143,7 +143,7 @@ def read(home: str, assignment: str, kind: str) -> Suite:
     )
 
 
-def names(home: str, kind: str) -> list[str]:
+def assignments_with(home: str, kind: str) -> list[str]:
     """Return the names of the assignments that have a suite of this kind in the package `home`."""
     folder = Path(importlib.import_module(home).__path__[0])
     return sorted(path.parents[1].name.removeprefix("ch") for path in folder.glob(f"ch*/{kind}/__init__.py"))

@@ -79,7 +79,7 @@ def verify(
     The exit status is 0 when all of this is true, and 1 otherwise.
     """
     began = time.monotonic()
-    chapters = assignments or tuple(suites.graded())
+    chapters = assignments or tuple(suites.graded_assignments())
     proof = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
     chosen = [case for case in proof if not names or case.name in names]
     populations = {} if quick else {name: population(name) for name in chapters}

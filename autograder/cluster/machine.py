@@ -28,7 +28,7 @@ def resource(assignment: str, tier: Tier) -> str:
 
 def resources() -> list[str]:
     """Return the names of all resources that this machine offers. It takes about a second."""
-    return [resource(name, tier) for name in suites.graded() for tier in {Tier.PROCESS, best_tier()}]
+    return [resource(name, tier) for name in suites.graded_assignments() for tier in {Tier.PROCESS, best_tier()}]
 
 
 def difference(wanted: str, offered: Iterable[str]) -> str:

@@ -37,7 +37,7 @@ notebooks' metadata, the hidden checks and `{COURSE.syllabus}`; a test holds it.
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
     """Return the instructors' page of the course, and the problems found in its notebooks and syllabus."""
-    syllabus, have_suites = Syllabus.read(), suites.graded()
+    syllabus, have_suites = Syllabus.read(), suites.graded_assignments()
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
     covered = find_coverage(
         syllabus,
@@ -106,7 +106,10 @@ def _where(locations: Sequence[Location]) -> str:
 
 def titles() -> dict[Path, str]:
     """Return the text of each assignment's file of titles for students, by its path."""
-    return {judged_later(name): _titles(name) for name in sorted({*suites.checked()} & {*suites.graded()})}
+    return {
+        judged_later(name): _titles(name)
+        for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
+    }
 
 
 def _titles(assignment: str) -> str:

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from autograder.checks import Check, CheckFailed, Outcome, declared
+from autograder.checks import Check, CheckFailed, Outcome, check_of
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.gallery import Gallery
@@ -87,7 +87,7 @@ class GradingPlugin:
     @pytest.fixture
     def gallery(self, request: pytest.FixtureRequest) -> Gallery:
         """Keeps pictures for the feedback, under the running check's name."""
-        check = declared(request.function)
+        check = check_of(request.function)
         return self._gallery.of("" if check is None else check.id)
 
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
@@ -137,7 +137,7 @@ class GradingPlugin:
 
 
 def _declared_by(item: pytest.Item) -> Check | None:
-    return declared(getattr(item, "function", None))
+    return check_of(getattr(item, "function", None))
 
 
 def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:

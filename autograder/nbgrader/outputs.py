@@ -34,7 +34,7 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
     """
     html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
     text = "\n".join(
-        f"[{check.result.outcome.words}] {check.result.title} {check.message}".strip() for check in group.checks
+        f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip() for check in group.checks
     )
     outputs = [
         new_output("execute_result", {"text/plain": str(float(points))}, execution_count=1),

@@ -47,7 +47,7 @@ class CheckReport:
     def __repr__(self) -> str:
         parts = [] if self.trouble is None else [repr(self.trouble), ""]
         for line in self.lines:
-            parts.append(f"{SYMBOLS[line.outcome]} {line.outcome.words:<11} {line.title}")
+            parts.append(f"{SYMBOLS[line.outcome]} {line.outcome.text:<11} {line.title}")
             parts += [f"    {line.message}"] if line.message else []
             if line.outcome is Outcome.FAILED:
                 parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
@@ -76,7 +76,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
     """
     if grading():  # the sandbox holds no checks
         return Notice("The hidden checks run after this notebook has been executed.")
-    if assignment not in (there := suites.checked()):
+    if assignment not in (there := suites.checkable_assignments()):
         raise UsageError(f"there are no visible checks for {assignment!r}; there are for: {', '.join(there)}")
     with run_in_worker("check", Path(workspace), assignment=assignment) as (answer, _):
         diagnosis = answer["diagnosis"]
@@ -92,7 +92,7 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
 def _row(line: CheckResult) -> str:
     # The colour stands beside the words: there is none that can be read on white as well as on black.
     style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
-    mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.words}</span>'
+    mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.text}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
     if line.message:
         row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'

@@ -1,1 +1,1 @@
-"""Probes: each finds out one thing about a package without importing its code. Checks are made of them."""
+"""Probes inspect a student's package or running program; checks call them. None imports the student's code here."""

@@ -2,7 +2,7 @@
 
     outcomes = calls(workspace, "wheels.data_processing",
                      call("mask_invalid", [1.0, nan], 0.1, 3.5),
-                     make("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1), look("history", on=1))
+                     call("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1), look("history", on=1))
 
 Values are what JSON holds: bool, int, float (nan and infinities too), str, list, dict and None. A tuple comes back as a
 list. Of any other value the name of its type comes back. Each step has an outcome, in order.
@@ -30,8 +30,8 @@ from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import CALLS
 from autograder.workspace import Workspace
 
-REFERENCE = "$made"  # as in caller.py, which runs alone in the sandbox
-CALLER = Path(__file__).with_name("caller.py")
+REFERENCE = "$made"  # as in call_host.py, which runs alone in the sandbox
+HOST = Path(__file__).with_name("call_host.py")
 MAX_ANSWER = 1024 * 1024
 
 
@@ -45,11 +45,10 @@ class Step:
     on: int | None = None  # the number of the step whose object has `name`; None for the module
     module: str | None = None  # another module that has `name`, such as `random`; None for the student's
     called: bool = True  # whether it is called, or only read
-    keep: bool = False  # whether the value is kept for later steps and not answered
 
 
 @dataclass(frozen=True)
-class Outcome:
+class StepResult:
     """What came of a step."""
 
     value: Any = None  # what was returned, as JSON; None when there is none
@@ -61,13 +60,8 @@ class Outcome:
 
 
 def call(name: str, *args: Any, on: int | None = None, module: str | None = None, **kwargs: Any) -> Step:
-    """Return the step that calls a function; the arguments are as in `Step`."""
+    """Return the step that calls a function or a class; the arguments are as in `Step`."""
     return Step(name, args, kwargs, on, module)
-
-
-def make(name: str, *args: Any, module: str | None = None, **kwargs: Any) -> Step:
-    """Return the step that calls a class and keeps the object for later steps; the arguments are those of `call`."""
-    return replace(call(name, *args, module=module, **kwargs), keep=True)
 
 
 def made(number: int) -> dict[str, int]:
@@ -80,7 +74,7 @@ def look(name: str, *, on: int | None = None) -> Step:
     return Step(name, on=on, called=False)
 
 
-def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[Outcome]:
+def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[StepResult]:
     """Carry out steps in one sandboxed process; return their outcomes.
 
     Args:
@@ -93,13 +87,13 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
         StudentError: the module cannot be imported, or its code hangs, ends the process or goes over a limit.
     """
     spec = workspace.sandbox(CALLS)
-    spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(CALLER)))
+    spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(HOST)))
     order = json.dumps({"module": module, "steps": [asdict(step) for step in steps]})
     with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
         given.write(order.encode())
         given.seek(0)
         descriptors = given.fileno(), taken.fileno()
-        command = [sys.executable, str(CALLER), *map(str, descriptors)]
+        command = [sys.executable, str(HOST), *map(str, descriptors)]
         with launch(command, spec, pass_fds=descriptors, profile="tests") as process:
             process.wait(CALLS.wall_seconds + 10)
             taken.seek(0)
@@ -114,7 +108,7 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
     return [_outcome(outcome) for outcome in outcomes]
 
 
-def value(outcome: Outcome, shown: str) -> Any:
+def value(outcome: StepResult, shown: str) -> Any:
     """Return an outcome's value; `shown` is the call as the student would write it.
 
     A CheckFailed says that it raised, or returned what is no plain value.
@@ -158,10 +152,10 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
     return diagnose_crash(Crash("import", kind, message, trace))
 
 
-def _outcome(data: object) -> Outcome:
+def _outcome(data: object) -> StepResult:
     data = data if isinstance(data, dict) else {}
     arguments = data.get("arguments")
-    return Outcome(
+    return StepResult(
         value=data.get("value"),
         type=str(data.get("type", "")),
         raised=str(data.get("raised", "")),

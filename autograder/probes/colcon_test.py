@@ -13,10 +13,10 @@ from pathlib import Path
 
 from autograder.building.colcon import HOST, colcon_command
 from autograder.checks import expect
-from autograder.probes.files import read_plain
+from autograder.probes.files import read_below
 from autograder.probes.installed import Installed
-from autograder.probes.test_reports import MAX_BYTES, Claims, Report, parse_claims
-from autograder.probes.test_runs import sandboxed
+from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, parse_claims
+from autograder.probes.student_test_runs import sandboxed
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import COLCON_TEST
@@ -32,7 +32,7 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
 
     Returns:
         What colcon says: its exit status, and the tests in the file that its `test-result` would count. Where it had to
-        be stopped, that of a second run, as in `test_runs.run`.
+        be stopped, that of a second run, as in `student_test_runs.run`.
     """
     first, _ = _colcon_test(workspace, package)
     return first if first.ending is not Ending.WALL_TIME else _colcon_test(workspace, package)[0]
@@ -73,15 +73,6 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
     with launch(colcon_command(workspace, "test", *choice), spec, profile="colcon") as process:
         process.wait(COLCON_TEST.wall_seconds + 10)
         ending, status, output = process.ending, process.returncode, process.output
-    path = workspace.root / "build" / package / "pytest.xml"
-    written = (read_plain(path, MAX_BYTES) if _inside(path, workspace.root) else None) or b""
+    written = read_below(workspace.root, Path("build", package, "pytest.xml"), MAX_BYTES) or b""
     claims = parse_claims(written) if run.encode() in written else None
     return Report(ending, status, claims or Claims(), 0, output), claims is not None
-
-
-def _inside(path: Path, root: Path) -> bool:
-    """Return whether a path that the build has made stays below `root`."""
-    try:
-        return path.parent.resolve().is_relative_to(root.resolve())
-    except (OSError, RuntimeError):
-        return False

@@ -24,6 +24,16 @@ def read_plain(path: Path, limit: int) -> bytes | None:
     return data if len(data) <= limit else None
 
 
+def read_below(folder: Path, name: Path, limit: int) -> bytes | None:
+    """Return a file's bytes as `read_plain` does; None also if a link on the way to it leads out of the folder."""
+    path = folder / name
+    try:
+        inside = path.parent.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # links in a circle
+        return None
+    return read_plain(path, limit) if inside else None
+
+
 def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), ending: str = "") -> list[Path]:
     """Return the plain files below a folder, relative to it, in order; no link is followed, the folder itself neither.
 

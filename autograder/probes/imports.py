@@ -104,7 +104,7 @@ def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...
     return {"exec": runs, "test": tuple(each for each in tests if each.module not in known)}
 
 
-def say(imports: Collection[Import]) -> str:
+def describe(imports: Collection[Import]) -> str:
     """Name imports with where they stand and what would declare them."""
     return "; ".join(f"{each.files[0]} imports {each.module}{_called(each)}" for each in imports)
 

@@ -5,13 +5,15 @@ Only plain files are read. No link is followed out of the install space, and not
 
 from __future__ import annotations
 
+import configparser
+import contextlib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from email.parser import HeaderParser
 from pathlib import Path
 
-from autograder.probes.files import plain_files, read_plain
+from autograder.probes.files import plain_files, read_below, read_plain
 
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024
@@ -34,10 +36,12 @@ class Installed:
     recorded: frozenset[str]
     extras: Mapping[str, tuple[str, ...]]  # the requirements of each extra, such as `test`
     metadata: Mapping[str, str]  # headers such as Version, License, Maintainer-email
+    programs: Mapping[str, str]  # the module of each program that a setup.py names
+    classifiers: tuple[str, ...]  # those that a setup.py names
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, None if it is not there, is no plain file or is too large."""
-        return _read_below(self.prefix, Path("share", self.package, name))
+        return read_below(self.prefix, Path("share", self.package, name), MAX_BYTES)
 
 
 def look(install: Path, package: str) -> Installed:
@@ -60,6 +64,8 @@ def look(install: Path, package: str) -> Installed:
         recorded=_recorded(install, package),
         extras=_extras(_joined(own, "requires.txt")),
         metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
+        programs=_programs(_joined(eggs, "entry_points.txt")),
+        classifiers=tuple(HeaderParser().parsestr(_joined(eggs, "PKG-INFO")).get_all("Classifier", [])),
     )
 
 
@@ -67,15 +73,10 @@ def _files(folder: Path) -> tuple[str, ...]:
     return tuple(map(str, plain_files(folder, MAX_FILES)))
 
 
-def _read_below(folder: Path, name: Path) -> bytes | None:
-    """Return a plain file's bytes, unless a link on the way to it leads out of the folder."""
-    path = folder / name
-    return read_plain(path, MAX_BYTES) if path.parent.resolve().is_relative_to(folder.resolve()) else None
-
-
 def _recorded(install: Path, package: str) -> frozenset[str]:
     """Return what colcon had setup.py record of its own installing, beside the install space."""
-    text = (_read_below(install.parent / "build", Path(package, "install.log")) or b"").decode(errors="replace")
+    log = read_below(install.parent / "build", Path(package, "install.log"), MAX_BYTES) or b""
+    text = log.decode(errors="replace")
     below = [line.partition(f"/{install.name}/{package}/") for line in text.splitlines()]
     return frozenset(name for _, found, name in below if found)
 
@@ -98,6 +99,14 @@ def _module(file: str) -> str | None:
 
 def _of_colcon(name: str) -> bool:
     return name.startswith("hook/") or (name.startswith("package.") and name != "package.xml")
+
+
+def _programs(text: str) -> dict[str, str]:
+    parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
+    with contextlib.suppress(configparser.Error):
+        parser.read_string(text)
+    entries = parser.items("console_scripts") if parser.has_section("console_scripts") else []
+    return {name: entry.partition(":")[0].strip() for name, entry in entries}
 
 
 def _extras(text: str) -> dict[str, tuple[str, ...]]:

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from autograder.exceptions import UsageError
-
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
 READ_AS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
@@ -75,11 +73,6 @@ class Interface:
     path: str
     parts: tuple[Part, ...]
 
-    @property
-    def part_names(self) -> tuple[str, ...]:
-        """The parts' names; the one part of a message has none."""
-        return PARTS[self.path.partition("/")[0]]
-
 
 @dataclass(frozen=True)
 class Difference:
@@ -99,14 +92,11 @@ def parse(package: str, path: str, text: str) -> Interface:
 
     Raises:
         Unreadable: the build would refuse it.
-        UsageError: the path is none of a definition.
     """
     from rosidl_adapter import parser
 
     kind, _, file = path.partition("/")
     name = file.removesuffix(f".{kind}")
-    if kind not in PARTS or name == file:
-        raise UsageError(f"{path!r} is no definition's path: msg/Name.msg, srv/Name.srv or action/Name.action")
     if len(text) > MAX_BYTES:
         raise Unreadable(f"{path} is far larger than a definition.")
     try:
@@ -146,7 +136,7 @@ class _Comparison:
         self._part = wanted.parts[index]
         self._found = found.parts[index]
         others = [other for other in range(len(wanted.parts)) if other != index]
-        names = wanted.part_names
+        names = PARTS[wanted.path.partition("/")[0]]
         self._elsewhere = {
             name: names[other] for other in others for name in _names(found.parts[other]) - _names(wanted.parts[other])
         }
@@ -167,28 +157,28 @@ class _Comparison:
         extra = [name for name in found if name not in wanted and name not in constants]
         for name in (name for name in wanted if name not in found):
             if name in self._elsewhere:
-                yield self._say(Aspect.FIELDS, f"{name} stands in the {self._elsewhere[name]}, it belongs here")
+                yield self._difference(Aspect.FIELDS, f"{name} stands in the {self._elsewhere[name]}, it belongs here")
             elif near := _near(name, [other for other in extra if other not in self._strayed]):
                 extra.remove(near)
-                yield self._say(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
+                yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
             else:
-                yield self._say(Aspect.FIELDS, f"the field {name} is missing")
+                yield self._difference(Aspect.FIELDS, f"the field {name} is missing")
         for name in extra:
             if name not in self._strayed:
-                yield self._say(Aspect.FIELDS, f"the contract has no field {name}")
+                yield self._difference(Aspect.FIELDS, f"the contract has no field {name}")
         if wanted.keys() == found.keys() and list(wanted) != list(found):
-            order = ", ".join(wanted)
-            yield self._say(Aspect.FIELDS, f"the order of the fields is {', '.join(found)}, it should be {order}")
+            order, other = ", ".join(wanted), ", ".join(found)
+            yield self._difference(Aspect.FIELDS, f"the order of the fields is {other}, it should be {order}")
 
     def _field(self, wanted: Field, found: Field) -> Iterator[Difference]:
         if wanted.element != found.element:
-            yield self._say(Aspect.TYPES, f"{found.name} is {found.type}, it should be {wanted.type}")
+            yield self._difference(Aspect.TYPES, f"{found.name} is {found.type}, it should be {wanted.type}")
         elif wanted.type != found.type:
-            yield self._say(Aspect.BOUNDS, f"{found.name} is {found.type}, it should be {wanted.type}")
+            yield self._difference(Aspect.BOUNDS, f"{found.name} is {found.type}, it should be {wanted.type}")
         if wanted.default != found.default and not (wanted.default is None and not found.default):
             says = "no default" if found.default is None else f"the default {found.default!r}"
             should = "none" if wanted.default is None else repr(wanted.default)
-            yield self._say(Aspect.DEFAULTS, f"{found.name} has {says}, it should be {should}")
+            yield self._difference(Aspect.DEFAULTS, f"{found.name} has {says}, it should be {should}")
 
     def _constants(self) -> Iterator[Difference]:
         found = {constant.name: constant for constant in self._found.constants}
@@ -199,19 +189,19 @@ class _Comparison:
             if there is not None:
                 if (there.type, there.value) != (constant.type, constant.value):
                     says, should = f"{there.type} {there.value!r}", f"{constant.type} {constant.value!r}"
-                    yield self._say(Aspect.CONSTANTS, f"the constant {name} is {says}, it should be {should}")
+                    yield self._difference(Aspect.CONSTANTS, f"the constant {name} is {says}, it should be {should}")
             elif name in self._elsewhere:
                 where = self._elsewhere[name]
-                yield self._say(Aspect.CONSTANTS, f"the constant {name} stands in the {where}, it belongs here")
+                yield self._difference(Aspect.CONSTANTS, f"the constant {name} stands in the {where}, it belongs here")
             elif name.lower() in fields:
                 sentence = f"{name.lower()} is a field; a constant is written {constant.type} {name} = VALUE"
-                yield self._say(Aspect.CONSTANTS, sentence)
+                yield self._difference(Aspect.CONSTANTS, sentence)
             elif near := _near(name, extra):
-                yield self._say(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
+                yield self._difference(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
             else:
-                yield self._say(Aspect.CONSTANTS, f"the constant {name} is missing")
+                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is missing")
 
-    def _say(self, aspect: Aspect, sentence: str) -> Difference:
+    def _difference(self, aspect: Aspect, sentence: str) -> Difference:
         return Difference(aspect, f"{self._where}: {sentence}.")
 
 

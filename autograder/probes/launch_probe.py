@@ -123,7 +123,7 @@ def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
     what = [f"{', '.join(missing)} missing"] if missing else []
     what += [f"{', '.join(extra)} not asked for"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
-    reason = trouble(harness.output)
+    reason = failure(harness.output)
     parts = [f"{seen}: {'; '.join(near or what)}.", reason and f"What the launch said: {reason}"]
     raise CheckFailed(" ".join(filter(None, parts)))
 
@@ -133,7 +133,7 @@ def expect_parameters(harness: LaunchHarness, node: str, wanted: Mapping[str, Va
     found = harness.parameters(node, list(wanted))
     if found is None:
         raise CheckFailed(
-            f"{node} does not answer when it is asked for its parameters. {trouble(harness.output)}".strip()
+            f"{node} does not answer when it is asked for its parameters. {failure(harness.output)}".strip()
         )
     for name, value in wanted.items():
         given = found[name]
@@ -169,11 +169,11 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
     return [(match["name"], match["code"]) for match in _DIED.finditer(harness.output)]
 
 
-def expect_stopped(stop: Stop, status: int | None = 0) -> None:
-    """Fail the check unless the launch has ended, with this exit status (None: with any), and has left nothing."""
+def expect_stopped(stop: Stop) -> None:
+    """Fail the check unless the launch has ended, with exit status 0, and has left nothing."""
     expect(stop.status is not None, f"After {STOP_SECONDS:.0f} s it still ran, and had to be killed.")
     expect(not stop.left, f"It ended, but left a process running: {', '.join(stop.left)[:200]}.")
-    expect(status is None or stop.status == status, f"It ended with exit status {stop.status}, instead of {status}.")
+    expect(stop.status == 0, f"It ended with exit status {stop.status}, instead of 0.")
 
 
 def started(output: str) -> list[str]:
@@ -191,7 +191,7 @@ def node_names(output: str, program: str) -> set[str]:
     return {match["node"] for match in _NAMED.finditer(output) if match["name"] == program}
 
 
-def trouble(output: str) -> str:
+def failure(output: str) -> str:
     """Return in a line what went wrong by a launch's output; empty if it names nothing."""
     if caught := _CAUGHT.search(output):
         return " ".join(caught["what"].split())
@@ -218,7 +218,7 @@ def require_written(output: str) -> None:
     lines = output.splitlines()
     first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
     if first is not None:
-        sentence = "A part of the launch file is still to be written: put your code in place of the raise."
+        sentence = "A part of the launch file is still to be written: replace the line raise NotImplementedError(...) with your code."
         detail = with_source_paths("\n".join(lines[max(first - 1, 0) : first + 2]))
         raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, detail))
 

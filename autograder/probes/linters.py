@@ -11,9 +11,9 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from autograder.checks import CheckFailed
-from autograder.probes import test_runs
-from autograder.probes.laid_fault import UNTIDY, expect_failures
-from autograder.probes.test_reports import Source, TestRun
+from autograder.probes import student_test_runs
+from autograder.probes.fault_injection import UNTIDY, expect_failures
+from autograder.probes.student_test_reports import Source, TestRun
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.workspace import Workspace
 
@@ -43,7 +43,7 @@ def objections(workspace: Workspace, source: Source) -> dict[str, str]:
     """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test."""
     tests = [f"{name}.py" for name in _FINDINGS]
     files = {**source.files, **{f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}}
-    (report,) = test_runs.run(workspace, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
+    (report,) = student_test_runs.run(workspace, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
     said: dict[str, str] = {}
     for name, finding in _FINDINGS.items():
         test = f"{name}::{name}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +12,10 @@ from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ign
 from autograder.checks import CheckFailed
 from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.packages import MANIFEST, MAX_MANIFEST
+from autograder.probes.files import read_plain
 
 PLACEHOLDER = "TODO"
+JAZZY = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}  # what a condition may ask
 
 # The kinds of dependency. A <depend> is a build, a build_export and an exec dependency.
 KINDS = ("build", "build_export", "buildtool", "exec", "test", "doc")
@@ -29,7 +32,7 @@ class Manifest:
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
     build_type: str  # what <export> says; empty if it says nothing, and then ROS takes the package for an old CMake one
-    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`
+    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in Jazzy
     groups: frozenset[str]  # of which dependency groups it is a member
 
     def needs(self, *kinds: str) -> frozenset[str]:
@@ -42,8 +45,8 @@ def read(package: Path) -> Manifest:
     path = package / MANIFEST
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(f"{package.name} has no {MANIFEST}.")
-    data = path.read_bytes()[: MAX_MANIFEST + 1]
-    if len(data) > MAX_MANIFEST:
+    data = read_plain(path, MAX_MANIFEST)
+    if data is None:
         raise CheckFailed(f"{package.name}/{MANIFEST} is far larger than a manifest.")
     try:
         text = data.decode()
@@ -65,6 +68,12 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
         raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
     except Exception as error:  # expat's and catkin_pkg's own, such as TypeError for a file of bytes
         raise CheckFailed(f"{where} is no well-formed XML: {error}") from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
+            found.evaluate_conditions(JAZZY)
+    except (ValueError, RecursionError) as error:
+        raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
     return Manifest(
         name=found.name,
         version=found.version,
@@ -73,7 +82,10 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
         licences=tuple(str(licence) for licence in found.licenses),
         maintainers=tuple((person.name, person.email or "") for person in found.maintainers),
         build_type=next((each.content or "" for each in found.exports if each.tagname == "build_type"), ""),
-        depends={kind: frozenset(each.name for each in getattr(found, f"{kind}_depends")) for kind in KINDS},
+        depends={
+            kind: frozenset(each.name for each in getattr(found, f"{kind}_depends") if each.evaluated_condition)
+            for kind in KINDS
+        },
         groups=frozenset(each.name for each in found.member_of_groups),
     )
 

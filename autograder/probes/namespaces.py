@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from autograder.harness import AutoHarness, Workspace
-from autograder.probes.qos import not_plain
+from autograder.probes.qos import non_default_qos
 
 SPACE = "/robot7"
 SEEN_SECONDS = 5.0  # of real time until a name is seen in the graph; only a wrong program takes so long
 
 
-def left_behind(
+def missing_in_namespace(
     workspace: Workspace, package: str, executable: str, names: Iterable[str], *, plain: bool = False
 ) -> str:
     """Return which relative names a program does not have in the namespace in which it is started, in a sentence.
 
     The names are its topics and services. The sentence is empty if it has all of them there, and where `plain` asks for
-    it, if the queues of its topics are plain, as `not_plain` says.
+    it, if the queues of its topics are plain, as `non_default_qos` says.
     """
     wanted = [f"{SPACE}/{name}" for name in names]
     with AutoHarness(workspace, package, executable, arguments=("--ros-args", "-r", f"__ns:={SPACE}")) as harness:
@@ -29,7 +29,7 @@ def left_behind(
 
         harness.wait_for(lambda: not missing(), SEEN_SECONDS)
         left = missing()
-        differs = not_plain(harness.node, *wanted) if plain else ""
+        differs = non_default_qos(harness.node, *wanted) if plain else ""
     if not left:
         return differs
     return (

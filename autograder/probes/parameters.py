@@ -1,8 +1,8 @@
 """A node's parameters: read and changed over its own services, and compared in sentences for the student.
 
     node = NodeParameters(harness, "/configured_node")
-    node.values("safety_distance")                       # {"safety_distance": 0.5}
-    node.change({"safety_distance": 9.0})                # Answer(accepted=False, reason="... out of range ...")
+    node.values("safety_distance")         # {"safety_distance": 0.5}
+    node.change({"safety_distance": 9.0})  # SetParametersReply(accepted=False, reason="... out of range ...")
 
 A student can forge what a node answers. It is shown shortened, and checks believe it only where behaviour agrees.
 """
@@ -23,6 +23,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from autograder.checks import CheckFailed
 from autograder.harness import Harness
+from autograder.probes.files import read_plain
 
 Value = bool | int | float | str | list[object] | None
 
@@ -41,7 +42,7 @@ TYPES = {
 
 
 @dataclass(frozen=True)
-class Answer:
+class SetParametersReply:
     """A node's answer to a request to change parameters; `reason` is its words when it refused, shortened."""
 
     accepted: bool
@@ -74,13 +75,13 @@ class NodeParameters:
         answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
         return {name: found.descriptors[0] for name, found in answers.items() if found.descriptors}
 
-    def change(self, values: Mapping[str, Value]) -> Answer:
+    def change(self, values: Mapping[str, Value]) -> SetParametersReply:
         """Ask the node to set parameters, all in one request."""
         request = SetParametersAtomically.Request(
             parameters=[Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
         )
         result = self._ask(SetParametersAtomically, "set_parameters_atomically", request).result
-        return Answer(result.successful, shortened(result.reason))
+        return SetParametersReply(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
         """Call one of the node's services; a CheckFailed says that there is none, or no answer."""
@@ -143,13 +144,13 @@ def _in_type_of(like: Value, value: Value) -> Value:
 def differences(values: Mapping[str, Value], wanted: Mapping[str, Value]) -> list[str]:
     """Say for each wanted parameter that has another value what it is and what it should be."""
     return [
-        f"{name} is {said(values.get(name))} instead of {said(value)}"
+        f"{name} is {value_text(values.get(name))} instead of {value_text(value)}"
         for name, value in wanted.items()
         if not same(values.get(name), value)
     ]
 
 
-def said(value: Value) -> str:
+def value_text(value: Value) -> str:
     """Put a value into words that tell 1 from 1.0 and from '1'."""
     return "not set" if value is None else shortened(repr(value))
 
@@ -164,22 +165,25 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
     A CheckFailed says what to do where it is missing, still to be written, no YAML, or not nested as ROS reads it.
     """
-    if not path.is_file():
+    if path.is_symlink() or not path.is_file():
         raise CheckFailed(
             f"{path.parent.name}/{path.name} is not installed: write it into the package's config folder."
         )
-    text = path.read_text(errors="replace")[: MAX_FILE + 1]
-    if len(text) > MAX_FILE:
+    data = read_plain(path, MAX_FILE)
+    if data is None:
         raise CheckFailed(f"{path.name} is far larger than a parameter file.")
+    text = data.decode(errors="replace")
     if "NotImplementedError" in text:
-        raise CheckFailed(f"{path.name} is still to be written: put your lines in place of the raise.")
+        raise CheckFailed(
+            f"{path.name} is still to be written: replace the line raise NotImplementedError(...) with your lines."
+        )
     try:
-        data = yaml.safe_load(text)
+        file = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
         raise CheckFailed(f"{path.name} is no YAML: {shortened(str(error))}.") from None
-    if not isinstance(data, dict):
+    if not isinstance(file, dict):
         raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
-    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in data.items()}
+    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:

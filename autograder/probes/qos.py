@@ -6,7 +6,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 
-def not_plain(node: Node, *topics: str) -> str:
+def non_default_qos(node: Node, *topics: str) -> str:
     """Return which endpoint on the topics is not what `10` stands for, reliable and volatile; "" if all are.
 
     The length of its queue is known to nobody but the program. `node` is the grader's; its own endpoints do not count.

@@ -1,7 +1,7 @@
 """Versions of a package under test, kept so alike from outside that only their behaviour tells them apart.
 
 A test that recognises a version without trying it could claim the right thing of each: by a file's text, its hash or
-byte code, by names, paths or times. So every version, the reference too, goes through `disguise`: no comments, no
+byte code, by names, paths or times. So every version, the reference too, goes through `obfuscate`: no comments, no
 docstrings, local names and private attributes drawn anew for each run. Versions of different styles, right and faulty
 ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
 
@@ -47,18 +47,23 @@ class Version:
     scripts: Mapping[str, str]
 
 
+def read_files(folder: Path) -> dict[str, bytes]:
+    """Read a package's files, by their paths below its folder."""
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
 def read(folder: Path, scripts: Mapping[str, str]) -> Version:
     """Read a package's files, all but its tests."""
-    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
-    names = [path.relative_to(folder) for path in paths]
-    return Version({str(name): (folder / name).read_text() for name in names if name.parts[0] != "test"}, scripts)
+    files = read_files(folder)
+    return Version({name: data.decode() for name, data in files.items() if not name.startswith("test/")}, scripts)
 
 
-def disguise(version: Version, seed: int) -> Version:
+def obfuscate(version: Version, seed: int) -> Version:
     """Return a version of the same behaviour whose Python files look different for each seed."""
     draw = random.Random(seed)
     return Version(
-        {name: _disguised(text, draw) if name.endswith(".py") else text for name, text in version.files.items()},
+        {name: _obfuscated(text, draw) if name.endswith(".py") else text for name, text in version.files.items()},
         version.scripts,
     )
 
@@ -102,7 +107,7 @@ def _installed(prefix: Path, package: str, name: str) -> Path | None:
     return prefix / "share" / package / name if top in ("launch", "config", "package.xml") else None
 
 
-def _disguised(text: str, draw: random.Random) -> str:
+def _obfuscated(text: str, draw: random.Random) -> str:
     tree = ast.parse(text)
     nodes = list(ast.walk(tree))  # to go round a tree takes long, and there are hundreds of them
     for node in nodes:

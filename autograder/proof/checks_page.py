@@ -26,7 +26,7 @@ CONTRACT = ("the notebook says", "held by", "broken by")
 
 def checks_page() -> str:
     """Return the page as Markdown."""
-    return HEAD + "".join("\n".join(["", f"## {name}", "", *_chapter(name)]) for name in suites.graded())
+    return HEAD + "".join("\n".join(["", f"## {name}", "", *_chapter(name)]) for name in suites.graded_assignments())
 
 
 def _chapter(name: str) -> list[str]:

@@ -32,7 +32,7 @@ DRIVES = frozenset({"room", "pillars", "corridor"})
 
 def _attacks() -> Iterator[object]:
     """Yield each attack with its assignment."""
-    found = [(assignment, attack) for assignment in suites.graded() for attack in attacks(assignment)]
+    found = [(assignment, attack) for assignment in suites.graded_assignments() for attack in attacks(assignment)]
     others = [attack.id for assignment, attack in found if assignment != ASSIGNMENT]
     chosen = sample(others, len(others), commit())
     for assignment, attack in found:
@@ -83,5 +83,5 @@ def test_an_attack_gains_no_point_and_learns_nothing(
 
 
 def test_the_list_of_hidden_texts_is_not_empty() -> None:
-    for assignment in suites.graded():
+    for assignment in suites.graded_assignments():
         assert len(hidden_lines(assignment)) > 20, assignment

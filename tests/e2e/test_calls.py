@@ -12,7 +12,7 @@ from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes.calls import Outcome, call, calls, look, made, make, same, value
+from autograder.probes.calls import StepResult, call, calls, look, made, same, value
 from autograder.ros import environment
 
 MODULE = """
@@ -76,7 +76,7 @@ def test_values_cross_as_json_with_nan_and_infinities(workspace: Workspace) -> N
 
 
 def test_a_value_made_by_a_step_can_be_used_in_later_steps(workspace: Workspace) -> None:
-    steps = (make("Counter", start=2), make("Counter", 3), call("add", made(1), on=0), look("count", on=0))
+    steps = (call("Counter", start=2), call("Counter", 3), call("add", made(1), on=0), look("count", on=0))
     outcomes = calls(workspace, "demo", *steps)
     assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]
 
@@ -105,7 +105,7 @@ def test_exceptions_and_strange_values_are_named(workspace: Workspace) -> None:
 
 def test_another_module_can_take_part(workspace: Workspace) -> None:
     (outcome,) = calls(workspace, "demo", call("hypot", 3.0, 4.0, module="math"))
-    assert outcome == Outcome(value=5.0, arguments=(3.0, 4.0))
+    assert outcome == StepResult(value=5.0, arguments=(3.0, 4.0))
 
 
 @pytest.mark.parametrize(

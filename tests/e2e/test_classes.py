@@ -73,7 +73,7 @@ def two_mutants(assignment: str) -> list[Mutant]:
     return [*inside[:1], *outside[:1], *inside[1:], *outside[1:]][:2]
 
 
-@pytest.fixture(scope="module", params=suites.graded())
+@pytest.fixture(scope="module", params=suites.graded_assignments())
 def assignment(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

@@ -25,11 +25,11 @@ from tests.sampling import commit, sample, unless
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
-    for name in suites.graded()
+    for name in suites.graded_assignments()
     for case in (*cases(name, quick=True), *rewritten_cases(name))
 }
 # Chapters of which the whole population was graded, and every survivor has a reason.
-SURVEYED = [name for name in suites.graded() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
+SURVEYED = [name for name in suites.graded_assignments() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
 PART = 6  # mutants of a chapter's population for a commit
 
 
@@ -40,7 +40,7 @@ def of(kind: CaseKind, assignment: str = "") -> list[str]:
 
 def chosen(draw: str | None = None) -> set[str]:
     """Return the ids of the cases that run for each change."""
-    mutants = (sample(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded())
+    mutants = (sample(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded_assignments())
     releases, variants = sample(of(CaseKind.RELEASE), 3, draw), sample(of(CaseKind.VARIANT), 6, draw)
     return set().union(of(CaseKind.REFERENCE), releases, variants, *mutants)
 

@@ -37,7 +37,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(2400)]
 
 def each_chapter(*, graded: bool = False) -> list[ParameterSet]:
     """Return the chapters as parameters; `make test` takes one of them."""
-    names = suites.graded() if graded else [chapter.assignment for chapter in chapters()]
+    names = suites.graded_assignments() if graded else [chapter.assignment for chapter in chapters()]
     marked = {name: [] if name == EACH_TIME else [pytest.mark.nightly] for name in names}
     return [
         pytest.param(chapter, marks=marked[chapter.assignment], id=chapter.assignment)

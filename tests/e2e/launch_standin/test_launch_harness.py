@@ -133,7 +133,7 @@ def test_a_killed_program_disappears_and_an_idle_launch_ends(workspace: Workspac
         launch_probe.expect_nodes(harness, ["/beacon"])
         assert harness.kill("beacon", signal.SIGKILL) == 1
         assert harness.wait_for(lambda: harness.status is not None, PATIENCE)
-        assert launch_probe.trouble(harness.output) == "beacon died with exit code -9"
+        assert launch_probe.failure(harness.output) == "beacon died with exit code -9"
         assert harness.kill("beacon") == 0
 
 

@@ -16,10 +16,10 @@ from autograder.checks.ch06_testing.support.assertions import (
     expect_passed,
     is_usable,
 )
-from autograder.checks.ch06_testing.support.contract import LEAST, LIMITS
+from autograder.checks.ch06_testing.support.contract import LIMITS, MIN_TESTS
 from autograder.harness import Workspace
 from autograder.probes.colcon_test import expect_ended
-from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source
+from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source
 from autograder.ros import environment
 from autograder.sandbox import Ending
 
@@ -35,7 +35,7 @@ def report(
     return Report(ending, implied, Claims(dict(zip(names, verdicts, strict=True)), said), 0, "")
 
 
-ENOUGH = report(*[GOOD] * LEAST[LIMITS])
+ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
 
 
 @pytest.mark.parametrize(

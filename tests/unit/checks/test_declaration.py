@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from autograder.checks import CheckFailed, Row, Visibility, check, declared, each, expect, group, hint
+from autograder.checks import CheckFailed, CheckRow, Visibility, check, check_each_row, check_of, expect, group, hint
 from autograder.exceptions import GraderError
 
 
@@ -24,7 +24,7 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
         More for maintainers.
         """  # noqa: D205
 
-    found = declared(test_turns)
+    found = check_of(test_turns)
     assert found is not None
     assert (found.id, found.title, found.points) == ("turns", "The robot turns when it must.", 2.0)
     assert (found.group, found.hints, found.doc) == ("reaction", ("one", "two"), "https://docs.ros.org")
@@ -32,7 +32,7 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
 
 
 def test_a_function_that_declares_nothing_is_no_check() -> None:
-    assert declared(lambda: None) is None
+    assert check_of(lambda: None) is None
 
 
 def test_checks_of_a_group_inherit_its_page_and_dependencies_unless_they_declare_their_own() -> None:
@@ -46,7 +46,7 @@ def test_checks_of_a_group_inherit_its_page_and_dependencies_unless_they_declare
     def test_stops() -> None:
         """The robot stops."""
 
-    turns, stops = declared(test_turns), declared(test_stops)
+    turns, stops = check_of(test_turns), check_of(test_stops)
     assert turns is not None
     assert stops is not None
     assert (turns.group, turns.doc, turns.depends) == ("reaction", "https://docs.ros.org", ("starts",))
@@ -68,18 +68,18 @@ def test_the_folder_decides_the_visibility_of_a_check_also_in_a_table(
 ) -> None:
     module = ModuleType("a_suite")
     text = """
-from autograder.checks import Row, check, each, group
+from autograder.checks import CheckRow, check, check_each_row, group
 
 @check(points=1, group="g")
 def test_one():
     'One.'
 
-@each(group("h"), [Row(id="two", title="Two.", points=2, hints=("how",), doc="d")])
+@check_each_row(group("h"), [CheckRow(id="two", title="Two.", points=2, hints=("how",), doc="d")])
 def body(row, robot):
     pass
 """
     exec(compile(text, tmp_path / folder / "a_suite.py", "exec"), vars(module))
-    one, two = declared(module.test_one), declared(module.test_two)
+    one, two = check_of(module.test_one), check_of(module.test_two)
     assert one is not None
     assert two is not None
     assert (one.visibility, two.visibility) == (seen, seen)
@@ -88,7 +88,7 @@ def body(row, robot):
 
 def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_fixtures() -> None:
     @dataclass(frozen=True, kw_only=True)
-    class Distance(Row):
+    class Distance(CheckRow):
         metres: float
 
     rows = [
@@ -96,7 +96,7 @@ def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_
     ]
     seen = []
 
-    @each(group("g"), rows)
+    @check_each_row(group("g"), rows)
     def measures(row: Distance, robot: str) -> None:
         seen.append((row.id, row.metres, robot))
 
@@ -110,8 +110,8 @@ def test_a_check_of_a_table_calls_the_body_with_its_row_and_asks_for_the_body_s_
 def test_the_body_of_a_table_must_not_look_like_a_test() -> None:
     with pytest.raises(GraderError, match="body 'tests_all': its name must not start with 'test'"):
 
-        @each(group("g"), ())
-        def tests_all(row: Row) -> None:
+        @check_each_row(group("g"), ())
+        def tests_all(row: CheckRow) -> None:
             """A body."""
 
 

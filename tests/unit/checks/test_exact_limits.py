@@ -8,7 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from autograder.checks.ch08_capstone.hidden.edges import EXACT_CLEAR, EXACT_HALVES, EXACT_LIMIT, LIMIT_BELOW_EXACT
+from autograder.checks.ch08_capstone.hidden.exact_limits import (
+    EXACT_CLEAR,
+    EXACT_HALVES,
+    EXACT_LIMIT,
+    LIMIT_BELOW_EXACT,
+)
 
 MARGIN = 0.1  # m, of steering.py
 STYLES: dict[str, Callable[[float], float]] = {

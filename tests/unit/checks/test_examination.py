@@ -13,8 +13,8 @@ from autograder.checks.ch06_testing.hidden.examination import FILES, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
 from autograder.harness import Workspace
-from autograder.probes import test_runs
-from autograder.probes.test_reports import ClaimedOutcome, Claims, Report, Source, TestRun
+from autograder.probes import student_test_runs
+from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source, TestRun
 from autograder.ros import environment
 
 ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for number in range(8)}), 0, "")
@@ -36,7 +36,7 @@ def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
         wanted.extend(more)
         return [ALL_PASS] * len(more)
 
-    monkeypatch.setattr(test_runs, "run", note)
+    monkeypatch.setattr(student_test_runs, "run", note)
     return wanted
 
 

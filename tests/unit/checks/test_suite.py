@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from autograder.checks import suites
-from autograder.checks.declaration import declared
+from autograder.checks.declaration import check_of
 from autograder.exceptions import GraderError, UsageError
 
 HEAD = "from autograder.checks import check\n"
@@ -53,7 +53,7 @@ def test_checks_have_the_order_of_modules_and_of_lines(home: Home) -> None:
     assert [check.id for check in read.checks] == ["b", "a", "c"]
     assert [path.name for path in read.files] == ["first.py", "second.py"]
     assert (read.packages, read.max_score, read.groups) == (("tiny",), 3.5, {"g": 2.5, "h": 1.0})
-    assert suites.names(name, KIND) == ["01_tiny"]
+    assert suites.assignments_with(name, KIND) == ["01_tiny"]
 
 
 def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: Home) -> None:
@@ -82,8 +82,8 @@ def test_a_failed_import_inside_a_suite_is_not_reported_as_a_missing_suite(home:
 
 
 def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
-    assert "02_nodes" in suites.graded()
-    for name in suites.graded():
+    assert "02_nodes" in suites.graded_assignments()
+    for name in suites.graded_assignments():
         loaded = suites.hidden(name)
         assert len(loaded.checks) >= 15
         assert all(check.hints for check in loaded.checks)
@@ -94,11 +94,11 @@ def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
 def test_every_module_with_checks_is_named_in_modules(kind: str) -> None:
     """A module that MODULES leaves out would never be run, and no error would say so."""
     home = suites.__package__
-    for assignment in suites.names(home, kind):
+    for assignment in suites.assignments_with(home, kind):
         package = importlib.import_module(f"{home}.ch{assignment}.{kind}")
         there = [path.stem for path in Path(package.__path__[0]).glob("*.py") if path.stem != "__init__"]
         modules = [importlib.import_module(f"{package.__name__}.{name}") for name in there]
         with_checks = {
-            name for name, module in zip(there, modules, strict=True) if any(map(declared, vars(module).values()))
+            name for name, module in zip(there, modules, strict=True) if any(map(check_of, vars(module).values()))
         }
         assert with_checks == set(package.MODULES), package.__name__

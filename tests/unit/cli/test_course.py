@@ -83,7 +83,7 @@ def test_the_lists_of_hidden_checks_that_students_get_are_up_to_date() -> None:
     assert "The node is called robot_controller." in json.loads(layout.judged_later("02_nodes").read_text())
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_a_student_whose_visible_checks_all_pass_gets_the_list_of_hidden_checks(
     assignment: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -31,6 +31,6 @@ def test_each_test_that_the_table_names_exists() -> None:
 
 def test_the_table_names_the_submissions_of_the_proof_and_no_others() -> None:
     named = {name for row in ROWS for name in row["submissions"]}
-    there = [attack.id for assignment in suites.graded() for attack in attacks(assignment)]
+    there = [attack.id for assignment in suites.graded_assignments() for attack in attacks(assignment)]
     assert named == set(there)
     assert len(there) == len(set(there))

@@ -110,7 +110,7 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
         "import json, sys\n"
         "import autograder.grading.worker, autograder.grading.run_notebook, autograder.building.interface_bundle\n"
         "from autograder.checks import suites\n"
-        "[suites.hidden(name) for name in suites.graded()]\n"
+        "[suites.hidden(name) for name in suites.graded_assignments()]\n"
         "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
         "print(json.dumps([place for place in places if place]))\n"
     )
@@ -118,13 +118,13 @@ def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     homes = (layout.ROOT / "autograder", layout.ROOT / "sim")
     modules = {Path(place) for place in json.loads(printed.stdout)}
     imported = {module for module in modules if any(home in module.parents for home in homes)}
-    known = {path for name in suites.graded() for path in files(name, suites.hidden(name).reads)}
+    known = {path for name in suites.graded_assignments() for path in files(name, suites.hidden(name).reads)}
     assert len(imported) > 100
     assert imported - known == set()
 
 
 def test_each_path_in_reads_of_a_suite_exists() -> None:
-    reads = [layout.ROOT / path for name in suites.graded() for path in suites.hidden(name).reads]
+    reads = [layout.ROOT / path for name in suites.graded_assignments() for path in suites.hidden(name).reads]
     assert layout.SOLUTIONS / "speed_guard" in reads
     assert all(path.exists() for path in reads)
 

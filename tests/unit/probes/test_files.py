@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.probes.files import parse_python, read_plain
+from autograder.probes.files import parse_python, read_below, read_plain
 
 
 def test_a_plain_file_is_read(tmp_path: Path) -> None:
@@ -29,6 +29,18 @@ def test_folders_links_pipes_and_missing_files_are_not_read(kind: str, tmp_path:
     elif kind == "pipe":
         os.mkfifo(path)
     assert read_plain(path, 100) is None
+
+
+def test_a_file_behind_a_link_out_of_the_folder_or_in_a_circle_of_links_is_not_read(tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    (folder / "inside").mkdir(parents=True)
+    (folder / "inside" / "file").write_bytes(b"1")
+    (tmp_path / "file").write_bytes(b"2")
+    (folder / "out").symlink_to(tmp_path)
+    (folder / "circle").symlink_to(folder / "circle")
+    assert read_below(folder, Path("inside/file"), 5) == b"1"
+    assert read_below(folder, Path("out/file"), 5) is None
+    assert read_below(folder, Path("circle/file"), 5) is None
 
 
 def test_python_is_parsed_and_anything_else_is_not() -> None:

@@ -51,8 +51,8 @@ def test_an_import_has_its_place_and_the_dependency_that_declares_it(package: Pa
     assert numpy.keys[0] == "python3-numpy"
     assert imports.Import("cv2", ()).keys[0] == "python3-opencv"
     assert imports.Import("sensor_msgs", ()).keys[0] == "sensor_msgs"
-    assert imports.say([numpy]) == "lamp/nodes/lamp_node.py imports numpy (python3-numpy)"
-    assert imports.say([imports.Import("launch", ("a.py",))]) == "a.py imports launch"
+    assert imports.describe([numpy]) == "lamp/nodes/lamp_node.py imports numpy (python3-numpy)"
+    assert imports.describe([imports.Import("launch", ("a.py",))]) == "a.py imports launch"
 
 
 @pytest.mark.parametrize(

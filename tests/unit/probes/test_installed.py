@@ -19,7 +19,8 @@ FILES = {
     f"{SITE}/test/__init__.py": "",
     f"{EGG}/entry_points.txt": "[console_scripts]\nlamp = lamp.nodes.lamp:main\n",
     f"{EGG}/requires.txt": "setuptools\n\n[test]\npytest\n\n[doc:python_version>'3']\nsphinx\n",
-    f"{EGG}/PKG-INFO": "Metadata-Version: 2.1\nName: lamp\nVersion: 0.1.0\nLicense: MIT\n\nA lamp.\n",
+    f"{EGG}/PKG-INFO": "Metadata-Version: 2.1\nName: lamp\nVersion: 0.1.0\nLicense: MIT\n"
+    "Classifier: A\nClassifier: B\n\nA lamp.\n",
     "share/ament_index/resource_index/packages/lamp": "",
     "share/lamp/package.xml": "<package/>",
     "share/lamp/package.bash": "",
@@ -51,6 +52,8 @@ def test_all_installed_parts_of_a_package_are_listed(install: Path) -> None:
     assert found.shared == ("package.xml", "config/lamp.yaml")
     assert found.recorded == {"share/lamp/package.xml"}
     assert found.extras == {"test": ("pytest",), "doc": ("sphinx",)}
+    assert found.programs == {"lamp": "lamp.nodes.lamp"}
+    assert found.classifiers == ("A", "B")
     assert (found.metadata["Version"], found.metadata["License"]) == ("0.1.0", "MIT")
     assert found.read("config/lamp.yaml") == b"a: 1\n"
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.exceptions import UsageError
 from autograder.probes.interfaces import (
     MAX_BYTES,
     Aspect,
@@ -50,7 +49,6 @@ def test_messages_of_the_own_package_and_texts_are_read_as_they_are_written() ->
 def test_an_action_has_three_parts() -> None:
     action = parse("pkg", "action/A.action", "int8 a\n---\nint8 b\n---\nint8 c\n")
     assert [part.fields[0].name for part in action.parts] == ["a", "b", "c"]
-    assert action.part_names == ("goal", "result", "feedback")
 
 
 def test_comments_more_constants_and_empty_defaults_are_no_difference() -> None:
@@ -136,12 +134,6 @@ def test_a_definition_that_the_build_would_refuse_is_refused_with_the_reason(tex
 def test_an_action_without_its_parts_is_refused() -> None:
     with pytest.raises(Unreadable, match="two lines --- part goal, result and feedback"):
         parse("pkg", "action/A.action", "int8 a\n---\n")
-
-
-@pytest.mark.parametrize("path", ["Fetch.srv", "srv/Fetch.msg", "src/Fetch.src"])
-def test_a_path_of_no_definition_is_refused(path: str) -> None:
-    with pytest.raises(UsageError, match="is no definition's path"):
-        parse("pkg", path, TEXT)
 
 
 def test_a_file_with_a_similar_name_is_found_instead_of_a_missing_one() -> None:

@@ -9,7 +9,7 @@ import pytest
 from autograder.checks import CheckFailed
 from autograder.harness import Workspace
 from autograder.probes.linters import expect_tidy, objections
-from autograder.probes.test_runs import take
+from autograder.probes.student_test_runs import take
 from autograder.ros import environment
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 

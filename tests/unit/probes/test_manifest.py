@@ -47,6 +47,12 @@ def test_a_plain_depend_is_for_the_build_and_for_the_run() -> None:
     assert found.needs() == {"rclpy", "launch", "python3-pytest", "eigen", "ament_cmake"}
 
 
+def test_a_dependency_counts_if_its_condition_holds_in_jazzy() -> None:
+    text = TEXT.replace("<exec_depend>launch", '<exec_depend condition="$ROS_VERSION == {}">launch')
+    assert manifest.parse(text.format(2)).needs("exec") == {"rclpy", "launch"}
+    assert manifest.parse(text.format(1)).needs("exec") == {"rclpy"}
+
+
 def test_a_manifest_without_a_build_type_says_so() -> None:
     assert manifest.parse(TEXT.replace("<build_type>ament_python</build_type>", "")).build_type == ""
 
@@ -58,6 +64,7 @@ def test_a_manifest_without_a_build_type_says_so() -> None:
         ("<name>lamp</name>", "", 'exactly one "name" tag'),
         ("<name>lamp</name>", "<name>La mp</name>", "does not follow naming conventions"),
         ("<version>0.1.0</version>", "<version>one</version>", "version conventions"),
+        ("<depend>", '<depend condition="$ROS_VERSION =">', "A condition in lamp/package.xml cannot be read"),
         ("</description>", "", "not well-formed|mismatched|invalid XML"),
         (TEXT, "", "invalid XML|no element"),
         ("<name>lamp</name>", CODE_STUB, "^lamp/package.xml is still to be written"),

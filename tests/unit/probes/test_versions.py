@@ -10,7 +10,7 @@ import pytest
 
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, style
 from autograder.exceptions import GraderError
-from autograder.probes.versions import WHEN, Version, disguise, read, write_version
+from autograder.probes.versions import WHEN, Version, obfuscate, read, write_version
 
 SOURCE = '''"""A secret comment."""
 
@@ -51,17 +51,17 @@ def run(text: str) -> tuple[Any, ...]:
     return counter.add(step=2), counter.add(), space["outer"](5, times=3)
 
 
-def test_a_disguised_version_behaves_the_same_and_looks_different_for_each_seed() -> None:
+def test_an_obfuscated_version_behaves_the_same_and_looks_different_for_each_seed() -> None:
     version = Version({"a/b.py": SOURCE, "config/a.yaml": "x: 1"}, {})
-    texts = {disguise(version, seed).files["a/b.py"] for seed in range(5)}
+    texts = {obfuscate(version, seed).files["a/b.py"] for seed in range(5)}
     assert len(texts) == 5
     for text in texts:
         assert run(text) == run(SOURCE) == (10, 12, 15)
         for private in ("secret", "doubles", "Counts", "bigger", "self.count"):
             assert private not in text
         assert "SCALE = 2" in text
-    assert disguise(version, 1) == disguise(version, 1)
-    assert disguise(version, 1).files["config/a.yaml"] == "x: 1"
+    assert obfuscate(version, 1) == obfuscate(version, 1)
+    assert obfuscate(version, 1).files["config/a.yaml"] == "x: 1"
 
 
 def test_a_version_is_installed_as_a_build_would_install_it(tmp_path: Path) -> None:
@@ -105,14 +105,14 @@ def test_all_versions_have_the_same_files() -> None:
 @pytest.mark.parametrize("name", STYLES)
 def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
     faulty = broken(fault, name, random.Random(1)).files
-    right = disguise(style(name), random.Random(1).getrandbits(32)).files
+    right = obfuscate(style(name), random.Random(1).getrandbits(32)).files
     assert {path for path in right if right[path] != faulty[path]} >= {fault.file}
     compile(faulty[fault.file], fault.file, "exec")
 
 
 def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
     made = [reworded(random.Random(seed)).files for seed in range(30)]
-    plain = disguise(style(STYLES[0]), 1).files
+    plain = obfuscate(style(STYLES[0]), 1).files
     assert all(files.keys() == plain.keys() for files in made)
     for name in (name for name in plain if name.endswith(".py")):
         for files in made:

@@ -64,7 +64,7 @@ def test_an_edit_whose_text_does_not_occur_exactly_once_is_refused(tmp_path: Pat
         write_mutant(flawed, ("my_robot_package",), tmp_path / "out")
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment: str, tmp_path: Path) -> None:
     sources = suites.hidden(assignment).sources
     write_reference(sources, tmp_path / "reference")
@@ -80,7 +80,7 @@ def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment
 
 
 def test_mutants_have_unique_names_and_every_check_is_lost_by_one() -> None:
-    for assignment in suites.graded():
+    for assignment in suites.graded_assignments():
         every = mutants(assignment)
         assert len({mutant.id for mutant in every}) == len(every)
         lost = frozenset().union(*(mutant.loses for mutant in every))

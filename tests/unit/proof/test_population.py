@@ -18,7 +18,7 @@ from autograder.proof.survivors import ChapterMutationResult, holds, mutant_coun
 ASSIGNMENT = "02_nodes"
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_mutant_has_its_own_text_and_name(assignment: str) -> None:
     found = population(assignment)
     assert found == population(assignment)
@@ -26,7 +26,7 @@ def test_each_mutant_has_its_own_text_and_name(assignment: str) -> None:
     assert all(mutant.diff() for mutant in found.mutants)
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_reason_for_a_survivor_names_an_existing_mutant(assignment: str) -> None:
     found = reasons(assignment, population(assignment))
     assert all(reason.startswith(survivors.KINDS) for reason in found.values())

@@ -91,14 +91,14 @@ def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
     assert len({case.name for case in found}) == len(found)
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_the_quick_proof_fails_every_check(assignment: str) -> None:
     names = {case.name for case in cases(assignment, quick=True)}
     covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.loses}
     assert covered == {check.id for check in suites.hidden(assignment).checks}
 
 
-@pytest.mark.parametrize("assignment", suites.graded())
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_check_has_three_mutants(assignment: str) -> None:
     lost = Counter(name for mutant in mutants(assignment) for name in mutant.loses)
     assert [check.id for check in suites.hidden(assignment).checks if lost[check.id] < 3] == []

@@ -1,4 +1,4 @@
-"""A fixture of the hidden checks: a copy of the package that has grown."""
+"""A fixture of the hidden checks: a copy of the package with more files."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import random
 
 import pytest
 
-from autograder.checks.ch01_package_structure.support.growth import Grown, grow
+from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage, extend
 from autograder.harness import Workspace
 
 WORDS = ("waltz", "polka", "samba", "rumba", "tango", "foxtrot")
 
 
 @pytest.fixture(scope="session")
-def grown(workspace: Workspace, seed: int) -> Grown:
+def extended(workspace: Workspace, seed: int) -> ExtendedPackage:
     """The student's package with a launch file, a configuration and a subpackage more, built again."""
     draw = random.Random(f"{seed}:grown")
-    return grow(workspace, f"{draw.choice(WORDS)}_{draw.randrange(100, 1000)}")
+    return extend(workspace, f"{draw.choice(WORDS)}_{draw.randrange(100, 1000)}")

@@ -5,26 +5,25 @@ A linter's test that `ros2 pkg create` wrote does so, too. Its test_copyright is
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
 from autograder import layout
 from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
-from autograder.checks.ch01_package_structure.support.assertions import source_of
 from autograder.harness import Workspace
-from autograder.probes import test_runs
-from autograder.probes.given import changed_files
-from autograder.probes.laid_fault import UNTIDY, expect_failures
-from autograder.probes.test_reports import Source, TestRun
-from autograder.probes.versions import read
+from autograder.probes import student_test_runs
+from autograder.probes.fault_injection import UNTIDY, expect_failures
+from autograder.probes.given_files import changed_files
+from autograder.probes.student_test_reports import Source, TestRun
+from autograder.probes.versions import read, read_files
 
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",
     "A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.",
     "The node, its helper, the launch file and the configuration were right, too: copy what you changed again.",
 )
+FOLDERS = ("launch", "config", "test")  # beside the module, the folders with given files
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
 # What a linter's test imports. `ros2 pkg create`, by which square_dance may have been made, words them in its own way.
 IMPORTED = {f"test/test_{name}.py": f"ament_{name}".encode() for name in ("copyright", "flake8", "pep257")}
@@ -67,32 +66,21 @@ ALARM = Given(
 
 def expect_given_tests(workspace: Workspace, given: Given) -> None:
     """Fail the check unless each given test passes on a right package, fails on a faulty one, and no file changed."""
-    taken = test_runs.take(workspace, given.package)
+    taken = student_test_runs.take(workspace, given.package)
     files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in given.tests}))
     absent = [name for name in files if name not in taken.tests]
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
     kept = {name: data for name, data in taken.files.items() if name.removeprefix("test/") in (name, *files)}
     source = Source(given.package, kept)  # of test/ the given files alone
-    (report,) = test_runs.run(
+    (report,) = student_test_runs.run(
         workspace, source, [TestRun(files, read(layout.SOLUTIONS / given.package, {}), conftest=False)]
     )
     failed = " and ".join(test.partition("::")[2] for test in report.failed)
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})
+    # Files that may be the student's own, as each __init__.py may.
     own = {name for name, imported in IMPORTED.items() if given is DANCE and imported in taken.files.get(name, b"")}
-    _expect_unchanged(workspace, given.package, own)
-
-
-def _expect_unchanged(workspace: Workspace, package: str, own: Collection[str]) -> None:
-    """Fail the check, with half of its points, unless the files that came with a package are there, unchanged.
-
-    Args:
-        workspace: the built workspace.
-        package: the package's name.
-        own: those of its files that may be the student's own, as each __init__.py may.
-    """
-    folders = (package, "launch", "config", "test")
-    changed = changed_files(source_of(workspace, package), layout.SOLUTIONS / package, folders)
+    changed = changed_files(taken.files, read_files(layout.SOLUTIONS / given.package), (given.package, *FOLDERS))
     changed = [name for name in changed if name not in own and Path(name).name != "__init__.py"]
-    said = f"In {package}, {' and '.join(changed[:3])} should be as given, and was changed or deleted."
+    said = f"In {given.package}, {' and '.join(changed[:3])} should be as given, and was changed or deleted."
     expect(not changed, said, fraction=0.5)

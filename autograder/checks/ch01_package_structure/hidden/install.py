@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
+from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
     expect_develop,
@@ -14,10 +15,8 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_manifest,
     expect_modules,
     expect_shared,
-    programs,
     source_of,
 )
-from autograder.checks.ch01_package_structure.support.growth import Grown
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import Installed
@@ -96,25 +95,23 @@ def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
 @check(points=2, holds=("modules", "files"), depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
 @hint("A list of names written by hand is wrong on the day when somebody adds a file.")
 @hint("find_packages(...) and glob(...) look at what is there when the package is built.")
-def test_grows(grown: Grown) -> None:
+def test_grows(extended: ExtendedPackage) -> None:
     """A new subpackage, launch file and configuration are installed without a change of setup.py."""
-    installed = grown.installed
-    left = [name for name in (grown.launch, grown.config) if installed.read(name) is None]
-    left += [name for name in grown.modules if name not in installed.modules]
-    expect(not left, f"The new {', '.join(left)} stayed behind.", fraction=1.0 - len(left) / 4)
+    missing = extended.missing
+    expect(not missing, f"The new {', '.join(missing)} stayed behind.", fraction=1.0 - len(missing) / 4)
 
 
 @check(points=1, holds=("tests-stay", "modules", "program"), depends=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 @hint("A setup.py copied from another package still names its programs: remove the lines of those that are not yours.")
-def test_tests_stay(grown: Grown) -> None:
+def test_tests_stay(extended: ExtendedPackage) -> None:
     """Nothing is installed beside its module: no module called test, also with an __init__.py beside the tests."""
-    modules = grown.installed.modules
+    modules = extended.installed.modules
     strays = sorted(name for name in modules if name.split(".")[0] == "test")
     expect(not strays, f"{', '.join(strays[:2])} was installed: it would hide Python's own module test.")
     strays = sorted(name for name in modules if name.split(".")[0] != contract.SQUARE_DANCE)
     expect(not strays, f"{', '.join(strays[:2])} was installed, a module beside {contract.SQUARE_DANCE}.", fraction=0.5)
-    for name, module in programs(grown.installed).items():
+    for name, module in extended.installed.programs.items():
         if name != contract.DANCER:  # the dancer's own module is for other checks
             said = f"The program {name} is installed, and its module {module} is not: remove it from console_scripts."
             expect(module in modules, said, fraction=0.5)

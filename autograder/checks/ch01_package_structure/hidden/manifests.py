@@ -5,7 +5,6 @@ from __future__ import annotations
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
-    declares,
     expect_declared,
     expect_licence,
     expect_manifest,
@@ -50,7 +49,7 @@ def test_description(workspace: Workspace) -> None:
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
     needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
-    expect_declared(needed, declares(workspace, contract.SQUARE_DANCE, "exec"))
+    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
@@ -58,7 +57,7 @@ def test_run_dependencies(workspace: Workspace) -> None:
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
     needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
-    expect_declared(needed, declares(workspace, contract.SQUARE_DANCE, "exec"))
+    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
@@ -68,4 +67,4 @@ def test_test_dependencies(workspace: Workspace) -> None:
     source = source_of(workspace, contract.SQUARE_DANCE)
     runs = {each.module for each in imports.imported(source, without=("test",))}
     needed = [each for each in imports.imported(source, within=("test",)) if each.module not in runs]
-    expect_declared(needed, declares(workspace, contract.SQUARE_DANCE, "exec", "test"))
+    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec", "test"))

@@ -9,8 +9,6 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.given import ALARM, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
-    classifiers,
-    declares,
     expect_built,
     expect_declared,
     expect_executable,
@@ -67,7 +65,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml declares what its modules and its launch file import."""
     manifest = expect_manifest(workspace, contract.WALL_ALARM)
     needed = imports.imported(source_of(workspace, contract.WALL_ALARM), without=("test",))
-    expect_declared(needed, declares(workspace, contract.WALL_ALARM, "exec"), MISSING_AT_FIRST)
+    expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
     said = "package.xml declares numpy, a key that rosdep does not know: the key is python3-numpy alone."
     expect("numpy" not in manifest.needs(), said, fraction=0.75)
 
@@ -83,7 +81,7 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None
         f"The licence is {', '.join(licences)} in package.xml and {said or 'missing'} in setup.py; it should be "
         f"{contract.LICENCE} in both.",
     )
-    others = [name for name in classifiers(installed_alarm) if name.startswith("License ::")]
+    others = [name for name in installed_alarm.classifiers if name.startswith("License ::")]
     others = [name for name in others if name not in contract.CLASSIFIERS]
     told = f"setup.py names the licence {said}, and classifies the package under {', '.join(others)}."
     expect(not others, told, fraction=0.5)

@@ -6,23 +6,17 @@ import configparser
 import contextlib
 import difflib
 from collections.abc import Collection, Mapping
-from email.parser import HeaderParser
 from pathlib import Path
-
-from catkin_pkg.package import parse_package_string  # type: ignore[import-untyped]
 
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.packages import MANIFEST, find_packages
+from autograder.packages import find_packages
 from autograder.probes import imports, manifest
-from autograder.probes.files import read_plain
-from autograder.probes.installed import MAX_BYTES, Installed
+from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
-
-JAZZY = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}  # what a condition may ask
 
 
 def source_of(workspace: Workspace, name: str) -> Path:
@@ -56,18 +50,6 @@ def expect_licence(workspace: Workspace, name: str) -> None:
     expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
 
 
-def declares(workspace: Workspace, name: str, *kinds: str) -> frozenset[str]:
-    """Return the dependencies of these kinds in package.xml, those alone whose condition holds in ROS 2 Jazzy."""
-    expect_manifest(workspace, name)
-    found = parse_package_string((source_of(workspace, name) / MANIFEST).read_text(encoding="utf-8"))
-    try:
-        found.evaluate_conditions(JAZZY)
-    except (ValueError, RecursionError) as error:
-        raise CheckFailed(f"A condition in package.xml cannot be read: {error}") from None
-    dependencies = [each for kind in kinds for each in getattr(found, f"{kind}_depends")]
-    return frozenset(each.name for each in dependencies if each.evaluated_condition)
-
-
 def expect_declared(needed: Collection[imports.Import], declared: Collection[str], first: int = 0) -> None:
     """Fail the check unless all imports are declared; part of the points for part of them.
 
@@ -79,7 +61,7 @@ def expect_declared(needed: Collection[imports.Import], declared: Collection[str
     missing = imports.undeclared(needed, declared)
     total = first or len(needed)
     fraction = max(0.0, 1.0 - len(missing) / total) if total else 0.0
-    expect(not missing, f"package.xml does not declare everything: {imports.say(missing)}.", fraction=fraction)
+    expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
 
 
 def expect_executable(installed: Installed, name: str) -> None:
@@ -95,27 +77,6 @@ def expect_executable(installed: Installed, name: str) -> None:
     raise CheckFailed(
         f"{where}/ has no {name}: {f'what was installed is {there}' if there else 'no program was installed'}."
     )
-
-
-def programs(installed: Installed) -> dict[str, str]:
-    """Return the name and the module of each program that setup.py names."""
-    parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
-    with contextlib.suppress(configparser.Error):
-        parser.read_string(_of_setuptools(installed, "entry_points.txt"))
-    entries = parser.items("console_scripts") if parser.has_section("console_scripts") else []
-    return {name: entry.partition(":")[0].strip() for name, entry in entries}
-
-
-def classifiers(installed: Installed) -> list[str]:
-    """Return the classifiers that setup.py names."""
-    return HeaderParser().parsestr(_of_setuptools(installed, "PKG-INFO")).get_all("Classifier", [])
-
-
-def _of_setuptools(installed: Installed, name: str) -> str:
-    """Return what setuptools wrote into a file beside the installed modules; nothing where it wrote none."""
-    sites = [path for path in sorted(installed.prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
-    folders = [path for site in sites for path in sorted(site.glob("*-info")) if not path.is_symlink()]
-    return "\n".join((read_plain(path / name, MAX_BYTES) or b"").decode(errors="replace") for path in folders)
 
 
 def expect_modules(installed: Installed, source: Path) -> None:

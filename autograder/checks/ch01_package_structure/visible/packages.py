@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
+from autograder.checks.ch01_package_structure.support.added_files import extend
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
     expect_declared,
@@ -16,7 +17,6 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_shared,
     source_of,
 )
-from autograder.checks.ch01_package_structure.support.growth import grow
 from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports
@@ -93,10 +93,8 @@ def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
 @hint("find_packages(exclude=['test']), glob('launch/*.launch.py') and glob('config/*.yaml').")
 def test_grows(workspace: Workspace) -> None:
     """Somebody adds a launch file, a configuration and the subpackage minuet to square_dance: they are installed."""
-    grown = grow(workspace, "minuet")
-    left = [name for name in (grown.launch, grown.config) if grown.installed.read(name) is None]
-    left += [name for name in grown.modules if name not in grown.installed.modules]
-    expect(not left, f"The new {', '.join(left)} stayed behind.")
+    missing = extend(workspace, "minuet").missing
+    expect(not missing, f"The new {', '.join(missing)} stayed behind.")
 
 
 @check(points=1, holds="alarm-builds", doc=contract.COLCON)

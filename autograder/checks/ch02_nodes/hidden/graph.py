@@ -8,8 +8,8 @@ from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.lockstep.failures import diagnose_ending
-from autograder.probes.namespaces import left_behind
-from autograder.probes.qos import not_plain
+from autograder.probes.namespaces import missing_in_namespace
+from autograder.probes.qos import non_default_qos
 
 check = group("graph")
 
@@ -45,7 +45,7 @@ def test_scan_qos(robot: Robot) -> None:
     """Its scan subscription matches a lidar that publishes best-effort; commands and status have plain queues."""
     reason = qos_mismatch(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
-    differs = not_plain(robot.node, "/cmd_vel", "/status")
+    differs = non_default_qos(robot.node, "/cmd_vel", "/status")
     expect(not differs, differs, fraction=0.5)
 
 
@@ -67,8 +67,8 @@ def test_subscribes_status(robot: Robot) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """All its topics are relative: in a namespace, it takes them with it."""
-    left = left_behind(workspace, contract.PACKAGE, contract.EXECUTABLE, ("scan", "status", "cmd_vel"))
+    """All topic names are relative: in the namespace /a, scan is /a/scan."""
+    left = missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, ("scan", "status", "cmd_vel"))
     expect(not left, left)
 
 

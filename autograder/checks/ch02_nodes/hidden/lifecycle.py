@@ -7,7 +7,7 @@ import sys
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
-from autograder.checks.ch02_nodes.support.ending import HINTS, START_SECONDS, expect_clean_end
+from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end
 from autograder.harness import Workspace
 from autograder.lockstep.failures import tail
 from autograder.sandbox.launcher import launch

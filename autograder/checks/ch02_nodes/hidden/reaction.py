@@ -14,7 +14,7 @@ from autograder.time_record import LOCKSTEP
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
-GLANCE = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
+SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
 @check(points=2, holds=("clear", "in-range"), depends=TALKS)
@@ -47,7 +47,7 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
     if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
         for distance, expect_reaction in ((near, expect_turn), (far, expect_forward)):
             began = robot.seconds
-            robot.show(scan(Part(-3.0, 3.0, distance)), GLANCE)
+            robot.show(scan(Part(-3.0, 3.0, distance)), SHOWN_SECONDS)
             seen = robot.messages("/cmd_vel", since=began + SETTLED)
             expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 

@@ -8,7 +8,7 @@ import random
 from std_msgs.msg import String
 
 from autograder.checks import expect, group, hint
-from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, LEAST_WARNINGS, SILENT_SECONDS
+from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, MIN_WARNINGS, SILENT_SECONDS
 from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS, Robot
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.time_record import LOCKSTEP
@@ -19,7 +19,7 @@ QUEUE = 10  # statuses that a plain 10 holds
 RATE_SECONDS = 4.0  # in which one command more or less is 2.5 %
 WARNINGS, REAL_WARNINGS = 1.0, 1.1  # a second, at most; more where time is real and lines are late
 LONG_SECONDS = 9.0  # in front of a wall: who warns every 1.8 s has warned once too seldom
-GLIMPSE, GLIMPSES = 0.2, 15  # s for which something is in the way, and then is not; how often
+ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s for which something is in the way, and then is not; how often
 
 
 @check(points=2, holds="cmd-vel", depends=("publishes_cmd_vel",))
@@ -55,11 +55,11 @@ def test_no_flood(robot: Robot) -> None:
     expect(lines <= 2 * SECONDS, f"Blocked for {SECONDS:.0f} s, it logged {lines} lines.")
     _expect_few_warnings(robot, began, warned, f"Blocked for {SECONDS:.0f} s,")
     began, warned = robot.seconds, len(_logged(robot, "WARN"))
-    for _ in range(GLIMPSES):
-        robot.see(blocked, GLIMPSE)
-        robot.see(scan(), GLIMPSE)
+    for _ in range(ALTERNATIONS):
+        robot.see(blocked, ALTERNATE_SECONDS)
+        robot.see(scan(), ALTERNATE_SECONDS)
     seconds = robot.seconds - began
-    _expect_few_warnings(robot, began, warned, f"With something in the way {GLIMPSES} times in {seconds:.0f} s,")
+    _expect_few_warnings(robot, began, warned, f"With something in the way {ALTERNATIONS} times in {seconds:.0f} s,")
 
 
 @check(points=1, holds="warns", depends=("turns_when_blocked", "minus_inf"))
@@ -77,7 +77,7 @@ def test_warns(fresh_robot: Robot) -> None:
         enough = _logs(fresh_robot, "WARN", more_than=before + int(seconds / SILENT_SECONDS) - 1)
         warnings = len(_logged(fresh_robot, "WARN")) - before
         said = f"Blocked for {seconds:.0f} s{time}, it logged {warnings} warnings, not one a second."
-        expect(enough, said, fraction=0.5 if warnings >= LEAST_WARNINGS else 0.0)
+        expect(enough, said, fraction=0.5 if warnings >= MIN_WARNINGS else 0.0)
         fresh_robot.see(scan(), SETTLED)
         before = len(_logged(fresh_robot, "WARN"))
         fresh_robot.see(scan(), 2.0)

@@ -6,7 +6,7 @@ import math
 import random
 
 from autograder.checks import CheckFailed, expect, group, hint, temporal
-from autograder.checks.ch02_nodes.hidden import terrain
+from autograder.checks.ch02_nodes.hidden import world_generation
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.gallery import Gallery
 from autograder.harness import AutoHarness, Workspace, drive
@@ -17,7 +17,7 @@ from sim.rows import row_at, state_at
 check = group("worlds")
 SECONDS = 60.0
 RADIUS = 0.18  # m
-LEAST_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
+MIN_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
 DRIVES = ("forward_when_clear",)  # not on turning: a collision shows more than a failed reaction, and earns its share
 HINTS = (
@@ -30,21 +30,21 @@ HINTS = (
 @hint(*HINTS)
 def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
-    _expect_safe_drive(workspace, terrain.furnished_room(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.furnished_room(draw), draw, gallery)
 
 
 @check(points=3, holds=("near", "clear", "sector"), depends=DRIVES)
 @hint(*HINTS)
 def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
-    _expect_safe_drive(workspace, terrain.hall_of_pillars(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.hall_of_pillars(draw), draw, gallery)
 
 
 @check(points=3, holds=("near", "clear", "sector"), depends=DRIVES)
 @hint(*HINTS)
 def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""
-    _expect_safe_drive(workspace, terrain.bent_corridor(draw), draw, gallery)
+    _expect_safe_drive(workspace, world_generation.bent_corridor(draw), draw, gallery)
 
 
 def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, gallery: Gallery) -> None:
@@ -63,7 +63,7 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
     path = _path_length(recording)
     caption = f"The robot's track in {world.name}: {path:.1f} m in {SECONDS:.0f} s, nothing touched."
     gallery.track("track", recording, caption, rules=rules)
-    expect(path >= LEAST_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
+    expect(path >= MIN_PATH, f"It touched nothing, but drove only {path:.1f} m in a minute: it hardly moved.")
 
 
 def _path_length(recording: Recording) -> float:

@@ -13,7 +13,7 @@ HALF_SECTOR = 30.0  # degrees
 STALE_AFTER = 0.5  # s
 BLOCKED_SECONDS = 6.0  # in front of a wall, for the checks of warnings
 SILENT_SECONDS = 1.5  # the longest that it may then wait with a warning
-LEAST_WARNINGS = int(BLOCKED_SECONDS / SILENT_SECONDS)
+MIN_WARNINGS = int(BLOCKED_SECONDS / SILENT_SECONDS)
 TOLERANCE = 0.02  # m/s and rad/s: an error of a tenth of a speed is seen
 
 RULE_FORWARD = "The way is clear: linear.x = 0.3, angular.z = 0."

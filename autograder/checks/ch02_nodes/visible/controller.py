@@ -7,8 +7,7 @@ import signal
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, LEAST_WARNINGS
-from autograder.checks.ch02_nodes.support.ending import HINTS, expect_clean_end
+from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, MIN_WARNINGS
 from autograder.checks.ch02_nodes.support.robot import (
     WRITTEN_SECONDS,
     Robot,
@@ -18,6 +17,7 @@ from autograder.checks.ch02_nodes.support.robot import (
     qos_mismatch,
 )
 from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch02_nodes.support.shutdown import HINTS, expect_clean_end
 from autograder.harness import Workspace
 
 check = group("controller")
@@ -147,10 +147,10 @@ def test_warns(robot: Robot) -> None:
     robot.see(scan(fill=2.0))
     before = robot.output.count("[WARN]")
     robot.see(scan(Part(-15.0, 15.0, 0.7)), BLOCKED_SECONDS)
-    robot.wait_for(lambda: robot.output.count("[WARN]") - before >= LEAST_WARNINGS, WRITTEN_SECONDS)
+    robot.wait_for(lambda: robot.output.count("[WARN]") - before >= MIN_WARNINGS, WRITTEN_SECONDS)
     warnings = robot.output.count("[WARN]") - before
     said = f"In front of a wall for {BLOCKED_SECONDS:.0f} s it warned {warnings} times."
-    expect(LEAST_WARNINGS <= warnings <= 2 * LEAST_WARNINGS, said)
+    expect(MIN_WARNINGS <= warnings <= 2 * MIN_WARNINGS, said)
 
 
 @check(points=1, holds="ends", depends=("topics",))

@@ -14,8 +14,8 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, stopped
-from autograder.checks.ch03_interfaces.support.hearing import expect_heard
-from autograder.probes.pace import is_paced, mean_period
+from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
+from autograder.probes.message_period import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
 check = group("action")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from dataclasses import dataclass
 
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
@@ -11,17 +12,17 @@ from geometry_msgs.msg import Twist
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.hidden.action import LONG, MOVES, NAMES, straight
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.contract import PATIENCE
+from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, PATIENCE
 from autograder.checks.ch03_interfaces.support.driver import COMMANDS, LOOK, Driver, stopped
 from autograder.harness import Goal, ReceivedMessage
 from autograder.time_record import LOCKSTEP, REAL
 
 check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond the patience: two commands, and the harness's looks at the result
-BLUR = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early; in lockstep, or too late
+TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early; in lockstep, or too late
 PUSH_AFTER = 0.5  # s
+FIRST_SPEED = 0.3  # m/s, of a goal while others are sent
 HEIGHT = 1.0  # m, which makes no way longer
-LONGEST = 80  # characters that fit into a reason
 TOO_LITTLE, ENOUGH = 0.0095, 0.0105  # m, around a centimetre
 SLOW = 0.007  # m/s
 ROLLS_BACK = 0.015  # m each time the robot is looked at, far more than a centimetre in 1 s
@@ -60,30 +61,17 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(placed_driver: Driver) -> None:
     """While a goal is driven another one is rejected; the first goes on, and after it there is room for the next."""
-    first = placed_driver.start(4.5, 0.3)
-    placed_driver.roll(first, 0.3)
-    before, others, commands = len(placed_driver.messages(COMMANDS)), list[Goal](), list[Twist]()
-    for distance in (1.0, -1.0, 1.0):  # whichever is rejected, and for whatever, the first still has the robot
-        others.append(placed_driver.send(distance, 0.5))
-        commands += placed_driver.roll(first, 0.2)
-    told = [stamped.message for stamped in placed_driver.messages(COMMANDS)[before:]]
-    goes_on = first.result is None
-    for goal in (first, *others):
-        if goal.accepted:
-            placed_driver.abandon(goal)
-    expect(not others[0].accepted, "While a goal was driven, another one was accepted.")
-    late = any(goal.accepted for goal in others)
+    busy = _send_others(placed_driver)
+    expect(not busy.accepted[0], "While a goal was driven, another one was accepted.")
+    late = any(busy.accepted)
     expect(not late, "While a goal was driven, another one was rejected, and one after it accepted.", fraction=0.75)
-    expect(goes_on, "The first goal ended when another one came.", fraction=0.3)
-    expect(
-        bool(commands) and all(straight(command, 0.3) for command in commands),
-        "The first goal was not driven on when another one came.",
-        fraction=0.3,
-    )
-    third = placed_driver.send(0.1, 0.5)
-    expect(third.accepted is True, "After a goal had ended, the next one was rejected.", fraction=0.5)
-    placed_driver.finish(third, LONG, "With 0.10 m to drive")
-    own = all(straight(command, 0.3) for command in told)
+    expect(busy.goes_on, "The first goal ended when another one came.", fraction=0.3)
+    driven_on = bool(busy.between) and all(straight(command, FIRST_SPEED) for command in busy.between)
+    expect(driven_on, "The first goal was not driven on when another one came.", fraction=0.3)
+    following = placed_driver.send(0.1, 0.5)
+    expect(following.accepted is True, "After a goal had ended, the next one was rejected.", fraction=0.5)
+    placed_driver.finish(following, LONG, "With 0.10 m to drive")
+    own = all(straight(command, FIRST_SPEED) for command in busy.commands)
     expect(own, "With a goal that was rejected came a command that was not the first goal's.", fraction=0.75)
 
 
@@ -92,14 +80,14 @@ def test_drive_one_at_a_time(placed_driver: Driver) -> None:
 @hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
 def test_drive_stuck(placed_driver: Driver) -> None:
     """A robot that gets no further for a second is stopped, and the goal ends ABORTED with a reason."""
-    placed_driver.stuck, blur = True, BLUR[placed_driver.time]
+    placed_driver.stuck, tolerance = True, TOLERANCE[placed_driver.time]
     goal, commands = _push(placed_driver, TOO_LITTLE)
     ended = NAMES.get(goal.status, goal.status)
     expect(goal.status == GoalStatus.STATUS_ABORTED, f"With wheels that do not turn, the goal ended {ended}.")
     seconds = _driving(commands)
-    late = blur if placed_driver.time == LOCKSTEP else LATE[REAL]
+    late = tolerance if placed_driver.time == LOCKSTEP else LATE[REAL]
     expect(
-        PATIENCE - contract.PERIOD - blur <= seconds <= PATIENCE + late,
+        PATIENCE - contract.PERIOD - tolerance <= seconds <= PATIENCE + late,
         f"With wheels that do not turn, it was told to drive for {seconds:.2f} s, instead of {PATIENCE:.0f} s.",
         fraction=0.5,
     )
@@ -109,7 +97,7 @@ def test_drive_stuck(placed_driver: Driver) -> None:
     _, commands = _push(placed_driver, ENOUGH)
     seconds = _driving(commands)
     expect(
-        seconds >= PUSH_AFTER + PATIENCE - contract.PERIOD - blur,
+        seconds >= PUSH_AFTER + PATIENCE - contract.PERIOD - tolerance,
         f"The robot got {ENOUGH:.4f} m further after {PUSH_AFTER} s, and was given up {seconds:.2f} s after the start.",
         fraction=0.7,
     )
@@ -150,7 +138,33 @@ def test_drive_blind(tardy_driver: Driver) -> None:
     sentence = f"The last odometry was {driven:.2f} m away, and {HEIGHT:g} m higher; the result says {said:.2f} m."
     expect(abs(said - driven) <= 0.1, sentence, fraction=0.75)
     length = len(goal.result.reason)
-    expect(length <= LONGEST, f"The reason has {length} characters, instead of at most {LONGEST}.", fraction=0.75)
+    expect(length <= MAX_REASON, f"The reason has {length} characters, instead of at most {MAX_REASON}.", fraction=0.75)
+
+
+@dataclass(frozen=True)
+class _Busy:
+    """What came of goals that were sent while the first was driven."""
+
+    accepted: list[bool]  # of each, whether it was accepted
+    goes_on: bool  # whether the first had not ended
+    between: list[Twist]  # the commands after each, once it was answered
+    commands: list[Twist]  # all commands from the first of them on
+
+
+def _send_others(driver: Driver) -> _Busy:
+    """Drive a goal, send others meanwhile, and abandon all of them."""
+    first = driver.start(4.5, FIRST_SPEED)
+    driver.roll(first, 0.3)
+    before, others, between = len(driver.messages(COMMANDS)), list[Goal](), list[Twist]()
+    for distance in (1.0, -1.0, 1.0):  # whichever is rejected, and for whatever, the first still has the robot
+        others.append(driver.send(distance, 0.5))
+        between += driver.roll(first, 0.2)
+    commands = [stamped.message for stamped in driver.messages(COMMANDS)[before:]]
+    goes_on = first.result is None
+    for goal in (first, *others):
+        if goal.accepted:
+            driver.abandon(goal)
+    return _Busy([bool(goal.accepted) for goal in others], goes_on, between, commands)
 
 
 def _push(driver: Driver, distance: float) -> tuple[Goal, list[ReceivedMessage]]:

@@ -8,12 +8,12 @@ from typing import Any
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.contract import METRES_PER_PERCENT, UNKNOWN
+from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, METRES_PER_PERCENT, UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, Reporter
 from autograder.time_record import LOCKSTEP, REAL
 
 check = group("service", doc=contract.SERVICE)
-WORD, LONGEST = 3, 80  # characters: less gives no reason, more does not fit
+MIN_REASON = 3  # characters: less gives no reason
 ANSWERS = ("trip_answers",)
 SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 HEARD = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # s for a battery to be heard; in lockstep, long before the next status
@@ -125,11 +125,13 @@ def test_trip_reason(reporter: Reporter) -> None:
     good, bad = reporter.ask([5.0]), reporter.ask([500.0])
     for last in (-100.125, 100.125):  # a reason that lists all legs is longer than 80 characters
         answer = reporter.ask([100.125] * 7 + [last])
-        fits = len(answer.reason.strip()) >= WORD and len(answer.reason) <= LONGEST
-        said = f"With eight legs, the reason has {len(answer.reason)} characters, instead of {WORD} to {LONGEST}."
+        fits = len(answer.reason.strip()) >= MIN_REASON and len(answer.reason) <= MAX_REASON
+        said = (
+            f"With eight legs, the reason has {len(answer.reason)} characters, instead of {MIN_REASON} to {MAX_REASON}."
+        )
         expect(fits, said, fraction=0.5)
     expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
-    expect(len(bad.reason.strip()) >= WORD, f"The trip is not possible, and the reason is {bad.reason!r}.")
+    expect(len(bad.reason.strip()) >= MIN_REASON, f"The trip is not possible, and the reason is {bad.reason!r}.")
 
 
 def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> None:
@@ -138,4 +140,4 @@ def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> No
     expect(not answer.possible, f"{situation}, the trip is said to be possible.", fraction=fraction)
     expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.", fraction=fraction)
     said = f"{situation}, the reason is {answer.reason!r}."
-    expect(len(answer.reason.strip()) >= WORD, said, fraction=max(0.5, fraction))
+    expect(len(answer.reason.strip()) >= MIN_REASON, said, fraction=max(0.5, fraction))

@@ -11,10 +11,10 @@ from sensor_msgs.msg import BatteryState
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
-from autograder.checks.ch03_interfaces.support.hearing import expect_heard
+from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
 from autograder.checks.ch03_interfaces.support.reporter import BATTERY, JOINTS, TOPIC, Reporter, same
 from autograder.probes.late_joiner import kept_messages
-from autograder.probes.pace import is_paced, mean_period
+from autograder.probes.message_period import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
 check = group("status")

@@ -53,6 +53,7 @@ METRES_PER_PERCENT = 5.0  # m
 MAX_DISTANCE = 5.0  # m
 MAX_SPEED = 0.5  # m/s
 PERIOD = 0.1  # s between two commands
+MAX_REASON = 80  # characters that fit into a reason
 PATIENCE = 1.0  # s without progress until a goal is given up
 
 DOCS = "https://docs.ros.org/en/jazzy/"

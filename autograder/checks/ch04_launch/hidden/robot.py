@@ -88,7 +88,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     expect(
         REPORTER in nodes,
-        f"With robot_name:={inputs.number_name}, the reporter does not run. {launch_probe.trouble(harness.output)}",
+        f"With robot_name:={inputs.number_name}, the reporter does not run. {launch_probe.failure(harness.output)}",
     )
     launch_probe.expect_parameters(harness, REPORTER, {"robot_name": inputs.number_name})
 
@@ -115,7 +115,7 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     nodes = launch_probe.settle(harness, [DRIVER])
     expect(
         DRIVER in nodes,
-        f"With speed:={inputs.whole_speed}, the driver does not run. {launch_probe.trouble(harness.output)}",
+        f"With speed:={inputs.whole_speed}, the driver does not run. {launch_probe.failure(harness.output)}",
     )
     launch_probe.expect_parameters(harness, DRIVER, {"speed": float(inputs.whole_speed)})
     _expect_on_screen(harness, DRIVER, "Driving at")

@@ -33,7 +33,7 @@ def test_order(launches: Launches, inputs: Inputs) -> None:
     expect(times == 1, f"The self-test was started {times} times by what was printed, instead of once.")
     expect(
         DRIVER in nodes,
-        f"With the battery at {inputs.enough} %, the driver does not run. {launch_probe.trouble(harness.output)}",
+        f"With the battery at {inputs.enough} %, the driver does not run. {launch_probe.failure(harness.output)}",
     )
     before = harness.output.partition("[driver-")[0]
     expect("self_test" in launch_probe.ended(before), "The driver was started before the self-test had ended.")
@@ -79,7 +79,7 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     harness = launches.safe(battery=inputs.whole_battery)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     what = f"With battery:={inputs.whole_battery}, the driver does not run."
-    expect(DRIVER in nodes, f"{what} {launch_probe.trouble(harness.output)}".strip())
+    expect(DRIVER in nodes, f"{what} {launch_probe.failure(harness.output)}".strip())
     declared = launches.safe_arguments().get("battery")
     expect(declared is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
     default = declared.default if declared else None
@@ -106,7 +106,7 @@ def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
     harness = launches.scripted()
     up = harness.wait_for(lambda: _driver_listens(harness), launch_probe.START_SECONDS)
-    expect(up, f"After a self-test of 3 s, no driver runs. {launch_probe.trouble(harness.output)}", fraction=0.75)
+    expect(up, f"After a self-test of 3 s, no driver runs. {launch_probe.failure(harness.output)}", fraction=0.75)
     before = harness.output.partition("[driver-")[0]
     early = "The driver was started before a self-test of 3 s had ended."
     expect("self_test" in launch_probe.ended(before), early, fraction=0.75)
@@ -133,14 +133,14 @@ def _expect_refusal(harness: LaunchHarness, what: str) -> None:
     over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     launch_probe.require_written(harness.output)
     started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started. {launch_probe.trouble(harness.output)}".strip())
+    expect("self_test" in started, f"The self-test was not started. {launch_probe.failure(harness.output)}".strip())
     expect("driver" not in started, f"{what} the driver was started.")
     expect(over, f"{what} the driver was not started, but the launch goes on.", fraction=0.5)
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
 def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str, fraction: float = 0.0) -> None:
-    missing = f"There is not one driver. {launch_probe.trouble(harness.output)}".strip()
+    missing = f"There is not one driver. {launch_probe.failure(harness.output)}".strip()
     expect(harness.kill("driver", number) == 1, missing, fraction=fraction)
     over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     expect(over, f"{what}, and the launch goes on without it.", fraction=fraction)

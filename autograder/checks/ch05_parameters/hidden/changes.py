@@ -11,7 +11,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, look, made, make
+from autograder.probes.calls import call, calls, look, made
 from autograder.probes.parameters import Value, differences, shortened
 from autograder.time_record import LOCKSTEP
 
@@ -36,9 +36,9 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
     ]
     for request in requests:
         answer = robot.change(request)
-        expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+        expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.")
         wrong = differences(robot.parameters.values(*DISTANCES), {name: DEFAULTS[name] for name in DISTANCES})
-        expect(not wrong, f"It refused {_told(request)}, and yet {'; '.join(wrong)}.")
+        expect(not wrong, f"It refused {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
 @check(points=1, holds=("reason", "refused", "keep-value"), depends=("contradiction",))
@@ -55,9 +55,9 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
     for name, pair, outcome in zip(DISTANCES, pairs, outcomes, strict=True):
         answer = robot.change({name: pair[name]})
         reason, sentence = answer.reason, shortened(str(outcome.value))
-        expect(not answer.accepted, f"With {_told(present)}, it took {name} = {pair[name]}.", fraction=0.5)
+        expect(not answer.accepted, f"With {_values_text(present)}, it took {name} = {pair[name]}.", fraction=0.5)
         missing = missing_from(reason, pair)
-        said = f"With {_told(present)}, its reason to refuse {name} = {pair[name]} is “{reason}”"
+        said = f"With {_values_text(present)}, its reason to refuse {name} = {pair[name]} is “{reason}”"
         fraction = 0.5 if reason or name == "slow_distance" else 0.0
         expect(not missing, f"{said}: it does not name {', '.join(missing)}.", fraction=fraction)
         expect(sentence[:100] in reason, f"{said}; contradiction says “{sentence}”.", fraction=0.5)
@@ -73,9 +73,9 @@ def test_together(robot: Robot, draw: random.Random) -> None:
     close: dict[str, Value] = {"safety_distance": 0.59}
     for request in (up, down, close):
         answer = robot.change(request)
-        expect(answer.accepted, f"It refused {_told(request)}, which fit: “{answer.reason}”.")
+        expect(answer.accepted, f"It refused {_values_text(request)}, which fit: “{answer.reason}”.")
         wrong = differences(robot.parameters.values(*request), request)
-        expect(not wrong, f"It took {_told(request)}, and yet {'; '.join(wrong)}.")
+        expect(not wrong, f"It took {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
 @check(points=2, holds="no-effect", depends=("contradiction",), doc=contract.PARAMETERS)
@@ -91,7 +91,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     began = robot.seconds
     answer = robot.change(request)
     robot.live(0.2)  # less than the time after which it counts as blind
-    expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+    expect(not answer.accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.")
     commands = robot.messages("/cmd_vel", since=began)
     speed = commands[-1].message.linear.x if commands else math.nan
     expect_speed(speed, SPEED, "Right after a refused request, with a wall 2.5 m ahead")
@@ -195,12 +195,12 @@ def test_beside_others(robot: Robot, draw: random.Random) -> None:
     other = robot.parameters.values("use_sim_time")
     bad: dict[str, Value] = {"safety_distance": round(draw.uniform(1.1, 2.5), 2)}
     for request in ({**other, **bad}, {**bad, **other}):
-        expect(not robot.change(request).accepted, f"With 0.5 m and 1.0 m, it took {_told(request)}.")
+        expect(not robot.change(request).accepted, f"With 0.5 m and 1.0 m, it took {_values_text(request)}.")
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
         rate: dict[str, Value] = {"control_frequency": frequency}
         request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
         _change(robot, request)
-        expect_rate(robot.command_rate(), frequency, f"After {_told(request)}")
+        expect_rate(robot.command_rate(), frequency, f"After {_values_text(request)}")
 
 
 def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
@@ -214,17 +214,17 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
         workspace,
         f"{PACKAGE}.nodes.{EXECUTABLE}",
         call("init", module="rclpy"),
-        make("ConfiguredNode"),
-        make("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
-        make("list", module="builtins"),
+        call("ConfiguredNode"),
+        call("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
+        call("list", module="builtins"),
         call("append", made(2), on=3),
         look("timer", on=1),
         look("timer_period_ns", on=5),
         call("validate", made(3), on=1),
         look("timer", on=1),
         look("timer_period_ns", on=8),
-        make("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
-        make("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
+        call("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
+        call("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
         call("clear", on=3),
         call("append", made(10), on=3),
         call("validate", made(3), on=1),
@@ -239,8 +239,8 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
 
 def _change(robot: Robot, request: Mapping[str, Value], fraction: float = 0.0) -> None:
     answer = robot.change(request)
-    expect(answer.accepted, f"It refused {_told(request)}: “{answer.reason}”.", fraction=fraction)
+    expect(answer.accepted, f"It refused {_values_text(request)}: “{answer.reason}”.", fraction=fraction)
 
 
-def _told(request: Mapping[str, Value]) -> str:
+def _values_text(request: Mapping[str, Value]) -> str:
     return " and ".join(f"{name} = {value}" for name, value in request.items())

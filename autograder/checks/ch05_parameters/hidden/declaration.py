@@ -10,7 +10,7 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED, Wanted
 from autograder.checks.ch05_parameters.support.robot import Robot
-from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, near_misses, said, shortened
+from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, near_misses, shortened, value_text
 
 check = group("declaration")
 SPELT = {
@@ -115,7 +115,7 @@ def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
     described = robot.parameters.descriptors(*WANTED)
     poor = [name for name, wanted in WANTED.items() if not _is_description(described[name].description, wanted.unit)]
-    named = [f"{name} ({said(described[name].description)})" for name in poor]
+    named = [f"{name} ({value_text(described[name].description)})" for name in poor]
     expect(not poor, f"The description is missing, or names no unit: {', '.join(named)}.", fraction=_share(len(poor)))
 
 
@@ -143,9 +143,8 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
         for value in _outside(wanted, draw):
             answer = robot.change({name: value})
             if answer.accepted or (not answer.reason and name not in wrong):
-                wrong[name] = (
-                    f"it took {said(value)}" if answer.accepted else f"it refused {said(value)} without a reason"
-                )
+                shown = value_text(value)
+                wrong[name] = f"it took {shown}" if answer.accepted else f"it refused {shown} without a reason"
     told = "; ".join(f"{name}: {why}" for name, why in wrong.items())
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
@@ -178,7 +177,7 @@ def test_read_only(robot: Robot) -> None:
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
     taken = [
-        f"{said(value)} for {name}"
+        f"{value_text(value)} for {name}"
         for name, value in (
             ("slow_distance", 2),
             ("safety_distance", 0),  # fits any slow distance: the type alone is wrong

@@ -17,8 +17,15 @@ from autograder.exceptions import StudentError
 from autograder.harness import AutoHarness, ReceivedMessage, Workspace
 from autograder.harness.drive import LISTENS, OFFERS, SCAN_SECONDS
 from autograder.harness.steps import FINEST_TICK_NS
-from autograder.probes.pace import mean_period
-from autograder.probes.parameters import Answer, NodeParameters, Value, as_declared, differences, override_arguments
+from autograder.probes.message_period import mean_period
+from autograder.probes.parameters import (
+    NodeParameters,
+    SetParametersReply,
+    Value,
+    as_declared,
+    differences,
+    override_arguments,
+)
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then
@@ -65,7 +72,7 @@ class Robot(AutoHarness):
         """The values with which it started; to be read before anything is changed."""
         return self.parameters.values(*WANTED)
 
-    def change(self, values: Mapping[str, Value]) -> Answer:
+    def change(self, values: Mapping[str, Value]) -> SetParametersReply:
         """Ask for a change of several parameters in one request, numbers in the types that the node declares."""
         return self.parameters.change(as_declared(values, self.initial))
 

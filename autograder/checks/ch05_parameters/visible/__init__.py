@@ -1,4 +1,4 @@
 """The visible checks of 05_parameters."""
 
 PACKAGES = ("my_robot_package",)
-MODULES = ("declared", "changed", "filed")
+MODULES = ("declared", "changed", "parameter_file")

@@ -7,7 +7,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
 from autograder.checks.ch05_parameters.support.robot import Robot, refusal
 from autograder.harness import Workspace
-from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, said
+from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, value_text
 
 check = group("declaration")
 
@@ -78,8 +78,8 @@ def test_refuses(robot: Robot) -> None:
     ]
     for name, value in requests:
         answer = robot.parameters.change({name: value})
-        expect(not answer.accepted, f"It took {said(value)} for {name}.")
-        expect(bool(answer.reason), f"It refused {said(value)} for {name}, but gave no reason.")
+        expect(not answer.accepted, f"It took {value_text(value)} for {name}.")
+        expect(bool(answer.reason), f"It refused {value_text(value)} for {name}, but gave no reason.")
 
 
 @check(points=1, holds="described", depends=("table",))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import declared
+from autograder.checks import check_of
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.harness import Workspace
 
@@ -12,5 +12,5 @@ from autograder.harness import Workspace
 @pytest.fixture(scope="session")
 def examination(request: pytest.FixtureRequest, workspace: Workspace, seed: int) -> Examination:
     """The runs of the student's tests, as far as this session's checks ask for them."""
-    checks = (declared(getattr(item, "function", None)) for item in request.session.items)
+    checks = (check_of(getattr(item, "function", None)) for item in request.session.items)
     return Examination(workspace, seed, frozenset(check.id for check in checks if check is not None))

@@ -12,14 +12,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 
-from autograder.checks import CheckFailed, Row, expect
+from autograder.checks import CheckFailed, CheckRow, expect
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, PYTEST
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, PYTEST
 from autograder.harness import Workspace
-from autograder.probes import test_runs
+from autograder.probes import student_test_runs
 from autograder.probes.colcon_test import colcon_test
-from autograder.probes.test_reports import Report, Source, TestRun
+from autograder.probes.student_test_reports import Report, Source, TestRun
 from autograder.sandbox import Ending
 
 RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
@@ -38,7 +38,7 @@ ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite orde
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line(Row):
+class Line(CheckRow):
     """A line of the contract, for the check whether a student's tests object to versions that break it.
 
     Attributes:
@@ -54,7 +54,7 @@ class Examination:
 
     Args:
         workspace: the student's.
-        seed: styles, disguises and the order of the runs are drawn from it.
+        seed: styles, obfuscations and the order of the runs are drawn from it.
         checks: those that will ask; what only others would ask for is not run.
     """
 
@@ -66,7 +66,7 @@ class Examination:
     @cached_property
     def source(self) -> Source:
         """The student's package, read once: later, `colcon test` lets its code write there."""
-        return test_runs.take(self._workspace, PACKAGE)
+        return student_test_runs.take(self._workspace, PACKAGE)
 
     @cached_property
     def trial(self) -> dict[str, Report]:
@@ -74,7 +74,7 @@ class Examination:
         asked = {FILES[check] for check in self._checks if check in FILES}
         wanted = {
             name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD)
-            for name in LEAST
+            for name in MIN_TESTS
             if name in asked and name in self.source.tests
         }
         return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
@@ -84,7 +84,7 @@ class Examination:
         """The other runs: by file, and what is special about the version or the run."""
         wanted: dict[tuple[str, str], TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in (name for name in reversed(LEAST) if is_usable(name, self.trial.get(name))):
+        for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
             mine = self._wanted(name)
             whats = sorted(mine)
             self._draw(name, "order").shuffle(whats)
@@ -112,7 +112,7 @@ class Examination:
         """
         name = FILES[check]
         mine = [fault for fault in faults() if fault.check == check]
-        found = [fault for fault in mine if self._objects(name, fault)]
+        found = [fault for fault in mine if self._detects(name, fault)]
         expect(
             len(found) == len(mine),
             f"{len(mine) - len(found)} of {len(mine)} faulty versions that break this line of the contract "
@@ -125,9 +125,9 @@ class Examination:
         ids = {fault.id for fault in faults()}
         return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
 
-    def _objects(self, name: str, fault: Fault) -> bool:
+    def _detects(self, name: str, fault: Fault) -> bool:
         report = self.runs[name, fault.id]
-        return report.ending is Ending.WALL_TIME or report.objects(self.trial[name])
+        return report.ending is Ending.WALL_TIME or report.detects_fault(self.trial[name])
 
     def _wanted(self, name: str) -> dict[str, TestRun]:
         """Return the runs of a file that are asked for, by what is special about each."""
@@ -150,7 +150,7 @@ class Examination:
         return random.Random(":".join((str(self._seed), *what)))
 
     def _run(self, wanted: Sequence[TestRun]) -> list[Report]:
-        return test_runs.run(self._workspace, self.source, wanted)
+        return student_test_runs.run(self._workspace, self.source, wanted)
 
 
 _OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"

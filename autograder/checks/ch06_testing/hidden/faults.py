@@ -13,7 +13,7 @@ import yaml
 from autograder import layout
 from autograder.checks.ch06_testing.support.contract import PACKAGE, SCRIPTS
 from autograder.exceptions import GraderError
-from autograder.probes.versions import Version, disguise, read
+from autograder.probes.versions import Version, obfuscate, read
 
 STYLES = ("first", "second")
 FOLDER = Path(__file__).parent / "versions"
@@ -54,16 +54,16 @@ def style(name: str) -> Version:
 
 
 def right(name: str, draw: random.Random) -> Version:
-    """Return a right version in a style, disguised."""
-    return disguise(style(name), draw.getrandbits(32))
+    """Return a right version in a style, obfuscated."""
+    return obfuscate(style(name), draw.getrandbits(32))
 
 
 def reworded(draw: random.Random) -> Version:
-    """Return a right version of the first style in which one thing in each file is said otherwise, disguised."""
+    """Return a right version of the first style in which one thing in each file is said otherwise, obfuscated."""
     files = dict(style(STYLES[0]).files)
     for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
         files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
-    return disguise(Version(files, SCRIPTS), draw.getrandbits(32))
+    return obfuscate(Version(files, SCRIPTS), draw.getrandbits(32))
 
 
 def _edited(text: str, edit: dict[str, str], what: str) -> str:
@@ -73,7 +73,7 @@ def _edited(text: str, edit: dict[str, str], what: str) -> str:
 
 
 def broken(fault: Fault, name: str, draw: random.Random) -> Version:
-    """Return a faulty version in a style, disguised.
+    """Return a faulty version in a style, obfuscated.
 
     Raises:
         GraderError: the fault no longer fits the style's text.
@@ -85,7 +85,7 @@ def broken(fault: Fault, name: str, draw: random.Random) -> Version:
         raise GraderError(f"fault {fault.id}: {find!r} stands {count} times in {fault.file} of style {name}")
     head, _, tail = text.rpartition(find)
     files = {**version.files, fault.file: head + replace + tail}
-    return disguise(Version(files, version.scripts), draw.getrandbits(32))
+    return obfuscate(Version(files, version.scripts), draw.getrandbits(32))
 
 
 def _fault(entry: dict[str, Any]) -> Fault:

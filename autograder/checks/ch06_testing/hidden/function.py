@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.checks import each, group, hint
+from autograder.checks import check_each_row, group, hint
 from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
@@ -126,7 +126,7 @@ LINES = (
 )
 
 
-@each(group("function", depends=RIGHT), LINES)
+@check_each_row(group("function", depends=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.checks import each, expect, group, hint
+from autograder.checks import check_each_row, expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
@@ -157,7 +157,7 @@ LINES = (
 )
 
 
-@each(group("node", depends=RIGHT), LINES)
+@check_each_row(group("node", depends=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from autograder.checks import CheckFailed, expect
-from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
+from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
-from autograder.probes.test_reports import Report, Source
+from autograder.probes.student_test_reports import Report, Source
 from autograder.sandbox import Ending
 
 UNFINISHED = "still to be written"
@@ -13,7 +13,7 @@ UNFINISHED = "still to be written"
 
 def is_usable(name: str, report: Report | None) -> bool:
     """Whether the tests of a file pass on a right version, and are enough to judge others by."""
-    return report is not None and report.passed and len(report.executed) >= LEAST[name]
+    return report is not None and report.passed and len(report.executed) >= MIN_TESTS[name]
 
 
 def expect_passed(name: str, report: Report | None) -> None:
@@ -24,8 +24,8 @@ def expect_passed(name: str, report: Report | None) -> None:
         raise CheckFailed(describe_failure(name, report, "on the package as it is", said=True))
     count = len(report.executed)
     expect(
-        count >= LEAST[name],
-        f"Only {count} of at least {LEAST[name]} tests in {name} ran: a case of parametrize counts as one.",
+        count >= MIN_TESTS[name],
+        f"Only {count} of at least {MIN_TESTS[name]} tests in {name} ran: a case of parametrize counts as one.",
         fraction=0.5,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 PACKAGE = "speed_guard"
 SCRIPTS = {"speed_guard": "speed_guard.guard"}
 LIMITS, GUARD, LAUNCH = "test_limits.py", "test_guard.py", "test_launch.py"
-LEAST = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # tests that have to run
+MIN_TESTS = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # tests that have to run
 
 PYTEST = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Testing/Python.html"
 INTEGRATION = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Testing/Integration.html"

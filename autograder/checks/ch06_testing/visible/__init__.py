@@ -1,4 +1,4 @@
 """The visible checks of 06_testing."""
 
 PACKAGES = ("speed_guard",)
-MODULES = ("trying",)
+MODULES = ("mutants",)

@@ -21,8 +21,8 @@ from autograder.checks.ch07_best_practices.support.contract import (
 from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan
 from autograder.harness import Workspace
 from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.namespaces import left_behind
-from autograder.probes.qos import not_plain
+from autograder.probes.namespaces import missing_in_namespace
+from autograder.probes.qos import non_default_qos
 
 check = group("processor")
 SECONDS = 20.0
@@ -55,7 +55,7 @@ def test_sensor_qos(processor: Processor) -> None:
     expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
     durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*taken, *offered))
     expect(not durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5)
-    differs = not_plain(processor.node, "/mean_distance")
+    differs = non_default_qos(processor.node, "/mean_distance")
     expect(not differs, differs, fraction=0.75)
 
 
@@ -63,8 +63,8 @@ def test_sensor_qos(processor: Processor) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics of sensor_processor are relative: in a namespace, it takes them with it."""
-    left = left_behind(workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance"))
+    """The topic names of sensor_processor are relative: in the namespace /a, scan is /a/scan."""
+    left = missing_in_namespace(workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance"))
     expect(not left, left)
 
 

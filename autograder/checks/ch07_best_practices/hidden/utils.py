@@ -16,11 +16,11 @@ from autograder.checks.ch07_best_practices.support.contract import (
     UTILS,
 )
 from autograder.harness import Workspace
-from autograder.probes.calls import Outcome, call, calls, made, make, same, value
+from autograder.probes.calls import StepResult, call, calls, made, same, value
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
-HAIR = 1e-4  # m beyond a limit, more than what rounding does
+BEYOND_LIMIT = 1e-4  # m beyond a limit, more than what rounding does
 DEFAULT_HISTORY = 100
 SEQUENCES = {
     "a tuple": ("builtins", "tuple", ()),
@@ -75,7 +75,7 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
     near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
     rows = (
         ([near, far, near / 2, far * 2], [near, far, nan, nan], 0.0),
-        ([near - HAIR, far + HAIR], [nan, nan], 0.75),
+        ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [nan, nan], 0.75),
     )
     outcomes = calls(workspace, UTILS, *(call("mask_invalid", readings, near, far) for readings, _, _ in rows))
     for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
@@ -134,8 +134,8 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
         outcomes = calls(
             workspace,
             UTILS,
-            make(name, *first, readings, module=module),
-            make("DataProcessor", 2),
+            call(name, *first, readings, module=module),
+            call("DataProcessor", 2),
             call("mask_invalid", made(0), LOW, HIGH),
             call("mean_distance", made(0)),
             call("process", made(0), LOW, HIGH, on=1),
@@ -176,7 +176,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     seen = value(average, "average()")
     expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
     at_zero = [call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # a mean of 0 is a mean
-    *_, average = calls(workspace, UTILS, make("DataProcessor", 2), *at_zero, call("average", on=0))
+    *_, average = calls(workspace, UTILS, call("DataProcessor", 2), *at_zero, call("average", on=0))
     seen = value(average, "average()")
     expect(same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
 
@@ -189,8 +189,8 @@ def test_prints_nothing(workspace: Workspace) -> None:
     outcomes += calls(
         workspace,
         UTILS,
-        make("StringIO", module="io"),
-        make("import_module", "sys", module="importlib"),
+        call("StringIO", module="io"),
+        call("import_module", "sys", module="importlib"),
         call("setattr", made(1), "stderr", made(0), module="builtins"),
         call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
         call("disable", module="logging"),  # nor is a record of logging
@@ -210,8 +210,8 @@ def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
     return list(masked)
 
 
-def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[Outcome]:
+def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[StepResult]:
     """Let a DataProcessor, of the default history if None, take scans; return the outcomes, `average()`'s last."""
     sizes = () if history is None else (history,)
     process = [call("process", readings, LOW, HIGH, on=0) for readings in scans]
-    return calls(workspace, UTILS, make("DataProcessor", *sizes), *process, call("average", on=0))
+    return calls(workspace, UTILS, call("DataProcessor", *sizes), *process, call("average", on=0))

@@ -16,7 +16,7 @@ from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.parameters import override_arguments
 from autograder.time_record import LOCKSTEP
 
-FILTERED, MEAN, WORDS = "/scan_filtered", "/mean_distance", "/status"
+FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
 LATE = 3.0  # s in real time until the first reading, and for what comes late
 
 
@@ -50,28 +50,28 @@ class Robust(AutoHarness):
 
     def __init__(self, workspace: Workspace, **parameters: float) -> None:
         arguments = ("--ros-args", *override_arguments(parameters))
-        super().__init__(workspace, PACKAGE, "robust_node", listens={WORDS: String}, arguments=arguments)
-        self._told = 0
+        super().__init__(workspace, PACKAGE, "robust_node", listens={STATUS: String}, arguments=arguments)
+        self._seen = 0
 
-    def hear(self, readings: int) -> list[str]:
+    def receive(self, readings: int) -> list[str]:
         """Give it the time for so many readings, one a second; return what it said on status meanwhile."""
-        wanted = self._told + readings
+        wanted = self._seen + readings
         if self.time == LOCKSTEP:
             self.run(readings + 0.05)
         else:  # its seconds did not begin with the harness's
-            self.until(lambda: len(self.messages(WORDS)) >= wanted, readings + LATE)
+            self.until(lambda: len(self.messages(STATUS)) >= wanted, readings + LATE)
             self.run(0.4)
-        said = [stamped.message.data for stamped in self.messages(WORDS)[self._told :]]
-        self._told += len(said)
+        said = [stamped.message.data for stamped in self.messages(STATUS)[self._seen :]]
+        self._seen += len(said)
         return said
 
 
 def expected(seed: int, probability: float, count: int, max_errors: int = MAX_ERRORS) -> list[str]:
     """Return what a node with this seed says at its first `count` readings, by the contract."""
-    return list(islice(_words(random.Random(seed), probability, max_errors), count))
+    return list(islice(_status_texts(random.Random(seed), probability, max_errors), count))
 
 
-def _words(generator: random.Random, probability: float, max_errors: int) -> Iterator[str]:
+def _status_texts(generator: random.Random, probability: float, max_errors: int) -> Iterator[str]:
     errors = 0
     while True:
         errors = errors + 1 if generator.random() < probability else 0

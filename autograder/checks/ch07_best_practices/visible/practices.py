@@ -8,9 +8,9 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from autograder.checks import check, expect, hint
 from autograder.checks.ch07_best_practices.support import contract
-from autograder.checks.ch07_best_practices.support.robot import WORDS, Processor, Robust, expected, logged, scan
+from autograder.checks.ch07_best_practices.support.robot import STATUS, Processor, Robust, expected, logged, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, made, make, same, value
+from autograder.probes.calls import call, calls, made, same, value
 from autograder.probes.parameters import NodeParameters
 
 BLIND_SECONDS = 6  # of scans without a distance
@@ -53,7 +53,7 @@ def test_mean_distance(workspace: Workspace) -> None:
 def test_data_processor(workspace: Workspace) -> None:
     """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
     steps = [
-        make("DataProcessor", 2),
+        call("DataProcessor", 2),
         *(call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
     ]
     _, first, *_, outcome = calls(workspace, contract.UTILS, *steps, call("average", on=0))
@@ -114,7 +114,7 @@ def test_means(fresh_processor: Processor) -> None:
 def test_counts_failures(workspace: Workspace) -> None:
     """robust_node says each second how its reading went, and counts failures in a row."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:
-        said = harness.hear(8)
+        said = harness.receive(8)
     wanted = expected(7, 0.5, 8)
     expect(said == wanted, f"With seed 7 it said {said}, and should have said {wanted}.")
 
@@ -131,7 +131,7 @@ def test_counts_failures(workspace: Workspace) -> None:
 def test_declares(workspace: Workspace) -> None:
     """robust_node offers status transient local, and its three parameters have ranges."""
     with Robust(workspace) as harness:
-        offered = harness.node.get_publishers_info_by_topic(WORDS)
+        offered = harness.node.get_publishers_info_by_topic(STATUS)
         described = NodeParameters(harness, "/robust_node").descriptors("failure_probability", "seed", "max_errors")
     durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
     expect(bool(durable) and all(durable), "status is not transient local: a node that joins late would hear nothing.")
@@ -151,7 +151,7 @@ def test_declares(workspace: Workspace) -> None:
 def test_dead_sensor(workspace: Workspace) -> None:
     """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
     with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
-        said = harness.hear(12)
+        said = harness.receive(12)
         fatal, errors = logged(harness.output, "FATAL"), logged(harness.output, "ERROR")
     wanted = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
     expect(said == wanted, f"It said {said}.")
@@ -164,7 +164,7 @@ def test_dead_sensor(workspace: Workspace) -> None:
 def test_recovers(workspace: Workspace) -> None:
     """It logs each recovery, with the number of failures before it."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:
-        harness.hear(5)
+        harness.receive(5)
         lines = [line for line in harness.output.splitlines() if "Recovered after " in line]
     expect(len(lines) == 2, f"With seed 7 it recovers twice in 5 s, and it logged {len(lines)} recoveries.")
     expect(lines[0].endswith("Recovered after 2 errors"), f"The first recovery comes after 2 failures: {lines[0]}")
@@ -178,8 +178,8 @@ def test_shows_bugs(workspace: Workspace) -> None:
         workspace,
         contract.ROBUST,
         call("init", module="rclpy"),
-        make("range", 3, module="builtins"),
-        make("RobustNode", generator=made(1)),
+        call("range", 3, module="builtins"),
+        call("RobustNode", generator=made(1)),
         call("timer_callback", on=2),
         network=True,
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from autograder.checks.ch02_nodes.hidden import terrain
+from autograder.checks.ch02_nodes.hidden import world_generation
 from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
 from autograder.checks.ch08_capstone.support.system import System
 from autograder.harness import ReceivedMessage, drive
@@ -42,7 +42,7 @@ class Drives:
     def room(self) -> Driven:
         """Twenty seconds in a furnished room."""
         draw = random.Random(f"{self._seed}:room")
-        return self._drive(terrain.furnished_room(draw), ROOM_SECONDS, draw)
+        return self._drive(world_generation.furnished_room(draw), ROOM_SECONDS, draw)
 
     @cached_property
     def corridor(self) -> Driven:

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Twist
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.edges import OPEN
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     DEGRADED,
@@ -25,7 +25,7 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem, System, describe_report
 from autograder.harness import ReceivedMessage
 from autograder.harness.drive import SCAN_SECONDS
-from autograder.probes.pace import is_paced, mean_period
+from autograder.probes.message_period import is_paced, mean_period
 from autograder.time_record import LOCKSTEP
 
 check = group("step_2")
@@ -65,14 +65,14 @@ def test_health_levels(system: System, lone_monitor: SharedSystem) -> None:
     blind = system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0).reports
     _expect_reports(blind, DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
     dead = system.wait(SAID_WITHIN).reports[-1:]
-    _expect_reports(dead, FAILED, DEAD, f"{SAID_WITHIN:.0f} s after the last scan, a blind one,", fraction=0.5)
+    _expect_reports(dead, FAILED, DEAD, f"{SAID_WITHIN:.0f} s after the last scan, a blind one", fraction=0.5)
     _expect_reports(system.see(OPEN, 1.0).reports, OK, set(), "When it sees again", fraction=0.5)
     late = system.see(OPEN, 1.5, age=LATE).reports
-    _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier,", fraction=0.5)
+    _expect_reports(late, OK, set(), f"With scans that arrive, stamped {LATE:.0f} s earlier", fraction=0.5)
     alone = lone_monitor.get(MONITOR)
-    undriven = _tell(alone, ("scan", "clearance"), 1.5)
+    undriven = _send_all(alone, ("scan", "clearance"), 1.5)
     _expect_reports(undriven, FAILED, {"cmd_vel"}, "With scans, and no controller that runs", fraction=0.5)
-    half_blind = _tell(alone, WATCHED, 1.0, left=math.nan)[-1:]
+    half_blind = _send_all(alone, WATCHED, 1.0, left=math.nan)[-1:]
     situation = "With a clearance that is not valid, as it has nan on the left alone"
     _expect_reports(half_blind, DEGRADED, set(), situation, fraction=0.85)
 
@@ -106,7 +106,7 @@ def test_dead_sensor(system: System, slow_system: SharedSystem, lone_monitor: Sh
     if system.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
         _expect_ros_time(slow_system.get(*PROGRAMS))
     for topic in ("cmd_vel", "clearance"):
-        _expect_silence_said(lone_monitor.get(MONITOR), topic)
+        _expect_silence_reported(lone_monitor.get(MONITOR), topic)
 
 
 def _expect_ros_time(system: System) -> None:
@@ -117,23 +117,23 @@ def _expect_ros_time(system: System) -> None:
     _expect_stamped(system, reports[-1])
 
 
-def _expect_silence_said(system: System, topic: str) -> None:
+def _expect_silence_reported(system: System, topic: str) -> None:
     """Fail the check unless a topic is called silent once it has been for longer than the time-out, the others not."""
-    _tell(system, WATCHED, 0.5)
+    _send_all(system, WATCHED, 0.5)
     for _ in range(10):
         newest = system.harness.messages("/health")[-1:]
         if newest and PHASE <= system.seconds - newest[0].seconds < PHASE_END:
             break
-        _tell(system, WATCHED, SCAN_SECONDS)
+        _send_all(system, WATCHED, SCAN_SECONDS)
     margin = MARGIN if system.harness.time == LOCKSTEP else REAL_MARGIN
     ended = system.seconds
-    _tell(system, [other for other in WATCHED if other != topic], SAID_WITHIN)
+    _send_all(system, [other for other in WATCHED if other != topic], SAID_WITHIN)
     late = system.messages(ended + SILENT + margin).reports
     situation = f"More than {SILENT:.0f} s after the last message on {topic}, while the others went on"
     _expect_reports(late, FAILED, {topic}, situation, fraction=0.85)
 
 
-def _tell(system: System, topics: Sequence[str], seconds: float, **distances: float) -> Sequence[ReceivedMessage]:
+def _send_all(system: System, topics: Sequence[str], seconds: float, **distances: float) -> Sequence[ReceivedMessage]:
     """Send the lone monitor a message on each topic ten times a second; return the reports after the time to react.
 
     The clearance is valid and free to all sides, but for these distances.

@@ -99,7 +99,7 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
         harness.wait_for(
             lambda: bool(launch_probe.started(harness.output)) or harness.status is not None, launch_probe.START_SECONDS
         )
-        why = launch_probe.trouble(harness.output)
+        why = launch_probe.failure(harness.output)
         begun = bool(launch_probe.started(harness.output))
     expect(begun, f"Without {name}:=..., the launch starts nothing: the argument has no default. {why}", fraction=0.5)
 

@@ -12,7 +12,7 @@ from autograder.checks.ch08_capstone.support.sources import require_built, sourc
 from autograder.diagnosis import OK, Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports, manifest
-from autograder.probes.growth import install_with
+from autograder.probes.added_files import install_with
 from autograder.probes.installed import look
 from autograder.probes.packaging import expect_installs_itself
 
@@ -52,8 +52,14 @@ def test_dependencies(workspace: Workspace) -> None:
     source = source_of(workspace, PACKAGE)
     found = manifest.read(source)
     missing = imports.missing(source, found)
-    expect(not missing["exec"], f"{imports.say(missing['exec'])}: package.xml does not declare it as a dependency.")
-    expect(not missing["test"], f"{imports.say(missing['test'])}: package.xml has no test_depend for it.", fraction=0.5)
+    expect(
+        not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it as a dependency."
+    )
+    expect(
+        not missing["test"],
+        f"{imports.describe(missing['test'])}: package.xml has no test_depend for it.",
+        fraction=0.5,
+    )
     for kind, names in (("exec", FOR_LAUNCH), ("test", FOR_TESTS)):
         absent = [name for name in names if name not in found.needs("exec", kind)]
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)

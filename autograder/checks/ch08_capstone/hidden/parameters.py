@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.edges import OPEN
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -88,7 +88,7 @@ def test_ranges(system: System) -> None:
 def test_used(system: System) -> None:
     """A parameter that is changed while the system runs has an effect immediately."""
     wrong = [said for said in (_effect(system, *case) for case in _CASES) if said]
-    wrong += _said_of_change_in_turn(system)
+    wrong += _errors_after_change_in_turn(system)
     if wrong:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / (len(_CASES) + 1), 2))
 
@@ -153,21 +153,19 @@ _CASES: tuple[tuple[str, str, float, Callable[[System], None]], ...] = (
 
 def _effect(system: System, node: str, name: str, value: float, look: Callable[[System], None]) -> str:
     """Change a parameter, look at what comes of it, and change it back; say what was wrong."""
-    asked = system.parameters(node)
-    answer = asked.change({name: value})
-    if not answer.accepted:
-        return f"{node} refuses {name} = {value:g}: {answer.reason}"
     try:
-        look(system)
+        with system.changed(node, name, value) as reply:
+            if not reply.accepted:
+                return f"{node} refuses {name} = {value:g}: {reply.reason}"
+            look(system)
     except CheckFailed as failed:
         return f"With {name} = {value:g}: {failed.message}"
     finally:
-        asked.change({name: PARAMETERS[node][name].default})
         system.see(OPEN)
     return ""
 
 
-def _said_of_change_in_turn(system: System) -> list[str]:
+def _errors_after_change_in_turn(system: System) -> list[str]:
     """Say how the robot goes on turning after safety_distance was set so low that the turn has to end, if so."""
     ahead = Part(-40.0, 40.0, 0.5)
     _settled(system, ahead)

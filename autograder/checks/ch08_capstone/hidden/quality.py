@@ -10,8 +10,8 @@ from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import colcon_test, expect_ended
-from autograder.probes.test_reports import ClaimedOutcome, Report
-from autograder.probes.test_runs import take
+from autograder.probes.student_test_reports import ClaimedOutcome, Report
+from autograder.probes.student_test_runs import take
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
@@ -45,7 +45,7 @@ def test_colcon_finds_tests(tested: Report) -> None:
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("The linters name a file, a line and a rule: mend them one by one.")
 def test_linters_pass(workspace: Workspace, tested: Report) -> None:
-    """Flake8 and PEP 257 have nothing to say."""
+    """The linters flake8 and pep257 report no errors."""
     for name in LINTERS:
         verdict = tested.claims.verdicts.get(name)
         expect(verdict is ClaimedOutcome.PASSED, f"{name}: {tested.claims.messages.get(name) or 'it did not run'}")

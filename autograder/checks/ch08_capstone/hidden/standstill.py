@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from autograder.checks import expect
 from autograder.checks.ch02_nodes.support.scans import Part, scan
-from autograder.checks.ch08_capstone.hidden.edges import OPEN
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.hidden.tracks import TURNS
 from autograder.checks.ch08_capstone.support.system import Received, System
 

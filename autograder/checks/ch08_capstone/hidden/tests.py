@@ -13,12 +13,12 @@ from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.harness import Workspace
-from autograder.probes import test_runs
-from autograder.probes.test_reports import Report, TestRun
+from autograder.probes import student_test_runs
+from autograder.probes.student_test_reports import Report, TestRun
 
 check = group("step_6")
 FILE = "test_sectors.py"
-LEAST = 4
+MIN_TESTS = 4
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,9 @@ def examined(workspace: Workspace, seed: int) -> Examined:
     draw = random.Random(f"{seed}:sectors")
     versions = [right(draw), *faulty(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
-    source = test_runs.take(workspace, PACKAGE)
-    runs = test_runs.run(workspace, source, [TestRun((FILE,), versions[i]) for i in order])  # all are called alike
+    source = student_test_runs.take(workspace, PACKAGE)
+    wanted = [TestRun((FILE,), versions[i]) for i in order]  # all are called alike
+    runs = student_test_runs.run(workspace, source, wanted)
     by_version = dict(zip(order, runs, strict=True))
     return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
 
@@ -55,7 +56,7 @@ def test_sector_tests_pass(examined: Examined) -> None:
         raise CheckFailed(f"On a right sectors.py, {len(report.failed)} tests fail: {first}: {said}")
     expect(report.passed, f"On a right sectors.py, pytest ran no test: {report.output.strip()[-300:]}")
     count = len(report.executed)
-    expect(count >= LEAST, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
+    expect(count >= MIN_TESTS, f"{count} tests ran: that is too few to say that nearest is right.", fraction=0.5)
 
 
 @check(points=4, holds="sector-tests", depends=("sector_tests_pass",), doc=contract.REP_117)
@@ -63,7 +64,7 @@ def test_sector_tests_pass(examined: Examined) -> None:
 @hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
 def test_sector_tests_find_faults(examined: Examined) -> None:
     """The tests of the sectors fail on broken versions of sectors.py."""
-    missed = [fault.what for fault, report in examined.faulty if not report.objects(examined.right)]
+    missed = [fault.what for fault, report in examined.faulty if not report.detects_fault(examined.right)]
     expect(
         not missed,
         f"Your tests are content with {'; with '.join(missed)}.",

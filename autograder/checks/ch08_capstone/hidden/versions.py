@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from autograder.checks.ch08_capstone.support.contract import PACKAGE, SECTORS
 from autograder.exceptions import GraderError
-from autograder.probes.versions import Version, disguise
+from autograder.probes.versions import Version, obfuscate
 
 RIGHT = """
 import math
@@ -86,4 +86,4 @@ def _with(fault: Fault) -> str:
 
 def _version(text: str, draw: random.Random) -> Version:
     files = {f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": text}
-    return disguise(Version(files, {}), draw.randrange(2**31))
+    return obfuscate(Version(files, {}), draw.randrange(2**31))

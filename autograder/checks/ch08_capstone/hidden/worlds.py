@@ -10,7 +10,7 @@ from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
 from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
-from autograder.checks.ch08_capstone.hidden.edges import OPEN
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support.contract import TOLERANCE
 from autograder.checks.ch08_capstone.support.system import System, expect_still
 from autograder.gallery import Gallery

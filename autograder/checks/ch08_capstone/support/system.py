@@ -26,7 +26,7 @@ from autograder.checks.ch08_capstone.support.messages import Types, load_message
 from autograder.harness import AutoHarness, Program, ReceivedMessage, Shared, Workspace
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.installed import look
-from autograder.probes.parameters import NodeParameters
+from autograder.probes.parameters import NodeParameters, SetParametersReply
 from autograder.sandbox import Process
 
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
@@ -125,15 +125,15 @@ class System:
         return NodeParameters(self.harness, name_of(program))
 
     @contextmanager
-    def changed(self, program: str, name: str, value: float) -> Iterator[bool]:
-        """Change a parameter for a while; yield whether the program takes the value."""
+    def changed(self, program: str, name: str, value: float) -> Iterator[SetParametersReply]:
+        """Change a parameter for a while; yield the program's reply."""
         asked = self.parameters(program)
         before = asked.values(name)
-        accepted = name in asked.names() and asked.change({name: value}).accepted
+        reply = asked.change({name: value}) if before else SetParametersReply(accepted=False)
         try:
-            yield accepted
+            yield reply
         finally:
-            if accepted:
+            if reply.accepted:
                 asked.change(before)  # what it was, as another check asks whether it is the contract's default
 
     def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Received:

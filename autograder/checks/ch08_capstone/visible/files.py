@@ -28,7 +28,7 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
         not absent, f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(there) or 'none'}."
     )
     missing = imports.missing(source_of(workspace, PACKAGE), found)
-    expect(not missing["exec"], f"{imports.say(missing['exec'])}: package.xml does not declare it.")
+    expect(not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it.")
 
 
 @check(points=1, holds="definitions", group="step_3", doc=contract.INTERFACES_DOC)

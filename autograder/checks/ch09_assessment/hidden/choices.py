@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from autograder.checks import Row, each, expect, group
+from autograder.checks import CheckRow, check_each_row, expect, group
 from autograder.checks.ch09_assessment.hidden.questions import QUESTIONS, Question
 from autograder.checks.ch09_assessment.support.sheet import answers, expect_letter
 from autograder.harness import Workspace
 
 
 @dataclass(frozen=True, kw_only=True)
-class Choice(Row):
+class Choice(CheckRow):
     """The check of one question."""
 
     question: Question
@@ -31,7 +31,7 @@ CHOICES = [
 ]
 
 
-@each(group("choices"), CHOICES)
+@check_each_row(group("choices"), CHOICES)
 def letter_is_right(choice: Choice, workspace: Workspace) -> None:
     """Compare the letter that was given with the right one."""
     letter = expect_letter(answers(workspace), choice.id)

@@ -20,7 +20,7 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
 from autograder.harness import Workspace
-from autograder.probes.namespaces import left_behind
+from autograder.probes.namespaces import missing_in_namespace
 from autograder.time_record import LOCKSTEP
 
 check = group("nodes")
@@ -72,7 +72,7 @@ def test_stamps(start: Start) -> None:
     for rate in (SLOW, 1.0):
         with start(THERMOMETER, clock_rate=rate) as harness:
             harness.run(2.2)
-            now_ns, now, heard = harness.now_ns, harness.seconds, harness.heard()
+            now_ns, now, heard = harness.now_ns, harness.seconds, harness.published()
         came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
         stamps = [stamped.message.stamp for stamped in heard]
         ages = [
@@ -228,7 +228,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics of all three nodes have plain queues and are relative: in a namespace, each takes them with it."""
+    """The topics have plain queues and relative names: in the namespace /a, temperature is /a/temperature."""
     topics = {
         THERMOMETER: ("temperature",),
         SMOOTHER: ("temperature", "smoothed"),
@@ -237,7 +237,7 @@ def test_relative(workspace: Workspace) -> None:
     left = [
         said
         for name, names in topics.items()
-        if (said := left_behind(workspace, contract.PACKAGE, name, names, plain=True))
+        if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
     ]
     expect(not left, " ".join(left))
 

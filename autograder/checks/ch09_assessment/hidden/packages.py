@@ -79,7 +79,7 @@ def test_dependencies(workspace: Workspace) -> None:
     source = source_of(workspace, PACKAGE)
     found, installed = manifest.read(source), look(workspace.install, PACKAGE)
     missing = imports.missing(source, found)["exec"]
-    expect(not missing, f"{imports.say(missing)}: package.xml does not declare it.")
+    expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
     absent = [name for name in contract.FOR_TESTS if name not in found.needs("test")]
     expect(not absent, f"package.xml has no test_depend on {', '.join(absent)}.", fraction=0.5)
     _expect_licence(found)

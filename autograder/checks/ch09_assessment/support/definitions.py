@@ -32,5 +32,8 @@ def _text(folder: Path, path: str) -> str:
         there = sorted(str(other.relative_to(folder)) for other in folder.glob("msg/*.msg"))
         raise CheckFailed(f"{INTERFACES} has no {path}; it has {', '.join(there) or 'no message at all'}.")
     text = file.read_bytes()[: interfaces.MAX_BYTES + 1].decode(errors="replace")
-    expect("NotImplementedError" not in text, f"{path} is still to be written: put your fields in place of the raise.")
+    expect(
+        "NotImplementedError" not in text,
+        f"{path} is still to be written: replace the line raise NotImplementedError(...) with your fields.",
+    )
     return text

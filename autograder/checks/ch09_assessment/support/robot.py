@@ -68,7 +68,7 @@ class NodeHarness(AutoHarness):
         self._types, self._name = types, name
         self._out, self._in = next(iter(listens)), next(iter(offers), "")
 
-    def heard(self, since: float = -1.0) -> list[ReceivedMessage]:
+    def published(self, since: float = -1.0) -> list[ReceivedMessage]:
         """Return what it has published."""
         return self.messages(self._out, since=since)
 
@@ -86,14 +86,14 @@ class NodeHarness(AutoHarness):
             self.publish(self._in, message)
             self.run(apart)
         self.run(STEP - apart)
-        self.wait_for_late(lambda: len(self.heard(began)) >= len(sent))
-        return [stamped.message for stamped in self.heard(began)]
+        self.wait_for_late(lambda: len(self.published(began)) >= len(sent))
+        return [stamped.message for stamped in self.published(began)]
 
     def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
         """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
         began, seconds = self.seconds, (count + 0.5) * period
         self.run(seconds)
-        seen = [stamped.message.celsius for stamped in self.heard()]
+        seen = [stamped.message.celsius for stamped in self.published()]
         expect(bool(seen), f"In {seconds:.1f} s it published nothing.")
         for number, celsius in enumerate(seen, self._missed(seen, period, shape)):
             wanted = reading(number, *shape)

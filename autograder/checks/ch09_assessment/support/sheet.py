@@ -31,7 +31,10 @@ def answers(workspace: Workspace) -> dict[str, str]:
     data = path.read_bytes()[: MAX_BYTES + 1]
     expect(len(data) <= MAX_BYTES, f"{SHEET} is far larger than {len(QUESTIONS)} letters.")
     text = data.decode(errors="replace")
-    expect("NotImplementedError" not in text, f"{SHEET} is still to be written: put letters in place of the raise.")
+    expect(
+        "NotImplementedError" not in text,
+        f"{SHEET} is still to be written: replace the line raise NotImplementedError(...) with letters.",
+    )
     return parse(text)
 
 

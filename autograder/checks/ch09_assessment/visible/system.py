@@ -43,7 +43,7 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
     source = source_of(workspace, PACKAGE)
     missing = imports.missing(source, manifest.read(source))["exec"]
-    expect(not missing, f"{imports.say(missing)}: package.xml does not declare it.")
+    expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
 
 
 @check(points=1, holds="formula", group="nodes", depends=("builds",), doc=contract.NODES_DOC)

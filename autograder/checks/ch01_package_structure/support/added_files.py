@@ -1,4 +1,4 @@
-"""A package grows: new files are laid into a copy of it, and its setup.py, as it is, has to install them."""
+"""New files are laid into a copy of the student's package, and its setup.py, as it is, has to install them."""
 
 from __future__ import annotations
 
@@ -6,28 +6,32 @@ from dataclasses import dataclass
 
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.harness import Workspace
-from autograder.probes.growth import install_with
+from autograder.probes.added_files import install_with
 from autograder.probes.installed import Installed
 
 
 @dataclass(frozen=True)
-class Grown:
-    """What was installed of the grown copy, and what of it was new.
+class ExtendedPackage:
+    """What was installed of the copy, and which of its files are new.
 
     Attributes:
         installed: what colcon installed of it.
-        launch: the new launch file.
-        config: the new configuration.
+        shared: the new launch file and the new configuration.
         modules: the new modules, each in a subpackage of its own; one is deeper, and has "test" within its name.
     """
 
     installed: Installed
-    launch: str
-    config: str
+    shared: tuple[str, ...]
     modules: tuple[str, ...]
 
+    @property
+    def missing(self) -> list[str]:
+        """The new files and modules that were not installed."""
+        files = [name for name in self.shared if self.installed.read(name) is None]
+        return files + [name for name in self.modules if name not in self.installed.modules]
 
-def grow(workspace: Workspace, word: str) -> Grown:
+
+def extend(workspace: Workspace, word: str) -> ExtendedPackage:
     """Copy the student's package, add files to it and build the copy.
 
     Args:
@@ -38,12 +42,11 @@ def grow(workspace: Workspace, word: str) -> Grown:
         StudentError: the copy does not build.
     """
     name = contract.SQUARE_DANCE
-    launch, config, test = f"launch/{word}.launch.py", f"config/{word}.yaml", f"test/test_{word}.py"
+    shared, tests = (f"launch/{word}.launch.py", f"config/{word}.yaml"), (f"test/test_{word}.py", "test/__init__.py")
     folders = f"{name}/{word}", f"{name}/utils/contest_{word}"
     code = [f"{folder}/{file}.py" for folder in folders for file in ("__init__", "steps")]
-    return Grown(
-        install_with(workspace, name, (launch, config, test, "test/__init__.py", *code)),
-        launch,
-        config,
+    return ExtendedPackage(
+        install_with(workspace, name, (*shared, *tests, *code)),
+        shared,
         tuple(f"{folder.replace('/', '.')}.steps" for folder in folders),
     )

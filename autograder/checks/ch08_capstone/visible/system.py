@@ -22,11 +22,11 @@ from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe, test_runs
+from autograder.probes import launch_probe, student_test_runs
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
-from autograder.probes.test_reports import Report, TestRun
+from autograder.probes.student_test_reports import Report, TestRun
 from autograder.probes.versions import Version
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
@@ -52,7 +52,7 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
         if TESTS in wanted:
             version = Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
             wanted[MUTANT] = TestRun(TESTS, version, first_failure=True)
-        runs = test_runs.run(workspace, test_runs.take(workspace, PACKAGE), list(wanted.values()))
+        runs = student_test_runs.run(workspace, student_test_runs.take(workspace, PACKAGE), list(wanted.values()))
         return dict(zip(wanted, runs, strict=True))
 
     with ThreadPoolExecutor(1) as beside:
@@ -93,7 +93,10 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
     text = (source_of(workspace, PACKAGE) / "test" / TESTS[0]).read_text(errors="replace")
-    expect(STILL_TO_BE_WRITTEN not in text, f"{TESTS[0]} is still to be written: put your tests in place of the raise.")
+    expect(
+        STILL_TO_BE_WRITTEN not in text,
+        f"{TESTS[0]} is still to be written: replace the line raise NotImplementedError(...) with your tests.",
+    )
     report = reports.result()[TESTS]
     messages = report.claims.messages
     failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
@@ -106,14 +109,14 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
 def test_sector_tests_notice(reports: Future[Reports]) -> None:
     """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
     said = reports.result()
-    expect(said[MUTANT].objects(said[TESTS]), "All of them pass on that mutant, too.")
+    expect(said[MUTANT].detects_fault(said[TESTS]), "All of them pass on that mutant, too.")
 
 
 @check(points=1, holds=("linters", "pytest"), group="step_7", depends=("package",), doc=contract.TESTING_DOC)
 @hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
-    """Step 7: colcon will run your tests, and flake8 and PEP 257 have nothing to say."""
+    """Step 7: colcon will run your tests, and flake8 and pep257 report no errors."""
     named = runs_pytest(workspace, look(workspace.install, PACKAGE))
     expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
     absent = _absent(workspace, LINTERS)

@@ -14,9 +14,9 @@ import pytest
 
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes import test_runs
-from autograder.probes.test_reports import Report, TestRun
-from autograder.probes.test_runs import run, take
+from autograder.probes import student_test_runs
+from autograder.probes.student_test_reports import Report, TestRun
+from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
 from autograder.sandbox import Ending
@@ -60,8 +60,8 @@ def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: W
     assert right.executed == ("test_half::test_odd", "test_half::test_even")
     assert wrong.failed == ("test_half::test_odd",)
     assert wrong.claims.messages["test_half::test_odd"].startswith("assert 1 == 1.5")
-    assert wrong.objects(right)
-    assert not right.objects(right)
+    assert wrong.detects_fault(right)
+    assert not right.detects_fault(right)
 
 
 def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace: Workspace) -> None:
@@ -81,7 +81,7 @@ def test_tests_that_cannot_be_imported_find_no_fault(workspace: Workspace) -> No
     write(workspace, "import no_such_module\n" + GOOD)
     (unread,) = runs(workspace, TestRun(("test_half.py",), WRONG))
     assert unread.status == 2
-    assert not unread.objects(right)
+    assert not unread.detects_fault(right)
 
 
 def test_a_run_without_tests_does_not_pass(workspace: Workspace) -> None:
@@ -146,7 +146,7 @@ def folder(request):
 
 def test_a_run_that_does_not_end_is_stopped(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     limits = replace(TEST_RUN, wall_seconds=4.0)
-    monkeypatch.setattr(test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
+    monkeypatch.setattr(student_test_runs.sandboxed, "__kwdefaults__", {"limits": limits, "network": False})
     write(workspace, GOOD + "\n\ndef test_for_ever():\n    import signal\n    while True:\n        signal.pause()\n")
     (report,) = runs(workspace, TestRun(("test_half.py",), RIGHT))
     assert report.ending is Ending.WALL_TIME
@@ -164,13 +164,13 @@ def test_the_only_stopped_run_is_repeated_once(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch, hangs: int, ends: tuple[Ending, ...]
 ) -> None:
     write(workspace, GOOD)
-    really, stopped = test_runs._run, itertools.count()
+    really, stopped = student_test_runs._run, itertools.count()
 
     def sometimes(*run: Any) -> Report:
         report = really(*run)
         return report if next(stopped) >= hangs else replace(report, ending=Ending.WALL_TIME)
 
-    monkeypatch.setattr(test_runs, "_run", sometimes)
+    monkeypatch.setattr(student_test_runs, "_run", sometimes)
     reports = runs(workspace, TestRun(("test_half.py",), RIGHT), TestRun(("test_half.py",), WRONG))
     assert tuple(report.ending for report in reports) == ends
 
@@ -179,7 +179,7 @@ def test_a_run_ends_no_sooner_than_the_threads_of_its_tests(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        test_runs.sandboxed, "__kwdefaults__", {"limits": replace(TEST_RUN, wall_seconds=4.0), "network": False}
+        student_test_runs.sandboxed, "__kwdefaults__", {"limits": replace(TEST_RUN, wall_seconds=4.0), "network": False}
     )
     text = (
         "import threading\n\n\ndef test_it():\n    threading.Thread(target=threading.Event().wait, daemon={}).start()\n"
@@ -293,6 +293,6 @@ def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: py
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     write(workspace, GOOD)
-    monkeypatch.setattr(test_runs, "write_version", full)
+    monkeypatch.setattr(student_test_runs, "write_version", full)
     with pytest.raises(StudentError, match="no room left on the disk"):
         runs(workspace, TestRun(("test_half.py",), RIGHT))

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from autograder.checks import expect
-from autograder.probes import test_runs
-from autograder.probes.test_reports import ClaimedOutcome, Source, TestRun
+from autograder.probes import student_test_runs
+from autograder.probes.student_test_reports import ClaimedOutcome, Source, TestRun
 from autograder.probes.versions import Version
 from autograder.workspace import Workspace
 
@@ -27,7 +27,7 @@ def expect_failures(workspace: Workspace, source: Source, tests: Collection[str]
     modules = {test.partition("::")[0] for test in tests}
     files = sorted(name for name in source.tests if Path(name).suffix == ".py" and Path(name).stem in modules)
     own = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
-    (report,) = test_runs.run(workspace, source, [TestRun(tuple(files), Version({**own, **faults}, {}))])
+    (report,) = student_test_runs.run(workspace, source, [TestRun(tuple(files), Version({**own, **faults}, {}))])
     said = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
     for test in tests:
         verdicts = {verdict for name, verdict in said if name == test}

@@ -13,7 +13,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
 from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
-from autograder.probes.calls import Outcome, call, calls, made, make
+from autograder.probes.calls import StepResult, call, calls, made
 from autograder.probes.parameters import Value, as_declared, differences, override_arguments, shortened
 from sim import Pose, RobotSpec, Simulation, World, box
 
@@ -148,7 +148,7 @@ def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
     expect(bool(beyond.raised), f"{said}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75)
 
 
-def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[Outcome, ...]:
+def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[StepResult, ...]:
     """Ask contradiction about distances that fit and equal ones; declare at equal ones and at a frequency."""
     equal = override_arguments({"safety_distance": distance, "slow_distance": distance})
     beyond = override_arguments({"control_frequency": frequency})
@@ -158,9 +158,9 @@ def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[Ou
         call("contradiction", 0.5, 1.0),
         call("contradiction", distance, distance),
         call("init", module="rclpy"),
-        make("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
+        call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
         call("declare_configuration", made(3)),
-        make("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
+        call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
         call("declare_configuration", made(5)),
         network=True,
     )

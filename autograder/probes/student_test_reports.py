@@ -73,7 +73,7 @@ class Report:
         bad = (ClaimedOutcome.FAILED, ClaimedOutcome.ERROR)
         return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
 
-    def objects(self, right: Report) -> bool:
+    def detects_fault(self, right: Report) -> bool:
         """Whether a test fails here that passed on a right version. A file that cannot be read does not count."""
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.probes.test_reports import (
+from autograder.probes.student_test_reports import (
     MAX_BYTES,
     MAX_MESSAGE,
     ClaimedOutcome,

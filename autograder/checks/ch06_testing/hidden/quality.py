@@ -7,12 +7,13 @@ from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
-from autograder.checks.ch06_testing.support.contract import LEAST, PACKAGE
+from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
+from autograder.probes.given_files import changed_files
 from autograder.probes.installed import look
-from autograder.probes.test_reports import ClaimedOutcome
+from autograder.probes.student_test_reports import ClaimedOutcome
 
 check = group("craft")
 SHARED = ("launch", "config")  # folders of which setup.py installs the files
@@ -26,12 +27,9 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
-    given, kept = style(STYLES[0]).files, examination.source.files
-    changed = [
-        name
-        for name, text in given.items()
-        if name.split("/")[0] in GIVEN and kept.get(name, b"").split() != text.encode().split()
-    ]
+    given = style(STYLES[0]).files
+    texts = {name: text.encode() for name, text in given.items()}
+    changed = changed_files(examination.source.files, texts, GIVEN)
     expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
     # The runs install each version themselves, so only this sees what the student's own setup.py leaves out.
     installed = look(workspace.install, PACKAGE)
@@ -71,7 +69,7 @@ def test_colcon(examination: Examination) -> None:
     expect_ended(report)
     expect(bool(verdicts), "`colcon test` ran 0 tests.")
     files = {name.partition("::")[0] + ".py" for name in verdicts}
-    missing = [name for name in LEAST if name not in files]
+    missing = [name for name in MIN_TESTS if name not in files]
     expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.checks import each, group, hint
+from autograder.checks import check_each_row, group, hint
 from autograder.checks.ch06_testing.hidden.examination import Examination, Line
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_passed
@@ -56,7 +56,7 @@ LINES = (
 )
 
 
-@each(group("launch", depends=RIGHT), LINES)
+@check_each_row(group("launch", depends=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -7,11 +7,11 @@ import pytest
 from autograder.checks import check, expect, hint
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep, expect_passed
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LEAST, LIMITS, PACKAGE, SCRIPTS
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, SCRIPTS
 from autograder.harness import Workspace
 from autograder.probes import linters
-from autograder.probes.test_reports import Report, Source, TestRun
-from autograder.probes.test_runs import run, take
+from autograder.probes.student_test_reports import Report, Source, TestRun
+from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
 
 Reports = dict[tuple[str, str], Report]
@@ -103,7 +103,7 @@ def reports(workspace: Workspace, source: Source) -> Reports:
         (LIMITS, BLIND): GOES_BLIND,
         (LIMITS, HALF): HALF_IN_BETWEEN,
     }
-    wanted = {(name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD) for name in LEAST}
+    wanted = {(name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD) for name in MIN_TESTS}
     for (name, what), changed in mutants.items():
         wanted[name, what] = TestRun((name,), Version({**files, **changed}, SCRIPTS), first_failure=True)
     wanted = {key: one for key, one in wanted.items() if key[0] in source.tests}
@@ -205,5 +205,5 @@ def test_linters(workspace: Workspace, source: Source) -> None:
 
 
 def _expect_objection(reports: Reports, name: str, what: str) -> None:
-    objects = reports[name, what].objects(reports[name, RIGHT])
+    objects = reports[name, what].detects_fault(reports[name, RIGHT])
     expect(objects, f"All tests in {name} pass on that mutant, too.")

@@ -41,15 +41,15 @@ def expect_exact_limits(system: System) -> None:
         expect_driving(said, situation, SPEED, fraction=0.75)
 
 
-def said_of_edge(system: System) -> list[str]:
+def sector_edge_errors(system: System) -> list[str]:
     """Say that no beam that is exactly half_angle from the middle belongs to its sector, if so.
 
     One of several is enough: who computes with sine and cosine may be off by a rounding.
     """
     tried = []
     for half in EXACT_HALVES:
-        with system.changed(PROCESSOR, "half_angle", half) as accepted:
-            if accepted:
+        with system.changed(PROCESSOR, "half_angle", half) as reply:
+            if reply.accepted:
                 shown = scan(fill=3.0, beams=3)
                 shown.angle_min, shown.angle_increment, shown.angle_max = -half, half, half
                 shown.ranges = [1.0, 3.0, 1.0]
@@ -58,7 +58,7 @@ def said_of_edge(system: System) -> list[str]:
     return [] if any(tried) or not tried else [f"{at}, front was 3.00: at most half_angle belongs to the sector."]
 
 
-def said_of_limits(system: System) -> list[str]:
+def range_limit_errors(system: System) -> list[str]:
     """Say which readings of exactly range_min or range_max do not count, if any."""
     found = []
     for name, limit in (("range_min", RANGE_MIN), ("range_max", RANGE_MAX)):
@@ -68,7 +68,7 @@ def said_of_limits(system: System) -> list[str]:
     return found
 
 
-def said_of_empty(system: System) -> list[str]:
+def empty_scan_errors(system: System) -> list[str]:
     """Say that a scan without beams becomes no clearance, or one that claims to know something, if so."""
     shown = scan()
     shown.ranges = []

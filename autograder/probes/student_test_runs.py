@@ -32,7 +32,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.intake import read_packages
 from autograder.probes.rtps_sniffer import RtpsSniffer
-from autograder.probes.test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
+from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
 from autograder.ros.domains import Domain
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier

@@ -1,0 +1,148 @@
+"""Step 2, navigation_controller: how it drives, turns and stands still."""
+
+from __future__ import annotations
+
+import math
+import random
+
+from std_srvs.srv import SetBool
+
+from autograder.checks import CheckFailed, expect, group, hint
+from autograder.checks.ch02_nodes.support.scans import Part, scan
+from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_exact_limits
+from autograder.checks.ch08_capstone.hidden.standstill import beside, expect_turn_kept
+from autograder.checks.ch08_capstone.support import contract
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR
+from autograder.checks.ch08_capstone.support.system import (
+    SharedSystem,
+    System,
+    expect_driving,
+    expect_still,
+    expect_turning,
+)
+from autograder.probes.message_period import is_paced, mean_period
+from autograder.time_record import LOCKSTEP
+
+check = group("step_2")
+SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
+TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
+NEAR = PARAMETERS[CONTROLLER]["safety_distance"].default
+STALE = PARAMETERS[CONTROLLER]["data_timeout"].default
+MARGIN = 0.09  # s around a time-out, a little less than the time between two commands
+REAL_MARGIN = 0.25  # s, where time is real
+AHEAD = 1.0  # s, more than a time-out
+EDGE = 0.03  # m around the safety distance, a twentieth of it
+BLIND = scan(Part(-35.0, 35.0, math.nan))
+
+
+@check(points=2, holds=("drive", "ten-hertz", "stand-or-go"), depends=("sectors", "controller"), doc=contract.NODES_DOC)
+@hint("The way is clear: linear.x is forward_speed.")
+@hint("The timer calls control ten times a second, and control publishes once each time, whatever happens.")
+def test_drives(driving: System, draw: random.Random) -> None:
+    """It drives forward while the way is clear, with ten commands a second."""
+    distance = draw.uniform(0.9, 3.0)
+    began = driving.seconds
+    said = driving.see(scan(fill=distance), 2.0)
+    expect_driving(said.commands, f"With {distance:.2f} m of free space all around", SPEED)
+    rate = driving.harness.rate("/cmd_vel", began)
+    expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
+
+
+@check(points=3, holds=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"), depends=("drives",))
+@hint("Compare left with right when the turn begins, and remember the choice.")
+@hint("The remembered turn ends when the way is clear again, not when the sides look different.")
+def test_turns(driving: System, draw: random.Random) -> None:
+    """In front of an obstacle it turns towards the side with more room, and keeps the direction until it is clear."""
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        driving.see(OPEN)
+        near, tight = draw.uniform(0.25, NEAR - 0.1), draw.uniform(0.7, 1.2)
+        obstacle = Part(-10.0, 10.0, near)
+        narrow, other = beside(-sign, tight), beside(sign, tight - 0.4)
+        situation = f"With something {near:.2f} m ahead and less room on the {'right' if sign > 0 else 'left'}"
+        expect_turning(driving.see(scan(obstacle, narrow)).commands, situation, side, TURN)
+        later = f"{situation}, once it turns and the sides have changed,"
+        expect_turning(driving.see(scan(obstacle, narrow, other)).commands, later, side, TURN, fraction=0.5)
+        expect_driving(driving.see(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
+    for near in (NEAR + EDGE, NEAR - EDGE):
+        driving.see(OPEN)
+        said = driving.see(scan(Part(-10.0, 10.0, near), fill=math.inf)).commands  # the same room on both sides
+        situation = f"With something {near:.2f} m ahead, and a safety distance of {NEAR:.2f} m"
+        if near > NEAR:
+            expect_driving(said, situation, SPEED, fraction=0.5)
+        else:
+            expect_turning(said, situation, "left", TURN, fraction=0.5)
+    expect_exact_limits(driving)
+    expect_turn_kept(driving, lambda: driving.see(BLIND), "When it saw again after nan from every beam ahead")
+
+
+@check(points=3, holds=("untrusted", "newest"), depends=("drives",))
+@hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
+@hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
+def test_stops(driving: System, slow_system: SharedSystem) -> None:
+    """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
+    expect_still(driving.first.commands, "Before the first scan")
+    driving.see(OPEN)
+    expect_still(driving.see(BLIND).commands, "With nan from every beam ahead", fraction=0.25)
+    driving.see(OPEN)
+    margin = MARGIN if driving.harness.time == LOCKSTEP else REAL_MARGIN
+    began = driving.seconds
+    driving.wait(2.0)
+    fresh = driving.messages(began, began + STALE - margin).commands
+    expect_driving(fresh, f"Less than {STALE} s after the last scan", SPEED, fraction=0.5)
+    late = driving.messages(began + STALE + margin).commands
+    expect_still(late, f"More than {STALE} s after the last scan", fraction=0.5)
+    driving.see(OPEN)
+    old = driving.see(OPEN, 1.5, age=1.0).commands
+    expect_still(old[-5:], "With scans that come late, 1.0 s after they were taken,", fraction=0.75)
+    if driving.harness.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
+        slow = slow_system.get(PROCESSOR, CONTROLLER)
+        slow.see(OPEN)
+        slow.wait(STALE + margin)
+        still = slow.wait(1.0).commands
+        expect_still(still, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
+
+
+@check(points=1, holds="untrusted", depends=("stops",))
+@hint("The lidar's computer has a clock of its own. A stamp that is ahead of yours gives an age below 0.")
+@hint("An age below 0 is not more than data_timeout: no abs().")
+def test_stamp_ahead(driving: System) -> None:
+    """It trusts a clearance whose stamp is ahead of its clock: that is not old."""
+    said = driving.see(OPEN, 1.5, age=-AHEAD).commands
+    expect_driving(said, f"With scans whose stamp is {AHEAD} s ahead of the clock", SPEED)
+
+
+@check(points=2, holds=("enable", "disabled", "keeps-turn", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
+@hint("self.create_service(SetBool, 'enable', self.enable_callback)")
+@hint("The callback remembers request.data and returns the response with success = True.")
+@hint("Held still, the robot does not choose a turn anew, and does not forget the one that it has begun.")
+def test_enable(driving: System, shared_system: SharedSystem) -> None:
+    """The service enable holds the robot still, and lets it go again."""
+    try:
+        _hold_and_release(driving)
+    except CheckFailed:
+        shared_system.close()  # a robot that is still held would fail what follows
+        raise
+
+
+def _hold_and_release(system: System) -> None:
+    system.see(OPEN)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
+    expect(answer.success, "Asked to drive while it drove, it answered success = false.", fraction=0.5)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=False))
+    expect(answer.success, "Asked to hold still, it answered success = false.")
+    held = system.see(OPEN, 1.7).commands
+    expect_still(held, "After enable with data: false")
+    period = mean_period(held)
+    said = f"Held still, it published a command every {period:.3f} s, instead of ten a second."
+    expect(is_paced(period, 0.1, system.harness.time), said, fraction=0.75)
+    answer = system.call(SetBool, "/enable", SetBool.Request(data=True))
+    expect(answer.success, "Asked to drive again, it answered success = false.", fraction=0.5)
+    expect_driving(system.see(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
+    expect_turn_kept(system, lambda: _hold(system), "Let go after it was held still")
+
+
+def _hold(system: System) -> None:
+    """Hold the robot still for a moment, and let it go."""
+    system.call(SetBool, "/enable", SetBool.Request(data=False))
+    system.see(OPEN)  # the way is clear for a moment, and no turn ends while it stands still
+    system.call(SetBool, "/enable", SetBool.Request(data=True))
