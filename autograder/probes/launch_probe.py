@@ -218,7 +218,10 @@ def require_written(output: str) -> None:
     lines = output.splitlines()
     first = next((number for number, line in enumerate(lines) if "NotImplementedError" in line), None)
     if first is not None:
-        sentence = "A part of the launch file is still to be written: replace the line raise NotImplementedError(...) with your code."
+        sentence = (
+            "A part of the launch file is still to be written: "
+            "replace the line raise NotImplementedError(...) with your code."
+        )
         detail = with_source_paths("\n".join(lines[max(first - 1, 0) : first + 2]))
         raise StudentError(Diagnosis(Kind.UNFINISHED, sentence, detail))
 
