@@ -91,7 +91,7 @@ def test_an_answer_that_is_no_letter_is_named(given: dict[str, str], message: st
     ("text", "message"),
     [
         (None, "There is no ws/src/assessment/answers.yaml: run the cell that writes it."),
-        ("raise NotImplementedError('...')", "assessment/answers.yaml is still to be written: put letters"),
+        ("raise NotImplementedError('...')", "assessment/answers.yaml is still to be written: replace the line raise"),
         ("q1: a\n" * 20_000, "assessment/answers.yaml is far larger than 12 letters."),
     ],
 )
