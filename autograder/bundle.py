@@ -96,16 +96,16 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
         changed = there not in (None, old.files.get(name))
         if there == digest:
             continue
-        if changed and not name.startswith(f"{STUDENT_FOLDER}/"):
+        if changed and name.startswith(f"{STUDENT_FOLDER}/"):
+            if name.endswith(".ipynb"):
+                merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
+                write_atomically(target, nbformat.writes(merged).encode())
+                done.written.append(name)
+            else:
+                done.kept.append(name)
+            continue
+        if changed:
             done.set_aside[name] = str(_set_aside(target).relative_to(bundle))
-        elif changed and name.endswith(".ipynb"):
-            merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
-            write_atomically(target, nbformat.writes(merged).encode())
-            done.written.append(name)
-            continue
-        elif changed:
-            done.kept.append(name)
-            continue
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)
         done.written.append(name)
