@@ -11,7 +11,7 @@ import hashlib
 import itertools
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -75,9 +75,9 @@ class Update:
         set_aside: for each changed file elsewhere that was written over, the path of the copy of the student's.
     """
 
-    written: list[str]
-    kept: list[str]
-    set_aside: dict[str, str]
+    written: Sequence[str]
+    kept: Sequence[str]
+    set_aside: Mapping[str, str]
 
 
 def update_bundle(bundle: Path, newer: Path) -> Update:
@@ -89,7 +89,9 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
     old, new = read_manifest(bundle), read_manifest(newer)
     if new.version < old.version:
         raise UsageError(f"{newer} is of {new.version}, and what is here is newer, of {old.version}")
-    done = Update([], [], {})
+    written: list[str] = []
+    kept: list[str] = []
+    set_aside: dict[str, str] = {}
     for name, digest in new.files.items():
         source, target = newer / name, bundle / name
         there = _digest(target.read_bytes()) if target.is_file() else None
@@ -100,15 +102,15 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
             if name.endswith(".ipynb"):
                 merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
                 write_atomically(target, nbformat.writes(merged).encode())
-                done.written.append(name)
+                written.append(name)
             else:
-                done.kept.append(name)
+                kept.append(name)
             continue
         if changed:
-            done.set_aside[name] = str(_set_aside(target).relative_to(bundle))
+            set_aside[name] = str(_set_aside(target).relative_to(bundle))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)
-        done.written.append(name)
+        written.append(name)
     chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{STUDENT_FOLDER}/")}
     others = {
         name for name in old.files if name.startswith(f"{STUDENT_FOLDER}/") and name.split("/")[1] not in chapters
@@ -119,7 +121,7 @@ def update_bundle(bundle: Path, newer: Path) -> Update:
     files = {name: old.files[name] for name in others} | new.files
     cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
     write_json(bundle / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
-    return done
+    return Update(written, kept, set_aside)
 
 
 def _set_aside(file: Path) -> Path:

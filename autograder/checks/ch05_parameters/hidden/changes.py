@@ -11,7 +11,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import call, calls, look, made
+from autograder.probes.calls import Step, call, calls, look, made
 from autograder.probes.parameters import Value, differences, shortened
 from autograder.time_record import LOCKSTEP
 
@@ -210,31 +210,32 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
         The timer's period in ns before and after it judges 25 Hz; whether it takes a safety distance of 1.5 m after it
         has judged a slow distance of 2.0 m. None from a node with other names.
     """
-    outcomes = calls(
-        workspace,
-        f"{PACKAGE}.nodes.{EXECUTABLE}",
-        call("init", module="rclpy"),
-        call("ConfiguredNode"),
-        call("Parameter", "control_frequency", value=25.0, module="rclpy.parameter"),
-        call("list", module="builtins"),
-        call("append", made(2), on=3),
-        look("timer", on=1),
-        look("timer_period_ns", on=5),
-        call("validate", made(3), on=1),
-        look("timer", on=1),
-        look("timer_period_ns", on=8),
-        call("Parameter", "slow_distance", value=2.0, module="rclpy.parameter"),
-        call("Parameter", "safety_distance", value=1.5, module="rclpy.parameter"),
-        call("clear", on=3),
-        call("append", made(10), on=3),
-        call("validate", made(3), on=1),
-        call("clear", on=3),
-        call("append", made(11), on=3),
-        call("validate", made(3), on=1),
-        look("successful", on=17),
-        network=True,
-    )
-    return outcomes[6].value, outcomes[9].value, outcomes[18].value
+    steps = [call("init", module="rclpy")]
+
+    def add(step: Step) -> int:
+        steps.append(step)
+        return len(steps) - 1
+
+    def parameter(name: str, value: float) -> int:
+        return add(call("Parameter", name, value=value, module="rclpy.parameter"))
+
+    def validate(parameter: int) -> int:
+        add(call("clear", on=request))
+        add(call("append", made(parameter), on=request))
+        return add(call("validate", made(request), on=node))
+
+    def period() -> int:
+        return add(look("timer_period_ns", on=add(look("timer", on=node))))
+
+    node = add(call("ConfiguredNode"))
+    request = add(call("list", module="builtins"))
+    before = period()
+    validate(parameter("control_frequency", 25.0))
+    after = period()
+    validate(parameter("slow_distance", 2.0))
+    accepted = add(look("successful", on=validate(parameter("safety_distance", 1.5))))
+    outcomes = calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *steps, network=True)
+    return outcomes[before].value, outcomes[after].value, outcomes[accepted].value
 
 
 def _change(robot: Robot, request: Mapping[str, Value], fraction: float = 0.0) -> None:
