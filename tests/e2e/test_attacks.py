@@ -1,8 +1,8 @@
 """No attack gains a point, sees a hidden check, or stops the grader.
 
-Each attack is graded by the checks that it must lose; those on 02 by all checks but the drives through a world, which
-take most of a grading. Of the attacks on the other chapters, the commit draws one. The others run at night, and
-`make verify` grades all of them by all checks.
+Each attack is graded by the checks that it must lose. Those on 02 are graded by all checks but two sorts: the drives
+through a world take most of a grading, and one attack makes each check wait. Of the attacks on the other chapters, the
+commit draws one. The others run at night, and `make verify` grades all of them by all checks.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from autograder.sandbox import cgroup
 from tests.sampling import commit, sample, unless
 
 DRIVES = frozenset({"room", "pillars", "corridor"})
+STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends
 
 
 def _attacks() -> Iterator[object]:
@@ -61,7 +62,8 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     if attack.id == "fork bomb" and "pids" not in cgroup.bounds():
         pytest.skip("root without control groups: a fork bomb stops the machine")
     monkeypatch.setenv("SECRET_OF_THE_GRADER", CANARY)
-    checks = all_checks() - (DRIVES - attack.loses) if assignment == ASSIGNMENT else attack.loses
+    everything = assignment == ASSIGNMENT and attack.id not in STALLS
+    checks = all_checks() - (DRIVES - attack.loses) if everything else attack.loses
     result = _grade(assignment, attack, checks, tmp_path)
     assert attack.verify(result, checks) == ""
 
