@@ -179,6 +179,12 @@ class Harness(ExitStack, ABC):
             self.step(min(self.tick_ns, left))
             left -= self.tick_ns
 
+    def listen(self, listens: Mapping[str, type]) -> None:
+        """Subscribe to more topics, with their types, while the programs run."""
+        self._listens.update(listens)
+        self._received.update({topic: [] for topic in listens})
+        self._match()
+
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
         """Return what was published on a topic of `listens` after `since` and up to `until`, in s since the start."""
         received = self._received[topic]

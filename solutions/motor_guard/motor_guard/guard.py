@@ -34,8 +34,8 @@ class Guard(Node):
         """
         Name the node guard; declare its parameters, create its topics. The fan is off.
 
-        hot: 60.0 degrees Celsius. cool: 50.0 degrees. kwargs are handed on to Node. Raises
-        ValueError unless cool is less than hot: a fan between them would flutter.
+        hot: 60.0 degrees Celsius. cool: 50.0 degrees. kwargs are handed on to Node. Ends with an
+        error, such as ValueError, unless cool is less than hot: a fan between them would flutter.
         """
         super().__init__('guard', **kwargs)
         self.hot = self.declare_parameter('hot', 60.0).value

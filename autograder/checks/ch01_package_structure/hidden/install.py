@@ -11,6 +11,7 @@ from autograder.checks.ch01_package_structure.support.added_files import Extende
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
     expect_develop,
+    expect_empty,
     expect_executable,
     expect_manifest,
     expect_modules,
@@ -36,13 +37,14 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @check(points=1, holds=("files", "empty-files"), depends=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
-def test_marker(installed_dance: Installed) -> None:
-    """setup.py installs the marker by which ROS finds the package, and package.xml."""
+def test_marker(workspace: Workspace, installed_dance: Installed) -> None:
+    """setup.py installs the marker by which ROS finds the package, and package.xml; no text is in the empty files."""
     expect(
         installed_dance.marker,
         "The ament index does not know square_dance: ros2 run would say that the package is not found.",
     )
     expect_installs_itself(installed_dance)
+    expect_empty(source_of(workspace, contract.SQUARE_DANCE), contract.EMPTY_FILES)
 
 
 @check(points=1, holds="program", depends=("builds",), doc=contract.DEVELOP)

@@ -112,6 +112,13 @@ def expect_shared(installed: Installed, source: Path, name: str) -> None:
     expect(file.is_file() and file.read_bytes() == data, f"The installed {name} is not the one in src.")
 
 
+def expect_empty(source: Path, names: Collection[str]) -> None:
+    """Fail the check if one of these files holds text; a file that is not there is for other checks."""
+    full = [name for name in names if (source / name).is_file() and (source / name).read_bytes().strip()]
+    said = f"There is text in {' and '.join(full)}: the marker and each __init__.py should be empty."
+    expect(not full, said, fraction=0.5)
+
+
 def expect_develop(source: Path, package: str) -> None:
     """Fail the check unless `colcon build --symlink-install` would put the programs into lib/PACKAGE, too."""
     settings = configparser.ConfigParser(interpolation=None)

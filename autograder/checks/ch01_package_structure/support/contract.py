@@ -8,6 +8,12 @@ SQUARE_DANCE = "square_dance"
 DANCER = "dancer"
 DANCE_LAUNCH = "launch/square_dance.launch.py"
 DANCE_CONFIG = "config/square_dance.yaml"
+EMPTY_FILES = (
+    "resource/square_dance",
+    "square_dance/__init__.py",
+    "square_dance/nodes/__init__.py",
+    "square_dance/utils/__init__.py",
+)
 SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m, the default of the node and what the configuration says
 SPEED = 0.25  # m/s
 TURN = math.pi / 8  # rad/s

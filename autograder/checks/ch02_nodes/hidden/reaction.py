@@ -14,6 +14,7 @@ from autograder.time_record import LOCKSTEP
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
+HAIR = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
@@ -39,11 +40,16 @@ def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
 def test_threshold(robot: Robot, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
     margin = draw.uniform(0.02, 0.06)
-    near, far = contract.SAFETY_DISTANCE - margin, contract.SAFETY_DISTANCE + margin
-    expect_turn(robot.see(scan(Part(-3.0, 3.0, near))), f"With something {near:.2f} m ahead")
-    expect_forward(robot.see(scan(Part(-3.0, 3.0, far))), f"With something {far:.2f} m ahead")
-    limit = contract.SAFETY_DISTANCE  # not nearer than that, and exact in a message's float32
-    expect_forward(robot.see(scan(Part(-3.0, 3.0, limit))), f"With something exactly {limit:g} m ahead")
+    limit = contract.SAFETY_DISTANCE
+    near, far = limit - margin, limit + margin
+    for distance, expect_reaction, fraction in (
+        (near, expect_turn, 0.0),
+        (far, expect_forward, 0.0),
+        (limit, expect_forward, 0.0),  # not nearer than that, and exact in a message's float32
+        (limit - HAIR, expect_turn, 0.75),
+    ):
+        seen = robot.see(scan(Part(-3.0, 3.0, distance)))
+        expect_reaction(seen, f"With something {distance:.3f} m ahead", fraction=fraction)
     if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
         for distance, expect_reaction in ((near, expect_turn), (far, expect_forward)):
             began = robot.seconds

@@ -25,6 +25,8 @@ PUSHED = 0.2  # m, made good within a second
 SOON = 0.25  # s after a push: there is feedback, and not half of the push is made good
 SILENCE = 2.0  # s without odometry before a goal
 SEEN_SECONDS = 5.0  # of real time until an action is seen in the graph
+NEARLY, AWAY, BEYOND = 0.3055, 0.308, 0.3095  # m: nearly there, there, and beyond, all within half a centimetre
+CREEP = 0.01  # m/s, a millimetre in each tenth of a second
 HELD = 0.8  # s for which the wheels are held, too short for it to be stuck
 LONG = 20.0  # s for what takes a second or two, generous for a machine that is busy where time is real
 NAMES = {
@@ -57,8 +59,9 @@ def test_drive_serves(driver: Driver) -> None:
     expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
 
 
-@check(points=1, holds="no-odometry", depends=("drive_serves",), doc=contract.ACTION)
+@check(points=1, holds=("no-odometry", "drive-cmd-vel"), depends=("drive_serves",), doc=contract.ACTION)
 @hint("Start with self.position = None, and reject while it is None.")
+@hint("Nothing but a goal that is driven publishes on cmd_vel, not even a stop.")
 def test_drive_needs_odometry(driver: Driver) -> None:
     """Before any odometry has come, a goal is rejected."""
     goal = driver.send(1.0)
@@ -66,6 +69,11 @@ def test_drive_needs_odometry(driver: Driver) -> None:
         driver.abandon(goal)
     expect(not goal.accepted, "A goal was accepted before the first odometry.")
     expect(not driver.messages(COMMANDS), "The robot was moved before the first odometry.")
+    driver.place(0.0, 0.0, 0.0)
+    driver.run(0.3)
+    count = len(driver.messages(COMMANDS))
+    said = f"The first odometry came, but no goal, and on cmd_vel came commands: {count}, instead of none."
+    expect(count == 0, said, fraction=0.5)
 
 
 @check(points=2, holds=("drives", "drive-cmd-vel"), depends=("drive_serves",), doc=contract.GROUPS)
@@ -110,6 +118,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 @hint("driven is a distance, from the start to the newest position; it is not the sum of steps.")
 @hint("self.create_publisher(Twist, 'cmd_vel', 10)")
+@hint("A goal is reached when driven >= goal.distance, whatever counts as progress.")
 def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
     """The result says how far the robot has come, and gives no reason when all is well."""
     x, y = placed_driver.x, placed_driver.y
@@ -143,6 +152,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         plain = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
         expect(plain, "cmd_vel does not have the quality of service that a plain 10 stands for.", fraction=0.5)
     expect_heard(placed_driver.node, ODOMETRY)
+    _expect_exact_arrival(placed_driver)
     if soon and placed_driver.time == LOCKSTEP:  # elsewhere it may have made the push good
         said = f"Pushed back from {top:.2f} m to {top - PUSHED:.2f} m, the feedback said {min(soon):.2f} m or more."
         expect(min(soon) <= top - PUSHED / 2, said, fraction=0.75)
@@ -226,6 +236,24 @@ def test_drive_limits(placed_driver: Driver) -> None:
 def straight(command: Twist, speed: float) -> bool:
     """Return whether a command drives straight on at a speed."""
     return bool(abs(command.linear.x - speed) <= SLACK and abs(command.angular.z) <= SLACK)
+
+
+def _expect_exact_arrival(driver: Driver) -> None:
+    """Push a robot whose wheels are held nearly to its goal, then beyond; expect that the goal succeeds only then."""
+    driver.stuck = True
+    goal = driver.start(AWAY, CREEP)
+    driver.roll(goal, 0.3)
+    driver.shift(NEARLY)
+    driver.roll(goal, 0.3)
+    early = goal.result is not None
+    driver.shift(BEYOND - NEARLY)
+    driver.roll(goal, LONG)
+    ended = NAMES.get(goal.status, "not at all")
+    driver.abandon(goal)
+    said = f"With {AWAY} m to drive, the goal ended {ended}"
+    expect(not early, f"{said} when the robot was only {NEARLY} m away from where it started.", fraction=0.75)
+    wrong = f"{said}, instead of SUCCEEDED, when the robot was {BEYOND} m away from where it started."
+    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, wrong, fraction=0.75)
 
 
 def _describe(command: Twist) -> str:

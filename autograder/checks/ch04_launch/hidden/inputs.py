@@ -18,6 +18,7 @@ class Inputs:
         speed: of a robot, m/s, with a fraction.
         whole_speed: of a robot, m/s, written without a point.
         number_name: a robot's name that looks like a number.
+        quoted_name: a robot's name in which quotation marks of both kinds stand.
         names: of two robots.
         enough: a battery that is good enough, in percent, with a fraction.
         whole_battery: another one, written without a point.
@@ -28,6 +29,7 @@ class Inputs:
     speed: float
     whole_speed: int
     number_name: str
+    quoted_name: str
     names: tuple[str, str]
     enough: float
     whole_battery: int
@@ -46,6 +48,7 @@ def draw_inputs(draw: random.Random) -> Inputs:
         speed=round(draw.uniform(0.21, 0.45), 3),
         whole_speed=draw.randint(1, 3),
         number_name=str(draw.randint(10, 99)),
+        quoted_name=f"""{first}'s "R{draw.randint(2, 9)}" robot""",
         names=(first, second),
         enough=draw.randint(21, 98) + 0.5,
         whole_battery=draw.randint(21, 98),

@@ -26,7 +26,8 @@ SCRIPTS = {
     "reporter": "#!/bin/sh\nexec sleep 0.1\n",
     "driver": "#!/bin/sh\ntrap 'exit 3' TERM\nwhile sleep 0.2; do :; done\n",
 }
-PROGRAMS = {"scripts": SCRIPTS, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
+STILL = {"driver": "#!/bin/sh\nexec sleep 600\n"}  # for a check of the reporter: it saves the start of a node
+PROGRAMS = {"scripts": SCRIPTS, "still": STILL, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
@@ -47,6 +48,10 @@ class Launches:
     def robot(self, **arguments: object) -> LaunchHarness:
         """Return robot.launch.py as it runs with these arguments; with `report`, its nodes log on standard error."""
         return self._harness(ROBOT, arguments, {}, environment=ON_STDERR if "report" in arguments else ON_STDOUT)
+
+    def quoted(self) -> LaunchHarness:
+        """Return robot.launch.py as it runs with quotation marks in the robot's name, above a driver that sleeps."""
+        return self._harness(ROBOT, {"robot_name": self._inputs.quoted_name}, {}, programs="still")
 
     def robot_arguments(self) -> dict[str, Argument]:
         """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""

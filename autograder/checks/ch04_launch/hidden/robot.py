@@ -82,6 +82,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
 
 @check(points=2, holds=("robot-name", "reporter"), depends=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
+@hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
     """The argument robot_name reaches the reporter, even if it looks like a number."""
     harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
@@ -91,6 +92,12 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
         f"With robot_name:={inputs.number_name}, the reporter does not run. {launch_probe.failure(harness.output)}",
     )
     launch_probe.expect_parameters(harness, REPORTER, {"robot_name": inputs.number_name})
+    harness = launches.quoted()
+    launch_probe.settle(harness, [REPORTER])
+    found = (harness.parameters(REPORTER, ["robot_name"]) or {}).get("robot_name")
+    given = found or "not there"
+    said = f"With robot_name:={inputs.quoted_name}, the parameter of {REPORTER} is {given}, instead of that text."
+    expect(found == inputs.quoted_name, f"{said} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
 
 
 @check(points=2, holds=("report", "reporter", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)

@@ -37,6 +37,7 @@ LINES = (
         hints=(
             "At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?",
             "At 0.4 m, the configuration allows a fifth of the speed: asked for 0.8 m/s, 0.16 m/s and nothing else.",
+            "The user launches the installed launch file, not the one in src: find it by FindPackageShare.",
         ),
         doc=contract.INTEGRATION,
     ),
@@ -49,7 +50,7 @@ LINES = (
         hints=(
             "A launch file that can be read has not yet started anything that lives.",
             "Ask the launched node something over its topics, and count on the answer within a deadline.",
-            "Look for its name among the nodes of the domain.",
+            "Look for its whole name among the nodes of the domain.",
         ),
         doc=contract.INTEGRATION,
     ),

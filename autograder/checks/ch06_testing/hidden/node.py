@@ -56,6 +56,7 @@ LINES = (
         points=1,
         hints=(
             "get_node_names_and_namespaces() of your own node lists all nodes that it sees.",
+            "Compare the whole name: a node called my_speed_guard is another one.",
             contract.MUTATE,
         ),
         doc=contract.PARAMETERS,
@@ -139,6 +140,7 @@ LINES = (
         hints=(
             "Show it a distance, let time pass with the executor spinning, and ask.",
             "Start it with a short timeout: Parameter('timeout', value=0.2), and the test need not wait long.",
+            "Ask when little more than timeout has passed: a guard that forgets only much later is broken, too.",
         ),
     ),
     Line(

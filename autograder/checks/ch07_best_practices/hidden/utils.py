@@ -16,7 +16,7 @@ from autograder.checks.ch07_best_practices.support.contract import (
     UTILS,
 )
 from autograder.harness import Workspace
-from autograder.probes.calls import StepResult, call, calls, made, same, value
+from autograder.probes.calls import StepResult, call, calls, look, made, same, value
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0
@@ -84,7 +84,7 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
         expect(same(masked, wanted), f"{shown} returned {masked} instead of {wanted}.", fraction=fraction)
 
 
-@check(points=1, holds="leave-lists", depends=("keeps_places",))
+@check(points=1, holds=("leave-lists", "mask"), depends=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
@@ -95,6 +95,16 @@ def test_input_untouched(workspace: Workspace) -> None:
     value(processed, "DataProcessor(3).process(...)")
     for each in (outcome, processed):
         expect(same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
+    for staying in ([1.0, inf, 2.0], []):
+        *_, itself = calls(
+            workspace,
+            UTILS,
+            call("list", staying, module="builtins"),
+            call("mask_invalid", made(0), LOW, HIGH),
+            call("is_", made(0), made(1), module="operator"),
+        )
+        shown = f"mask_invalid({staying}, {LOW}, {HIGH})"
+        expect(itself.value is False, f"{shown} returned the caller's list itself instead of a new one.", fraction=0.75)
 
 
 @check(points=2, holds="mean")
@@ -123,15 +133,16 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
-@check(points=1, holds="sequences", depends=("keeps_places", "mean"))
+@check(points=1, holds=("sequences", "mask"), depends=("keeps_places", "mean"))
 @hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
     near, far = round(draw.uniform(LOW, 3.0), 2), round(draw.uniform(3.0, HIGH), 2)
     readings, kept = [near, nan, far, 3 * HIGH, inf], [near, nan, far, nan, inf]
     wanted = [kept, fmean([near, far, 3 * HIGH]), kept, fmean([near, far])]
+    staying = [near, inf, far]  # of which none is masked
     for kind, (module, name, first) in SEQUENCES.items():
-        outcomes = calls(
+        *outcomes, returned = calls(
             workspace,
             UTILS,
             call(name, *first, readings, module=module),
@@ -140,12 +151,18 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
             call("mean_distance", made(0)),
             call("process", made(0), LOW, HIGH, on=1),
             call("average", on=1),
-        )[2:]
+            call(name, *first, staying, module=module),
+            call("mask_invalid", made(6), LOW, HIGH),
+            look("__class__", on=7),
+            look("__name__", on=8),
+        )
         for called, outcome, right in zip(
-            ("mask_invalid", "mean_distance", "process", "average"), outcomes, wanted, strict=True
+            ("mask_invalid", "mean_distance", "process", "average"), outcomes[2:6], wanted, strict=True
         ):
             seen = value(outcome, f"{called} of {kind}")
             expect(same(seen, right), f"With {readings} as {kind}, {called} returned {seen} instead of {right}.")
+        said = f"With {staying} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
+        expect(returned.value == "list", said, fraction=0.75)
 
 
 @check(points=2, holds=("history", "process"), depends=("keeps_places", "mean"), doc=DEQUE)

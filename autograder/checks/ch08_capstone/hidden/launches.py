@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,6 +33,24 @@ STARTS = ("executables", *SHARED)
 OTHER_CONFIG = "config/of_another_robot.yaml"
 MAX_SCRIPT = 64 * 1024  # bytes; setuptools writes about a thousand
 SHOWN_SECONDS = 5.0  # real time until a line of a program that runs is shown
+# What includes the launch file below a namespace, above programs that show what they are given.
+SPACE, INCLUDING = "robot7", "of_one_robot.launch.py"
+INCLUDING_TEXT = f"""from pathlib import Path
+
+from launch import LaunchDescription
+from launch.actions import GroupAction, IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch_ros.actions import PushRosNamespace
+
+
+def generate_launch_description():
+    file = Path(__file__).with_name('{LAUNCH_FILE}')
+    include = IncludeLaunchDescription(PythonLaunchDescriptionSource(str(file)))
+    return LaunchDescription([GroupAction([PushRosNamespace('{SPACE}'), include])])
+"""
+SHOWS_ARGUMENTS = '#!/bin/sh\necho "${0##*/} got: $*" >&2\nexec sleep 600\n'  # launch shows standard error in any case
+_GOT = re.compile(r"(?P<program>\w+) got: (?P<words>.*)")
+_ABSOLUTE = re.compile(r"(?:-r|--remap) (?P<name>\S+?):=(?P<to>/\S*)")
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
     "parameters=[LaunchConfiguration('params_file'), {'use_sim_time': LaunchConfiguration('use_sim_time')}]",
@@ -115,9 +134,10 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, holds=("launch-arguments", "launches"), depends=("launch_starts",))
+@check(points=2, holds=("launch-arguments", "launches", "relative"), depends=("launch_starts",))
 @hint(*HINTS)
-def test_launch_configures(launched: Launched) -> None:
+@hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
+def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
     """What params_file and use_sim_time say reaches all three nodes."""
     for node, values in launched.values.items():
         launch_probe.expect_parameters(launched.harness, name_of(node), {"use_sim_time": True})
@@ -128,6 +148,9 @@ def test_launch_configures(launched: Launched) -> None:
     launched.harness.wait_for(lambda: not launched.unseen(), SHOWN_SECONDS)
     unseen = ", ".join(launched.unseen())
     expect(not unseen, f"What {unseen} prints is not on the screen: output='screen' is missing.", fraction=0.75)
+    absolute = _absolute_names(workspace)
+    said = f"Included in the namespace /{SPACE}, the launch file gives {absolute}: a relative name has no slash."
+    expect(not absolute, said, fraction=0.75)
 
 
 @check(points=2, holds="launch-ctrl-c", depends=("launch_starts",))
@@ -136,6 +159,24 @@ def test_launch_configures(launched: Launched) -> None:
 def test_launch_stops(launched: Launched) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
     launch_probe.expect_clean_stop(launched.harness)
+
+
+def _absolute_names(workspace: Workspace) -> str:
+    """Return which name the launch file takes out of a namespace in which it is included, and to which program."""
+    scripts = dict.fromkeys(PROGRAMS, SHOWS_ARGUMENTS)
+    copy = launch_probe.with_files(workspace, "included", PACKAGE, {f"launch/{INCLUDING}": INCLUDING_TEXT}, scripts)
+    with LaunchHarness(copy, PACKAGE, INCLUDING) as harness:
+        harness.wait_for(lambda: len(_GOT.findall(harness.output)) >= len(PROGRAMS), launch_probe.START_SECONDS)
+        output = harness.output
+    return next(
+        (
+            f"{got['program']} the rule {rule['name']}:={rule['to']}"
+            for got in _GOT.finditer(output)
+            for rule in _ABSOLUTE.finditer(got["words"])
+            if not f"{rule['to']}/".startswith(f"/{SPACE}/")
+        ),
+        "",
+    )
 
 
 def _printing(workspace: Workspace, name: str, line: str) -> str:

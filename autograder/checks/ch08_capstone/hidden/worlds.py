@@ -11,8 +11,8 @@ from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
 from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
-from autograder.checks.ch08_capstone.support.contract import TOLERANCE
-from autograder.checks.ch08_capstone.support.system import System, expect_still
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, TOLERANCE
+from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still
 from autograder.gallery import Gallery
 from autograder.time_record import LOCKSTEP
 from sim import clearance
@@ -25,8 +25,10 @@ STEADY = "changes < 3.5"  # turns that followed one to the other side, in the ne
 MEMORY = 6.0  # s
 STOPPING = 0.3  # m: 0.5 s until the data are stale, and what a chain at 10 Hz and a motor add, at 0.3 m/s
 BLIND_STOPPING = 0.15  # m: a blocked lidar says so at once
+SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 STANDS = 0.01  # m/s
 BACK_WITHIN = 2.0  # s
+BESIDE = 0.15  # m, little more than range_min
 SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
@@ -67,7 +69,7 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
 @check(points=3, holds=("drive", "more-room"), depends=DRIVES)
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
-def test_gets_on(drives: Drives, gallery: Gallery) -> None:
+def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
     """It finds its way round the bend of a corridor."""
     driven = drives.corridor
     share = drives.share_of_corridor(driven.recording)
@@ -75,6 +77,7 @@ def test_gets_on(drives: Drives, gallery: Gallery) -> None:
     if share < 1.0:
         _fail(gallery, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share)
     _keep(gallery, driven, caption)
+    _expect_drive_between(driving)
 
 
 @check(points=3, holds="untrusted", depends=("stops",))
@@ -137,6 +140,20 @@ def _expect_half_blind_stop(system: System) -> None:
         if system.harness.time == LOCKSTEP:
             said = system.messages(began).commands
         expect_still(said, f"With nan from every beam on the {side}, and the way ahead clear", fraction=0.85)
+
+
+def _expect_drive_between(system: System) -> None:
+    """Fail the check unless the robot drives on where the way is clear, however near things are beside it."""
+    system.see(OPEN)
+    for where, middles, reading in (
+        ("on the left", (90.0,), -math.inf),
+        ("on the right", (-90.0,), -math.inf),
+        ("on both sides", (90.0, -90.0), BESIDE),
+    ):
+        parts = [Part(middle - SECTOR, middle + SECTOR, reading) for middle in middles]
+        said = system.see(scan(*parts, fill=math.inf)).commands
+        situation = f"With {reading:g} from every beam {where}, and the way ahead clear"
+        expect_driving(said, situation, SPEED, fraction=0.85)
 
 
 Rules = Mapping[str, temporal.Verdict]

@@ -17,9 +17,10 @@ from autograder.checks.ch09_assessment.support.contract import (
     WINDOW,
     averages,
     decisions,
+    reading,
 )
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
-from autograder.harness import Workspace
+from autograder.harness import ReceivedMessage, Workspace
 from autograder.probes.namespaces import missing_in_namespace
 from autograder.time_record import LOCKSTEP
 
@@ -27,6 +28,7 @@ check = group("nodes")
 BUILT = ("installs",)
 BETWEEN = (COOL + 1.0, HOT - 1.0)
 FRESH = 0.1  # s that a reading may take to come
+LATE = 2.2  # s after the start of a node to which nobody listens before
 FLOAT32 = 1e-6  # the precision of a number in a message
 BARELY = 0.002  # degrees: what is rounded to hundredths is no longer between the thresholds
 HUGE = 1e20  # degrees: a sum that it once was part of has lost all others
@@ -65,27 +67,28 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
             raise CheckFailed(f"With other parameters set after the start: {failed.message}", fraction=0.5) from failed
 
 
-@check(points=1, holds="reading", depends=("readings",), doc=contract.NODES_DOC)
+@check(points=1, holds=("reading", "formula"), depends=("readings",), doc=contract.NODES_DOC)
 @hint("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time.")
+@hint("The timer starts in __init__, and its callback does not ask who listens.")
 def test_stamps(start: Start) -> None:
     """Each reading is stamped with the node's clock at the time when it was measured."""
-    for rate in (SLOW, 1.0):
-        with start(THERMOMETER, clock_rate=rate) as harness:
-            harness.run(2.2)
-            now_ns, now, heard = harness.now_ns, harness.seconds, harness.published()
-        came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
-        stamps = [stamped.message.stamp for stamped in heard]
-        ages = [
-            round((instant - stamp.sec * 10**9 - stamp.nanosec) / 1e9, 3)
-            for instant, stamp in zip(came, stamps, strict=True)
-        ]
-        right = bool(ages) and all(abs(age) < FRESH for age in ages)
-        said = f"By their stamps, its readings were {ages} s old when they came"
-        expect(right, f"{said}: a reading is sent as it is made, and the node's clock says when.")
-    if harness.time == LOCKSTEP:  # in real time the grader cannot see when the node started
+    with start(THERMOMETER) as harness:
+        heard = _expect_fresh(harness)
+    in_lockstep = harness.time == LOCKSTEP  # in real time the grader cannot see when the node started
+    if in_lockstep:
         first = heard[0].seconds
         said = f"The first reading came {first:.2f} s after the start, instead of {PERIOD} s, which is a period."
         expect(abs(first - PERIOD) < PERIOD / 2, said, fraction=0.5)
+    with start(THERMOMETER, clock_rate=SLOW, listens=False) as harness:
+        harness.run(LATE)
+        harness.listen_late()
+        heard = _expect_fresh(harness)
+    for stamped in heard if in_lockstep else ():
+        number, celsius = round(stamped.seconds / PERIOD) - 1, stamped.message.celsius
+        wanted = reading(number)
+        said = f"Nobody listened for {LATE} s; the reading {stamped.seconds:.2f} s after the start was {celsius:.2f} °C"
+        wish = f"it should have been number {number}, {wanted:.2f} °C: it measures each period, whoever listens."
+        expect(near(celsius, wanted), f"{said}, {wish}", fraction=0.5)
 
 
 @check(points=2, holds=("smoother", "window", "smoother-topics"), depends=BUILT, doc=contract.NODES_DOC)
@@ -240,6 +243,23 @@ def test_relative(workspace: Workspace) -> None:
         if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
     ]
     expect(not left, " ".join(left))
+
+
+def _expect_fresh(harness: NodeHarness) -> list[ReceivedMessage]:
+    """Return the thermometer's next readings; fail the check unless each was stamped as it came."""
+    began = harness.seconds
+    harness.run(2.2)
+    now_ns, now, heard = harness.now_ns, harness.seconds, harness.published(began)
+    came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
+    stamps = [stamped.message.stamp for stamped in heard]
+    ages = [
+        round((instant - stamp.sec * 10**9 - stamp.nanosec) / 1e9, 3)
+        for instant, stamp in zip(came, stamps, strict=True)
+    ]
+    right = bool(ages) and all(abs(age) < FRESH for age in ages)
+    said = f"By their stamps, its readings were {ages} s old when they came"
+    expect(right, f"{said}: a reading is sent as it is made, and the node's clock says when.")
+    return heard
 
 
 def _expect_averages(

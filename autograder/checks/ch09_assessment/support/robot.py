@@ -54,19 +54,34 @@ class Types:
 
 
 class NodeHarness(AutoHarness):
-    """The harness of one of the three nodes, started with parameters of the check's choice."""
+    """The harness of one of the three nodes, started with parameters of the check's choice.
+
+    Where `listens` is False, nobody subscribes to what the node publishes before `listen_late`.
+    """
 
     def __init__(
-        self, workspace: Workspace, types: Types, name: str, *, clock_rate: float = 1.0, **parameters: float
+        self,
+        workspace: Workspace,
+        types: Types,
+        name: str,
+        *,
+        clock_rate: float = 1.0,
+        listens: bool = True,
+        **parameters: float,
     ) -> None:
         by_name = {"Temperature": types.temperature, "Decision": types.decision}
-        offers, listens = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
+        takes, publishes = ({t: by_name[kind] for t, kind in topics.items()} for topics in _TOPICS[name])
         arguments = ("--ros-args", *override_arguments(parameters))
+        heard = publishes if listens else {}
         super().__init__(
-            workspace, PACKAGE, name, offers=offers, listens=listens, arguments=arguments, clock_rate=clock_rate
+            workspace, PACKAGE, name, offers=takes, listens=heard, arguments=arguments, clock_rate=clock_rate
         )
-        self._types, self._name = types, name
-        self._out, self._in = next(iter(listens)), next(iter(offers), "")
+        self._types, self._name, self._publishes = types, name, publishes
+        self._out, self._in = next(iter(publishes)), next(iter(takes), "")
+
+    def listen_late(self) -> None:
+        """Subscribe to what the node publishes, to which nobody has listened so far."""
+        self.listen(self._publishes)
 
     def published(self, since: float = -1.0) -> list[ReceivedMessage]:
         """Return what it has published."""
@@ -149,7 +164,7 @@ def refuses(workspace: Workspace, types: Types, name: str, **parameters: float) 
         CheckFailed: it ended by itself as if there were no error.
     """
     try:
-        with NodeHarness(workspace, types, name, **parameters):
+        with NodeHarness(workspace, types, name, listens=True, **parameters):
             return False
     except StudentError as error:
         if error.diagnosis.kind not in (Kind.CRASHED_AT_START, Kind.ENDED_EARLY):
