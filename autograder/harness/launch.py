@@ -204,13 +204,17 @@ class LaunchHarness(contextlib.ExitStack):
         return values
 
     def programs(self) -> list[RunningProgram]:
-        """Return the running executables of packages, in the order of their process ids."""
+        """Return the running executables of packages, in the order of their process ids.
+
+        A child that has its parent's name is left out: it has been forked, and is to become another program.
+        """
         found = []
         for pid in sorted(measure(self.process.innermost()).pids):
             # A script is the second argument, behind its interpreter; a process that has ended has none.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
-        return found
+        forked = {(child, program.name) for program in found for child in children(program.pid)}
+        return [program for program in found if (program.pid, program.name) not in forked]
 
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
         """Send a signal to every program called `name`; return to how many."""

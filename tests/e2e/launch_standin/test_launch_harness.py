@@ -17,6 +17,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 from autograder.ros import environment
+from autograder.sandbox.procfs import children
 
 PATIENCE = 60.0  # seconds: a deadline, not an expectation
 LEAVES_ONE = """
@@ -77,6 +78,7 @@ time.sleep(1.5)
 rclpy.init()
 rclpy.spin(rclpy.create_node('late'))
 """
+FORKS = "#!/bin/sh\n[ $1 = with_beacon ] && exit\n(while sleep 0.1; do :; done) &\nwait\n"
 STARTS_IT = """
 from launch import LaunchDescription
 from launch.conditions import LaunchConfigurationEquals
@@ -126,6 +128,25 @@ def test_a_wrong_node_or_parameter_is_reported_with_the_one_found(workspace: Wor
             launch_probe.expect_parameters(harness, "/lamp", {"rate": 5.0})
         with pytest.raises(CheckFailed, match="/lamp has label = '42', instead of 42"):
             launch_probe.expect_parameters(harness, "/lamp", {"label": 42})
+
+
+def test_a_program_that_has_forked_is_still_one_program(starts: Callable[[str], Workspace]) -> None:
+    with LaunchHarness(starts(FORKS), "fleet", "given.launch.py", {"how": "once"}) as harness:
+        assert harness.wait_for(lambda: any(children(program.pid) for program in harness.programs()), PATIENCE)
+        assert [program.name for program in harness.programs()] == ["given"]
+        assert harness.kill("given", signal.SIGTERM) == 1
+
+
+def test_only_a_program_that_does_not_end_by_itself_hangs(
+    starts: Callable[[str], Workspace], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(launch_probe, "START_SECONDS", 5.0)
+    there = starts(FORKS)
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+        assert launch_probe.hangs(harness, "given")
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "with_beacon"}) as harness:
+        assert not launch_probe.hangs(harness, "given")
+        assert not launch_probe.hangs(harness, "absent")
 
 
 def test_a_killed_program_disappears_and_an_idle_launch_ends(workspace: Workspace) -> None:

@@ -12,7 +12,7 @@ from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, w
 from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes.launch_probe import Argument, shown_arguments, with_files
+from autograder.probes.launch_probe import Argument, hangs, shown_arguments, with_files
 
 CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.
@@ -75,7 +75,7 @@ class Launches:
 
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
-        return self._harness(SAFE, arguments, {})
+        return self._harness(SAFE, arguments, {}, ends="self_test")
 
     def unusual(self, ending: str) -> LaunchHarness:
         """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
@@ -106,13 +106,17 @@ class Launches:
         robot: str | None = None,
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
+        ends: str = "",
     ) -> LaunchHarness:
+        """Return a launch as it runs; where the program `ends`, which ends by itself, hangs, a second one."""
         key = f"{file} {robot} {programs} {sorted(arguments.items())}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
             copy = self._copy(file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
+            if ends and hangs(harness, ends):
+                self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
 
     def _copy(self, file: str, robot: str | None, programs: str | None = None) -> Workspace:
