@@ -1,4 +1,4 @@
-"""The pytest plug-in of a grading: it turns a suite's tests into check results, and ignores everything else.
+"""The pytest plug-in of a grading: it turns a suite's checks into results, and other errors into failures.
 
 The checks of every chapter, visible and hidden, have its fixtures. A chapter's own stand in its conftest.py, or in the
 one module that uses them. A harness for several checks is kept by `autograder.harness.Shared`.
@@ -61,7 +61,7 @@ class GradingPlugin:
 
     @property
     def is_finished(self) -> bool:
-        """Whether the scope asks for the first check that does not pass alone, and one did not pass."""
+        """Whether the scope asks for no more than the first check that does not pass, and one did not."""
         return self._scope.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")

@@ -92,7 +92,7 @@ class Grading:
         )
 
     def _prepare(self) -> Diagnosis:
-        """Read, extract and build; return what was wrong with a build that the suite lets fail."""
+        """Read the submission, run its notebook, build; return what was wrong with a build that the suite lets fail."""
         from autograder import intake
         from autograder.building.build import build_workspace
         from autograder.building.prebuilt import copy_prebuilt
@@ -103,9 +103,8 @@ class Grading:
             packages = submission.source
         if submission.notebook is not None:
             with self._phase("notebook"):
-                from autograder.grading import (
-                    run_notebook,  # Jupyter is slow to import, and not every submission needs it
-                )
+                # Jupyter is slow to import, and not every submission needs it.
+                from autograder.grading import run_notebook
 
                 write_tree(submission.extra, self._folder)
                 write_tree(packages, self._folder / "ws" / "src")

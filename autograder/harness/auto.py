@@ -30,7 +30,7 @@ AnyAuto = TypeVar("AnyAuto", bound="AutoHarness")
 AnyHarness = TypeVar("AnyHarness", bound=Harness)
 
 if TYPE_CHECKING:
-    Base = SteppedHarness  # it has every attribute of a harness, by `__getattr__`
+    Base = SteppedHarness  # by `__getattr__`, it has what a Harness has; what SteppedHarness adds is not always there
 else:
     Base = object
 

@@ -182,7 +182,8 @@ class Harness(ExitStack, ABC):
     def listen(self, listens: Mapping[str, type]) -> None:
         """Subscribe to more topics, with their types, while the programs run."""
         self._listens.update(listens)
-        self._received.update({topic: [] for topic in listens})
+        for topic in listens:
+            self._received.setdefault(topic, [])
         self._match()
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:

@@ -27,7 +27,7 @@ from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import LAUNCH
-from autograder.sandbox.procfs import children, measure
+from autograder.sandbox.procfs import children, measure, parent
 from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("launch_host.py")
@@ -206,36 +206,42 @@ class LaunchHarness(contextlib.ExitStack):
     def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids.
 
-        A child that has its parent's name is left out: it has been forked, and is to become another program.
+        A child that a program has forked, and that still has its name, is no program of its own.
         """
+        found = self._processes()
+        known = {(program.pid, program.package, program.name) for program in found}
+        return [each for each in found if (parent(each.pid), each.package, each.name) not in known]
+
+    def _processes(self) -> list[RunningProgram]:
+        """Return the processes that run executables of packages, in the order of their process ids."""
         found = []
         for pid in sorted(measure(self.process.innermost()).pids):
             # A script is the second argument, behind its interpreter; a process that has ended has none.
             matches = (_PROGRAM.search(word) for word in _command_of(pid)[:2])
             found += [RunningProgram(pid, match["package"], match["name"]) for match in matches if match is not None]
-        forked = {(child, program.name) for program in found for child in children(program.pid)}
-        return [program for program in found if (program.pid, program.name) not in forked]
+        return found
 
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
-        """Send a signal to every program called `name`; return to how many."""
-        chosen = [program for program in self.programs() if program.name == name]
-        for program in chosen:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(program.pid, number)
-        return len(chosen)
+        """Send a signal to every program called `name`, and to what it has forked; return to how many programs."""
+        count = sum(program.name == name for program in self.programs())
+        for each in self._processes():
+            if each.name == name:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(each.pid, number)
+        return count
 
     def interrupt(self, seconds: float) -> Stop:
         """Do what Ctrl-C does; wait at most `seconds` of real time for the end."""
         if self.status is None:
-            holder = self.process.innermost()  # of `ros2`, its first child
-            os.kill(children(holder)[0], signal.SIGINT)
+            host = self.process.innermost()  # of `ros2`, its first child
+            os.kill(children(host)[0], signal.SIGINT)
         self.wait_for(lambda: self.status is not None, seconds)
         return Stop(self.status, self.left())
 
     def left(self) -> tuple[str, ...]:
         """Return the commands that are still running now that the launch has ended."""
-        holder = self.process.innermost()
-        pids = [pid for pid in measure(holder).pids if pid != holder and _command_of(pid)]
+        host = self.process.innermost()
+        pids = [pid for pid in measure(host).pids if pid != host and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
 
 

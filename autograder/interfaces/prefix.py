@@ -20,7 +20,7 @@ from autograder.ros.environment import without_wheel_bootstrap
 HERE = Path(__file__).parent
 SECONDS = 120.0
 RECIPE = "recipe.json"
-OWN = ("generate", "compile")  # the modules that make a prefix
+OWN = ("interfaces/generate", "interfaces/compile", "packages", "ros/environment")  # the modules that make a prefix
 
 
 class GenerationError(InterfaceError):
@@ -87,7 +87,7 @@ def _versions(ros: RosEnvironment) -> list[str]:
 
 @lru_cache(maxsize=1)
 def _own_version() -> str:
-    return hashlib.sha256(b"".join((HERE / f"{name}.py").read_bytes() for name in OWN)).hexdigest()
+    return hashlib.sha256(b"".join((HERE.parent / f"{name}.py").read_bytes() for name in OWN)).hexdigest()
 
 
 def _make(package: str, recipe: str, prefix: Path) -> None:

@@ -78,8 +78,8 @@ def diagnose_ending(process: Process) -> Diagnosis:
     if process.ending is None:
         return Diagnosis(
             Kind.STUCK,
-            "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not "
-            "close files that your program did not open.",
+            "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not use "
+            "or close file descriptors that your program did not open.",
             detail,
         )
     status = process.returncode

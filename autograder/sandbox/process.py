@@ -50,7 +50,7 @@ class Process:
         group: a control group that the command enters, closed after its end; leaving the block waits for it.
         writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
         stdin: its standard input.
-        is_placeholder: the command waits for a program that it will `adopt`; the time counts from then.
+        is_placeholder: the command stands in for a program that is adopted later; the time counts from then.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ class Process:
         return cpu_seconds(self._measure().pids)
 
     def adopt(self, pid: int) -> None:
-        """Watch a process, too, that has joined the sandbox from outside: it is the student's own."""
+        """Watch a process, too, that has joined the sandbox from outside; its time begins now."""
         self._adopted = (pid,)
         self._started = time.monotonic()
 

@@ -80,6 +80,14 @@ def waited_ns(pids: Iterable[int]) -> dict[int, int]:
     return waited
 
 
+def parent(pid: int) -> int | None:
+    """Return the parent of a process; None if it has ended."""
+    try:
+        return int(_stat(pid)[1])  # ppid
+    except OSError:
+        return None
+
+
 def children(pid: int) -> list[int]:
     """Return the processes that a process's first thread has started."""
     return _started_by(pid, pid)

@@ -45,7 +45,7 @@ class Hooks:
         self.counts = counts
         self._note = note
         self.changed = True
-        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # what a C object writes: channel, depth or 0
+        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # a C object's channel and kept depth
         self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
 
     def install(self) -> None:

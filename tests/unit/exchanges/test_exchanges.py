@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder.exchanges import MAX_CHARACTERS, MAX_ROWS, Exchange, ExchangeLog
 
 
-def test_rows_of_talk_are_returned_once() -> None:
+def test_exchanges_are_returned_once() -> None:
     log = ExchangeLog()
     log.add(0.12345, "asked", "/enable", "data: True")
     assert log.take() == (Exchange(0.123, "asked", "/enable", "data: True"),)

@@ -87,33 +87,6 @@ def test_the_schema_is_itself_a_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(schema())
 
 
-def test_threads_may_read_the_first_results_at_the_same_time() -> None:
-    """The modules of jsonschema import each other: two threads that import different ones find them half imported."""
-    program = """
-import sys, threading
-from concurrent.futures import ThreadPoolExecutor
-from autograder.exceptions import UsageError
-from autograder.result import from_json
-
-sys.setswitchinterval(1e-6)
-together = threading.Barrier(4)
-
-
-def read(number):
-    together.wait()
-    try:
-        from_json({})
-    except UsageError:
-        return True
-
-
-with ThreadPoolExecutor(4) as pool:
-    assert all(pool.map(read, range(4)))
-"""
-    for _ in range(3):
-        subprocess.run([sys.executable, "-c", program], check=True)
-
-
 def test_the_schema_names_every_outcome_and_visibility() -> None:
     check = schema()["properties"]["checks"]["items"]["properties"]
     assert set(check["outcome"]["enum"]) == {outcome.value for outcome in Outcome}

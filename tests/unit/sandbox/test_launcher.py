@@ -11,13 +11,13 @@ CHILD = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)
 PARENT = f"""
 import subprocess, sys
 from autograder.sandbox.launcher import restore_sigint
-if sys.argv[1] == "heed":
+if sys.argv[1] == "restore":
     restore_sigint()
 subprocess.run([sys.executable, "-c", {CHILD!r}], check=True)
 """
 
 
-@pytest.mark.parametrize(("word", "ignores"), [("heed", "False"), ("leave", "True")])
+@pytest.mark.parametrize(("word", "ignores"), [("restore", "False"), ("leave", "True")])
 def test_a_program_receives_ctrl_c_even_if_its_grader_is_a_background_job(word: str, ignores: str) -> None:
     command = ["sh", "-c", 'trap "" INT; exec "$@"', "sh", sys.executable, "-c", PARENT, word]
     said = subprocess.run(command, text=True, capture_output=True, check=True)

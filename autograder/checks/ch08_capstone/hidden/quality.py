@@ -43,7 +43,7 @@ def test_colcon_finds_tests(tested: Report) -> None:
 
 @check(points=2, holds="linters", depends=("colcon_finds_tests",))
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
-@hint("The linters name a file, a line and a rule: mend them one by one.")
+@hint("The linters name a file, a line and a rule: fix them one by one.")
 def test_linters_pass(workspace: Workspace, tested: Report) -> None:
     """The linters flake8 and pep257 report no errors."""
     for name in LINTERS:
