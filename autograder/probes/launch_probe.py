@@ -113,10 +113,10 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
 
 
 def hangs(harness: LaunchHarness, name: str) -> bool:
-    """Return whether a program that ends by itself is still there after `START_SECONDS`; waits for its end.
+    """Wait for a program that ends by itself; return whether it hangs, so that a second launch has to decide.
 
-    Of five programs that came and went together, one in 600 hung at its end: `expect_clean_stop` says why. A second
-    launch decides.
+    It hangs if the launch still runs after `START_SECONDS`, and neither its end nor others without it were seen. Where
+    five programs came and went together, one in 600 did so at its end: `expect_clean_stop` says why.
     """
     since = time.monotonic()
 

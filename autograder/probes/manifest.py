@@ -74,6 +74,7 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
             found.evaluate_conditions(JAZZY)
     except (ValueError, RecursionError) as error:
         raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
+    exports = [each for each in found.exports if each.evaluated_condition]
     return Manifest(
         name=found.name,
         version=found.version,
@@ -81,12 +82,12 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
         format=found.package_format,
         licences=tuple(str(licence) for licence in found.licenses),
         maintainers=tuple((person.name, person.email or "") for person in found.maintainers),
-        build_type=next((each.content or "" for each in found.exports if each.tagname == "build_type"), ""),
+        build_type=next((each.content or "" for each in exports if each.tagname == "build_type"), ""),
         depends={
             kind: frozenset(each.name for each in getattr(found, f"{kind}_depends") if each.evaluated_condition)
             for kind in KINDS
         },
-        groups=frozenset(each.name for each in found.member_of_groups),
+        groups=frozenset(each.name for each in found.member_of_groups if each.evaluated_condition),
     )
 
 

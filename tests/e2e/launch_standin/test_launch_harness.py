@@ -135,14 +135,16 @@ def test_a_program_that_has_forked_is_still_one_program(starts: Callable[[str], 
         assert harness.wait_for(lambda: any(children(program.pid) for program in harness.programs()), PATIENCE)
         assert [program.name for program in harness.programs()] == ["given"]
         assert harness.kill("given", signal.SIGTERM) == 1
+        assert harness.wait_for(lambda: harness.status is not None, PATIENCE)
+        assert harness.left() == ()
 
 
 def test_only_a_program_that_does_not_end_by_itself_hangs(
     starts: Callable[[str], Workspace], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(launch_probe, "START_SECONDS", 5.0)
     there = starts(FORKS)
-    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness, monkeypatch.context() as patch:
+        patch.setattr(launch_probe, "START_SECONDS", 5.0)
         assert launch_probe.hangs(harness, "given")
     with LaunchHarness(there, "fleet", "given.launch.py", {"how": "with_beacon"}) as harness:
         assert not launch_probe.hangs(harness, "given")

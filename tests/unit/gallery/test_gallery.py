@@ -22,7 +22,7 @@ def test_a_picture_is_saved_under_the_check_with_the_fingerprint_of_the_run(tmp_
     assert len(list((tmp_path / "out").iterdir())) == 2
 
 
-def test_a_closed_gallery_writes_no_picture(tmp_path: Path) -> None:
+def test_a_disabled_gallery_writes_no_picture(tmp_path: Path) -> None:
     gallery = Gallery(tmp_path / "out", disabled=True)
     gallery.of("touches_nothing").track("track", RECORDING, "The robot drives on.")
     assert gallery.artifacts == []

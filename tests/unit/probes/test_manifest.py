@@ -53,6 +53,16 @@ def test_a_dependency_counts_if_its_condition_holds_in_jazzy() -> None:
     assert manifest.parse(text.format(1)).needs("exec") == {"rclpy"}
 
 
+def test_a_build_type_and_a_group_count_if_their_conditions_hold_in_jazzy() -> None:
+    there = "<build_type>ament_python</build_type>"
+    other = '<build_type condition="$ROS_VERSION == 1">catkin</build_type>'
+    assert manifest.parse(TEXT.replace(there, other + there)).build_type == "ament_python"
+    member = '<member_of_group condition="$ROS_VERSION == {}">lamps</member_of_group>'
+    text = TEXT.replace("<export>", f"{member}<export>")
+    assert "lamps" in manifest.parse(text.format(2)).groups
+    assert "lamps" not in manifest.parse(text.format(1)).groups
+
+
 def test_a_manifest_without_a_build_type_says_so() -> None:
     assert manifest.parse(TEXT.replace("<build_type>ament_python</build_type>", "")).build_type == ""
 

@@ -65,7 +65,10 @@ ALARM = Given(
 
 
 def expect_given_tests(workspace: Workspace, given: Given) -> None:
-    """Fail the check unless each given test passes on a right package, fails on a faulty one, and no file changed."""
+    """Fail the check unless each given test passes on a right package, fails on a faulty one, and no file changed.
+
+    A changed file costs half of the points.
+    """
     taken = student_test_runs.take(workspace, given.package)
     files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in given.tests}))
     absent = [name for name in files if name not in taken.tests]
@@ -78,7 +81,7 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     failed = " and ".join(test.partition("::")[2] for test in report.failed)
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})
-    # Files that may be the student's own, as each __init__.py may.
+    # The linter tests of `ros2 pkg create` may be the student's own, and so may each __init__.py.
     own = {name for name, imported in IMPORTED.items() if given is DANCE and imported in taken.files.get(name, b"")}
     changed = changed_files(taken.files, read_files(layout.SOLUTIONS / given.package), (given.package, *FOLDERS))
     changed = [name for name in changed if name not in own and Path(name).name != "__init__.py"]

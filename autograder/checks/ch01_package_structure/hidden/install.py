@@ -38,7 +38,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
 def test_marker(workspace: Workspace, installed_dance: Installed) -> None:
-    """setup.py installs the marker by which ROS finds the package, and package.xml; no text is in the empty files."""
+    """setup.py installs the marker by which ROS finds the package, and package.xml; what should be empty is."""
     expect(
         installed_dance.marker,
         "The ament index does not know square_dance: ros2 run would say that the package is not found.",

@@ -15,8 +15,11 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.packages import find_packages
 from autograder.probes import imports, manifest
+from autograder.probes.files import read_plain
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
+
+MAX_BYTES = 1024 * 1024  # of a file that is read
 
 
 def source_of(workspace: Workspace, name: str) -> Path:
@@ -108,13 +111,12 @@ def expect_shared(installed: Installed, source: Path, name: str) -> None:
         raise CheckFailed(
             f"share/{installed.package}/{name} was not installed{seen}: data_files in setup.py says what is."
         )
-    file = source / name
-    expect(file.is_file() and file.read_bytes() == data, f"The installed {name} is not the one in src.")
+    expect(read_plain(source / name, MAX_BYTES) == data, f"The installed {name} is not the one in src.")
 
 
 def expect_empty(source: Path, names: Collection[str]) -> None:
     """Fail the check if one of these files holds text; a file that is not there is for other checks."""
-    full = [name for name in names if (source / name).is_file() and (source / name).read_bytes().strip()]
+    full = [name for name in names if (read_plain(source / name, MAX_BYTES) or b"").strip()]
     said = f"There is text in {' and '.join(full)}: the marker and each __init__.py should be empty."
     expect(not full, said, fraction=0.5)
 

@@ -14,7 +14,7 @@ from autograder.time_record import LOCKSTEP
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
-HAIR = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
+JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
@@ -46,7 +46,7 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
         (near, expect_turn, 0.0),
         (far, expect_forward, 0.0),
         (limit, expect_forward, 0.0),  # not nearer than that, and exact in a message's float32
-        (limit - HAIR, expect_turn, 0.75),
+        (limit - JUST_BELOW, expect_turn, 0.75),
     ):
         seen = robot.see(scan(Part(-3.0, 3.0, distance)))
         expect_reaction(seen, f"With something {distance:.3f} m ahead", fraction=fraction)

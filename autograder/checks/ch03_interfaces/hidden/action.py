@@ -63,7 +63,7 @@ def test_drive_serves(driver: Driver) -> None:
 @hint("Start with self.position = None, and reject while it is None.")
 @hint("Nothing but a goal that is driven publishes on cmd_vel, not even a stop.")
 def test_drive_needs_odometry(driver: Driver) -> None:
-    """Before any odometry has come, a goal is rejected."""
+    """A goal before any odometry is rejected, and nothing comes on cmd_vel without a goal."""
     goal = driver.send(1.0)
     if goal.accepted:
         driver.abandon(goal)
@@ -72,7 +72,7 @@ def test_drive_needs_odometry(driver: Driver) -> None:
     driver.place(0.0, 0.0, 0.0)
     driver.run(0.3)
     count = len(driver.messages(COMMANDS))
-    said = f"The first odometry came, but no goal, and on cmd_vel came commands: {count}, instead of none."
+    said = f"After the first odometry and before any goal, {count} commands came on cmd_vel, instead of none."
     expect(count == 0, said, fraction=0.5)
 
 
@@ -152,7 +152,8 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         plain = (qos.reliability, qos.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
         expect(plain, "cmd_vel does not have the quality of service that a plain 10 stands for.", fraction=0.5)
     expect_heard(placed_driver.node, ODOMETRY)
-    _expect_exact_arrival(placed_driver)
+    if placed_driver.time == LOCKSTEP:  # elsewhere a busy machine may use up the second without progress
+        _expect_exact_arrival(placed_driver)
     if soon and placed_driver.time == LOCKSTEP:  # elsewhere it may have made the push good
         said = f"Pushed back from {top:.2f} m to {top - PUSHED:.2f} m, the feedback said {min(soon):.2f} m or more."
         expect(min(soon) <= top - PUSHED / 2, said, fraction=0.75)

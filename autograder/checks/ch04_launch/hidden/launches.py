@@ -75,7 +75,7 @@ class Launches:
 
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
-        return self._harness(SAFE, arguments, {}, ends="self_test")
+        return self._harness(SAFE, arguments, {}, short_lived="self_test")
 
     def unusual(self, ending: str) -> LaunchHarness:
         """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
@@ -106,16 +106,16 @@ class Launches:
         robot: str | None = None,
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
-        ends: str = "",
+        short_lived: str = "",
     ) -> LaunchHarness:
-        """Return a launch as it runs; where the program `ends`, which ends by itself, hangs, a second one."""
+        """Return a running launch; if its program `short_lived` hangs, a second launch of the same."""
         key = f"{file} {robot} {programs} {sorted(arguments.items())}"
         if key not in self._harnesses:
             words = {name: str(value) for name, value in arguments.items()}
             copy = self._copy(file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
-            if ends and hangs(harness, ends):
+            if short_lived and hangs(harness, short_lived):
                 self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
 

@@ -84,7 +84,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
 @hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
-    """The argument robot_name reaches the reporter, even if it looks like a number."""
+    """The argument robot_name reaches the reporter as it was given, like a number or with quotation marks."""
     harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
     expect(
@@ -95,8 +95,8 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     harness = launches.quoted()
     launch_probe.settle(harness, [REPORTER])
     found = (harness.parameters(REPORTER, ["robot_name"]) or {}).get("robot_name")
-    given = found or "not there"
-    said = f"With robot_name:={inputs.quoted_name}, the parameter of {REPORTER} is {given}, instead of that text."
+    given = "not there" if found is None else repr(found)
+    said = f"With robot_name:={inputs.quoted_name}, robot_name of {REPORTER} is {given}, instead of that text."
     expect(found == inputs.quoted_name, f"{said} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
 
 

@@ -34,6 +34,7 @@ FILES = {
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
 SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
+BRIEF = frozenset({"believes_distances_too_long"})  # faults that end within a second: a run that is held up misses them
 ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
 
 
@@ -126,7 +127,11 @@ class Examination:
         return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
 
     def _detects(self, name: str, fault: Fault) -> bool:
-        report = self.runs[name, fault.id]
+        if self._reports(name, self.runs[name, fault.id]):
+            return True
+        return fault.id in BRIEF and any(self._reports(name, r) for r in self._run([self._wanted(name)[fault.id]]))
+
+    def _reports(self, name: str, report: Report) -> bool:
         return report.ending is Ending.WALL_TIME or report.detects_fault(self.trial[name])
 
     def _wanted(self, name: str) -> dict[str, TestRun]:

@@ -26,7 +26,7 @@ from autograder.probes.qos import non_default_qos
 
 check = group("processor")
 SECONDS = 20.0
-GLIMPSES = 15  # blind scans with a good one after each
+ALTERNATIONS = 15  # blind scans with a good one after each
 SLOW, SLOW_SECONDS = 9, 0.5  # scans of a slow lidar, and s between two of them
 
 
@@ -145,7 +145,7 @@ def test_warns_now_and_then(fresh_processor: Processor) -> None:
     expect(of_none > 0, "It did not warn of scans without any beam.", fraction=0.5)
     few = f"Blind for {SECONDS:.0f} s, it warned only {warnings + of_none} times."
     expect(min(warnings, of_none) >= int(SECONDS / 2 / SILENT_SECONDS), few, fraction=0.5)
-    seconds, by_turns = 2 * GLIMPSES * SCAN_SECONDS, _warnings(fresh_processor, [blind, seeing] * GLIMPSES)
+    seconds, by_turns = 2 * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, [blind, seeing] * ALTERNATIONS)
     often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {by_turns} times."
     expect(by_turns <= seconds + 2, often, fraction=0.5)
     slow = _warnings(fresh_processor, [blind] * SLOW, apart=SLOW_SECONDS)

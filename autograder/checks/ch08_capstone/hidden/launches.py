@@ -138,7 +138,7 @@ def test_launch_starts(launched: Launched) -> None:
 @hint(*HINTS)
 @hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
 def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
-    """What params_file and use_sim_time say reaches all three nodes."""
+    """What params_file and use_sim_time say reaches all three nodes, and all names stay in their namespace."""
     for node, values in launched.values.items():
         launch_probe.expect_parameters(launched.harness, name_of(node), {"use_sim_time": True})
         declared = launched.harness.parameters(name_of(node), list(values)) or {}
