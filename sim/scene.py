@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.engine import EngineName, engine
-from sim.engine.index import MIN_WALLS_FOR_GRID, Grid, grid_of, layout
+from sim.engine.index import MAX_WALLS_WITHOUT_GRID, Grid, grid_of, layout
 from sim.engine.shapes import distance
 from sim.engine.trig import TAU, sincos
 from sim.lidar import LidarSpec
@@ -102,7 +102,7 @@ def build(world: World, robots: tuple[RobotSpec, ...], seed: int, name: EngineNa
         walls=walls,
         boxes=np.array((np.minimum(x1, x2), np.maximum(x1, x2), np.minimum(y1, y2), np.maximum(y1, y2))),
         circles=world.circles.copy(),
-        grid=grid_of(walls) if walls.shape[1] > MIN_WALLS_FOR_GRID and hasattr(chosen, "fan_in_grid") else None,
+        grid=grid_of(walls) if walls.shape[1] > MAX_WALLS_WITHOUT_GRID and hasattr(chosen, "fan_in_grid") else None,
         tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),
         bodies=tuple(_body(robot, seed) for robot in robots),
         mover_speed=max((mover.speed for mover in world.movers), default=0.0),

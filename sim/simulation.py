@@ -132,7 +132,7 @@ def _advance(
     ]
     if True not in near:
         for run in runs:
-            _coast(simulation, run, time_ns, ticks, tick_ns, run.noise, events)
+            _advance_free(simulation, run, time_ns, ticks, tick_ns, run.noise, events)
     else:
         for number in range(ticks):
             now_ns = time_ns + number * tick_ns
@@ -142,13 +142,13 @@ def _advance(
                     here = [Pose(*other.vector[:3].tolist()) for other in runs]
                     within = run.body.reach + 2.0 * strides[index] + 1e-3
                     things = around(simulation, now_ns + tick_ns, here, index, within)
-                    _push(simulation, run, now_ns, tick_ns, noise[0], things, events)
+                    _advance_near(simulation, run, now_ns, tick_ns, noise[0], things, events)
                 else:
-                    _coast(simulation, run, now_ns, 1, tick_ns, noise, events)
+                    _advance_free(simulation, run, now_ns, 1, tick_ns, noise, events)
     return tuple([_unpacked(robot, run) for robot, run in zip(robots, runs, strict=True)])
 
 
-def _coast(
+def _advance_free(
     simulation: Simulation, run: Run, time_ns: int, ticks: int, tick_ns: int, noise: Floats, events: list[Event]
 ) -> None:
     body, vector = run.body, run.vector
@@ -164,7 +164,7 @@ def _coast(
     run.collided = False
 
 
-def _push(
+def _advance_near(
     simulation: Simulation, run: Run, time_ns: int, tick_ns: int, noise: Floats, things: Around, events: list[Event]
 ) -> None:
     body = run.body
@@ -173,7 +173,7 @@ def _push(
         _tell_watchdog(run, time_ns, tick_ns, events)
         command = REST
     touch = np.zeros(6)
-    hit = simulation.scene.engine.advance_in_contact(
+    hit = simulation.scene.engine.advance_near(
         run.vector,
         command.linear,
         command.angular,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sim.engine import motion
 from sim.engine.exact import ERROR_BOUND
 from sim.engine.loops import SMALL, wall_into
-from sim.engine.motion import advance_in_contact
+from sim.engine.motion import advance_near
 from sim.engine.pairs import LIMIT, NOTHING, TANGENT, TOUCHING, circle_inverse, wall_hit
 from sim.engine.readings import STRENGTH
 from sim.engine.shapes import FAR, gap
@@ -25,12 +25,12 @@ from sim.engine.trig import TAU, sincos
 Floats = NDArray[np.float64]
 Float32s = NDArray[np.float32]
 
-__all__ = ["advance_free", "advance_in_contact", "fan", "gap", "nearest", "rays", "to_readings"]
+__all__ = ["advance_free", "advance_near", "fan", "gap", "nearest", "rays", "to_readings"]
 
 # How far, in radians, numpy's arctan2 and the arithmetic after it may be off, with a wide margin.
 BEARING_ERROR = 1e-12
 # Above so many walls it pays to leave out first those that are out of reach.
-MIN_WALLS_TO_FILTER = 200
+MAX_WALLS_UNFILTERED = 200
 # A run of beams is looked for where it begins, and a turn earlier too, as it may go on past the end of a turn.
 LAPS = np.array(((0.0,), (1.0,)))
 
@@ -55,7 +55,7 @@ def fan(
     dy += x
     best = np.empty(table.shape[1])
     best.fill(NOTHING)
-    if walls.shape[1] > MIN_WALLS_TO_FILTER:
+    if walls.shape[1] > MAX_WALLS_UNFILTERED:
         x1, x2, y1, y2 = walls[:4]
         beside = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
         beside |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)

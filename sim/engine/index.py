@@ -12,7 +12,7 @@ from sim.engine.traverse import MARGIN
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-MIN_WALLS_FOR_GRID = 300
+MAX_WALLS_WITHOUT_GRID = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -134,7 +134,7 @@ def sweep(
     return 1.0
 
 
-def advance_in_contact(
+def advance_near(
     robot: Floats,
     v: float,
     w: float,

@@ -48,7 +48,7 @@ def test_robot(workspace: Workspace) -> None:
     """The robot itself does so, ten commands a second."""
     with SteppedHarness(workspace, "first_robot", "square", listens={"/cmd_vel": Twist}) as harness:
         harness.run(SIDE + TURN)
-        commands = [stamped.message for stamped in harness.messages("/cmd_vel")]
+        commands = [received.message for received in harness.messages("/cmd_vel")]
     expect(58 <= len(commands) <= 62, f"In 6 s it published {len(commands)} commands.")
     forward = sum(_near(command.linear.x, SPEED) for command in commands) / 10.0
     turning = sum(_near(command.angular.z, RATE) for command in commands) / 10.0

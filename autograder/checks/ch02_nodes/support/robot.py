@@ -95,9 +95,9 @@ def _expect(
 ) -> None:
     expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.", fraction=fraction)
     wrong = [
-        stamped.message
-        for stamped in commands
-        if not (_near(stamped.message.linear.x, linear) and _near(stamped.message.angular.z, angular))
+        received.message
+        for received in commands
+        if not (_near(received.message.linear.x, linear) and _near(received.message.angular.z, angular))
     ]
     did = describe_command(wrong[0]) if wrong else ""
     expect(not wrong, f"{situation}, the robot {did}: it should {wanted}.", fraction=fraction)

@@ -166,7 +166,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     distance, began = draw.uniform(0.7, 0.8), placed_driver.seconds
     goal = placed_driver.start(distance, 0.5)
     placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
-    heard = [stamped.message for stamped in goal.feedback]
+    heard = [received.message for received in goal.feedback]
     expect(len(heard) >= 4, f"On the way came {len(heard)} feedbacks, instead of about ten a second.")
     wrong = [one for one in heard if abs(one.driven + one.remaining - distance) > SLACK]
     said = f"driven {wrong[0].driven:.2f} m and remaining {wrong[0].remaining:.2f} m" if wrong else ""
@@ -182,7 +182,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     goal = placed_driver.start(distance, 0.5)
     placed_driver.roll(goal, HELD)
     placed_driver.abandon(goal)
-    still = [stamped for stamped in goal.feedback if stamped.message.driven < SLACK]
+    still = [received for received in goal.feedback if received.message.driven < SLACK]
     count = HELD / contract.PERIOD
     said = f"While the robot was held for {HELD} s, {len(still)} feedbacks came, instead of {count:.0f}."
     expect(len(still) >= count / 2, said, fraction=0.5)

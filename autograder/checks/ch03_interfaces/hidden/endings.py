@@ -91,7 +91,7 @@ def test_drive_stuck(placed_driver: Driver) -> None:
         f"With wheels that do not turn, it was told to drive for {seconds:.2f} s, instead of {PATIENCE:.0f} s.",
         fraction=0.5,
     )
-    last = [stamped.message for stamped in commands]
+    last = [received.message for received in commands]
     expect(stopped(last), "After the goal had been given up, the last command was no stop.", fraction=0.5)
     expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.7)
     _, commands = _push(placed_driver, ENOUGH)
@@ -159,7 +159,7 @@ def _send_others(driver: Driver) -> _Busy:
     for distance in (1.0, -1.0, 1.0):  # whichever is rejected, and for whatever, the first still has the robot
         others.append(driver.send(distance, 0.5))
         between += driver.roll(first, 0.2)
-    commands = [stamped.message for stamped in driver.messages(COMMANDS)[before:]]
+    commands = [received.message for received in driver.messages(COMMANDS)[before:]]
     goes_on = first.result is None
     for goal in (first, *others):
         if goal.accepted:
@@ -193,5 +193,5 @@ def _is_given_up_rolling_back(driver: Driver) -> bool:
 
 def _driving(commands: list[ReceivedMessage]) -> float:
     """Return the seconds from the first command to drive to the last."""
-    came = [stamped.seconds for stamped in commands if stamped.message.linear.x != 0.0]
+    came = [received.seconds for received in commands if received.message.linear.x != 0.0]
     return came[-1] - came[0] if came else 0.0

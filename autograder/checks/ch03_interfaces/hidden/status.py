@@ -79,7 +79,7 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     count = len(reporter.messages(TOPIC, since=began, until=spoken))
     said = f"While the sensors spoke ten times a second, {count} statuses came in a second, instead of 1."
     expect(count <= 3, said, fraction=0.5)
-    heard = [stamped.message for stamped in reporter.messages(TOPIC, since=spoken)]
+    heard = [received.message for received in reporter.messages(TOPIC, since=spoken)]
     first, last = ((status.battery_level, list(status.joint_positions)) for status in (heard[0], heard[-1]))
     said = f"Within {SILENCE} s after the last message of each sensor, level and joints went from {first} to {last}."
     expect(first == last, f"{said} The newest message counts, however old it is.", fraction=0.5)

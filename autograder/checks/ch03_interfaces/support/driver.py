@@ -86,7 +86,7 @@ class Driver(AutoHarness):
             self._publish_odometry()
         self.run(2 * LOOK)  # the last command may come with the result
         self._obey(seen)
-        return [stamped.message for stamped in self.messages(COMMANDS)[before:]]
+        return [received.message for received in self.messages(COMMANDS)[before:]]
 
     def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
         """Let the wheels roll until the goal has ended; fail the check if it does not."""
@@ -103,10 +103,10 @@ class Driver(AutoHarness):
 
     def _obey(self, seen: int) -> int:
         commands = self.messages(COMMANDS)
-        for stamped in commands[seen:]:
+        for received in commands[seen:]:
             if not self.stuck:
-                self.x += PERIOD * stamped.message.linear.x * math.cos(self.heading)
-                self.y += PERIOD * stamped.message.linear.x * math.sin(self.heading)
+                self.x += PERIOD * received.message.linear.x * math.cos(self.heading)
+                self.y += PERIOD * received.message.linear.x * math.sin(self.heading)
         return len(commands)
 
     def _publish_odometry(self) -> None:

@@ -63,7 +63,7 @@ class Reporter(AutoHarness):
         self.publish_battery(min(1.0, (percent + over) / 100.0))
 
         def shown() -> bool:
-            return any(stamped.message.battery_level == percent for stamped in self.messages(TOPIC, since=began)[-1:])
+            return any(received.message.battery_level == percent for received in self.messages(TOPIC, since=began)[-1:])
 
         self.until(shown, HEARD_SECONDS)
 

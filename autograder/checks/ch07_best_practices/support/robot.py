@@ -41,8 +41,8 @@ class Processor(AutoHarness):
         self.wait_for_late(lambda: len(self.messages(FILTERED, since=began)) >= len(scans))
         if self.time != LOCKSTEP:
             self.run(SCAN_SECONDS)  # of the means nobody knows how many are to come
-        filtered = [stamped.message for stamped in self.messages(FILTERED, since=began)]
-        return filtered, [stamped.message.data for stamped in self.messages(MEAN, since=began)]
+        filtered = [received.message for received in self.messages(FILTERED, since=began)]
+        return filtered, [received.message.data for received in self.messages(MEAN, since=began)]
 
 
 class Robust(AutoHarness):
@@ -61,7 +61,7 @@ class Robust(AutoHarness):
         else:  # its seconds did not begin with the harness's
             self.until(lambda: len(self.messages(STATUS)) >= wanted, readings + LATE)
             self.run(0.4)
-        said = [stamped.message.data for stamped in self.messages(STATUS)[self._seen :]]
+        said = [received.message.data for received in self.messages(STATUS)[self._seen :]]
         self._seen += len(said)
         return said
 

@@ -84,10 +84,12 @@ def test_stamps(start: Start) -> None:
         harness.run(LATE)
         harness.listen_late()
         heard = _expect_fresh(harness)
-    for stamped in heard if in_lockstep else ():
-        number, celsius = round(stamped.seconds / PERIOD) - 1, stamped.message.celsius
+    for received in heard if in_lockstep else ():
+        number, celsius = round(received.seconds / PERIOD) - 1, received.message.celsius
         wanted = reading(number)
-        said = f"Nobody listened for {LATE} s; the reading {stamped.seconds:.2f} s after the start was {celsius:.2f} °C"
+        said = (
+            f"Nobody listened for {LATE} s; the reading {received.seconds:.2f} s after the start was {celsius:.2f} °C"
+        )
         wish = f"it should have been number {number}, {wanted:.2f} °C: it measures each period, whoever listens."
         expect(near(celsius, wanted), f"{said}, {wish}", fraction=0.5)
 
@@ -251,8 +253,8 @@ def _expect_fresh(harness: NodeHarness) -> list[ReceivedMessage]:
     began = harness.seconds
     harness.run(HEARD)
     now_ns, now, heard = harness.now_ns, harness.seconds, harness.published(began)
-    came = [now_ns - round((now - stamped.seconds) * 1e9) for stamped in heard]
-    stamps = [stamped.message.stamp for stamped in heard]
+    came = [now_ns - round((now - received.seconds) * 1e9) for received in heard]
+    stamps = [received.message.stamp for received in heard]
     ages = [
         round((instant - stamp.sec * 10**9 - stamp.nanosec) / 1e9, 3)
         for instant, stamp in zip(came, stamps, strict=True)

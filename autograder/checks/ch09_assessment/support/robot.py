@@ -102,13 +102,13 @@ class NodeHarness(AutoHarness):
             self.run(apart)
         self.run(STEP - apart)
         self.wait_for_late(lambda: len(self.published(began)) >= len(sent))
-        return [stamped.message for stamped in self.published(began)]
+        return [received.message for received in self.published(began)]
 
     def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
         """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
         began, seconds = self.seconds, (count + 0.5) * period
         self.run(seconds)
-        seen = [stamped.message.celsius for stamped in self.published()]
+        seen = [received.message.celsius for received in self.published()]
         expect(bool(seen), f"In {seconds:.1f} s it published nothing.")
         for number, celsius in enumerate(seen, self._missed(seen, period, shape)):
             wanted = reading(number, *shape)

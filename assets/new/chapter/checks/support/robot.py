@@ -25,7 +25,7 @@ class Robot(AutoHarness):
         began = self.seconds
         self.publish("/scan", scan)
         self.run(SECONDS)
-        return [stamped.message.data for stamped in self.messages("/nearest", since=began)]
+        return [received.message.data for received in self.messages("/nearest", since=began)]
 
 
 def expect_nearest(robot: Robot, readings: Sequence[float], nearest: float) -> None:
