@@ -74,6 +74,18 @@ def look(name: str, *, on: int | None = None) -> Step:
     return Step(name, on=on, called=False)
 
 
+class Plan:
+    """Steps in the order in which they are added, each known by its number."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+
+    def add(self, step: Step) -> int:
+        """Add a step; return its number, as `on` and `made` take it."""
+        self.steps.append(step)
+        return len(self.steps) - 1
+
+
 def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[StepResult]:
     """Carry out steps in one sandboxed process; return their outcomes.
 

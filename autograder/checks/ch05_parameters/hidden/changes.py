@@ -11,7 +11,7 @@ from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.harness import Workspace
-from autograder.probes.calls import Step, call, calls, look, made
+from autograder.probes.calls import Plan, call, calls, look, made
 from autograder.probes.parameters import Value, differences, shortened
 from autograder.time_record import LOCKSTEP
 
@@ -210,11 +210,9 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
         The timer's period in ns before and after it judges 25 Hz; whether it takes a safety distance of 1.5 m after it
         has judged a slow distance of 2.0 m. None from a node with other names.
     """
-    steps = [call("init", module="rclpy")]
-
-    def add(step: Step) -> int:
-        steps.append(step)
-        return len(steps) - 1
+    plan = Plan()
+    add = plan.add
+    add(call("init", module="rclpy"))
 
     def parameter(name: str, value: float) -> int:
         return add(call("Parameter", name, value=value, module="rclpy.parameter"))
@@ -234,7 +232,7 @@ def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:
     after = period()
     validate(parameter("slow_distance", 2.0))
     accepted = add(look("successful", on=validate(parameter("safety_distance", 1.5))))
-    outcomes = calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *steps, network=True)
+    outcomes = calls(workspace, f"{PACKAGE}.nodes.{EXECUTABLE}", *plan.steps, network=True)
     return outcomes[before].value, outcomes[after].value, outcomes[accepted].value
 
 

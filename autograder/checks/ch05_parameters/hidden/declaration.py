@@ -25,14 +25,7 @@ PER = {"hz", "hertz", "per", "a", "each", "every"}
 
 @check(
     points=1,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     doc=contract.IN_A_CLASS,
 )
 @hint("Read the sentence above, then the last lines of the traceback below it.")
@@ -45,14 +38,7 @@ def test_starts(robot: Robot) -> None:
 
 @check(
     points=2,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     depends=("starts",),
     doc=contract.PARAMETERS,
 )
@@ -67,14 +53,7 @@ def test_names(robot: Robot) -> None:
 
 @check(
     points=2,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     depends=("names",),
     doc=contract.PARAMETERS,
 )
@@ -92,14 +71,7 @@ def test_types(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     depends=("types",),
 )
 @hint("The default is declare_parameter's second argument.")
@@ -163,14 +135,7 @@ def test_read_only(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     depends=("types",),
 )
 @hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")

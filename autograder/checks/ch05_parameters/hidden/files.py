@@ -44,15 +44,7 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
 
 @check(
     points=2,
-    holds=(
-        "fleet-robot-name",
-        "fleet-max-linear-velocity",
-        "fleet-safety-distance",
-        "fleet-slow-distance",
-        "fleet-control-frequency",
-        "fleet-battery-threshold",
-        "empty-field",
-    ),
+    holds=(*contract.FLEET_ROWS, "empty-field"),
     depends=("file_names", "overrides", "types"),
 )
 @hint("What every robot has stands under /**, which fits every name.")
@@ -63,15 +55,7 @@ def test_any_robot(workspace: Workspace) -> None:
 
 @check(
     points=2,
-    holds=(
-        "fleet-robot-name",
-        "fleet-max-linear-velocity",
-        "fleet-safety-distance",
-        "fleet-slow-distance",
-        "fleet-control-frequency",
-        "fleet-battery-threshold",
-        "empty-field",
-    ),
+    holds=(*contract.FLEET_ROWS, "empty-field"),
     depends=("file_names", "overrides", "types"),
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
@@ -83,15 +67,7 @@ def test_scout(workspace: Workspace) -> None:
 
 @check(
     points=2,
-    holds=(
-        "fleet-robot-name",
-        "fleet-max-linear-velocity",
-        "fleet-safety-distance",
-        "fleet-slow-distance",
-        "fleet-control-frequency",
-        "fleet-battery-threshold",
-        "empty-field",
-    ),
+    holds=(*contract.FLEET_ROWS, "empty-field"),
     depends=("file_names", "overrides", "types"),
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")

@@ -59,14 +59,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 
 @check(
     points=2,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     depends=("names",),
     doc=contract.ARGUMENTS,
 )

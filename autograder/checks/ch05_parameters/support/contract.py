@@ -42,6 +42,8 @@ WANTED = {
     "control_frequency": Wanted(DOUBLE, 10.0, 1.0, 50.0, "Hz"),
     "battery_threshold": Wanted(ParameterType.PARAMETER_INTEGER, 20, 0, 100, "percent"),
 }
+TABLE_ROWS = tuple(WANTED)  # ids of sentences: the rows of the table of parameters
+FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in WANTED)  # the rows of the table of robots
 DEFAULTS = {name: wanted.default for name, wanted in WANTED.items()}
 CHANGEABLE = {name: value for name, value in DEFAULTS.items() if name != "robot_name"}
 

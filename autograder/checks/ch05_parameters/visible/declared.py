@@ -14,14 +14,7 @@ check = group("declaration")
 
 @check(
     points=1,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-    ),
+    holds=contract.TABLE_ROWS,
     doc=contract.IN_A_CLASS,
 )
 @hint("Read the sentence above, then the last lines of the traceback below it.")
@@ -34,15 +27,7 @@ def test_starts(robot: Robot) -> None:
 
 @check(
     points=1,
-    holds=(
-        "robot_name",
-        "max_linear_velocity",
-        "safety_distance",
-        "slow_distance",
-        "control_frequency",
-        "battery_threshold",
-        "no-others",
-    ),
+    holds=(*contract.TABLE_ROWS, "no-others"),
     depends=("starts",),
     doc=contract.PARAMETERS,
 )

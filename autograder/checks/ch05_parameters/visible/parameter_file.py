@@ -22,15 +22,7 @@ def test_file(workspace: Workspace) -> None:
 
 @check(
     points=1,
-    holds=(
-        "fleet-robot-name",
-        "fleet-max-linear-velocity",
-        "fleet-safety-distance",
-        "fleet-slow-distance",
-        "fleet-control-frequency",
-        "fleet-battery-threshold",
-        "empty-field",
-    ),
+    holds=(*contract.FLEET_ROWS, "empty-field"),
     depends=("file", "table"),
     doc=contract.ARGUMENTS,
 )

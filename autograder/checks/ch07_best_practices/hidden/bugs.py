@@ -6,7 +6,7 @@ from typing import Any
 
 from autograder.checks.ch07_best_practices.support.contract import ROBUST
 from autograder.harness import Workspace
-from autograder.probes.calls import Step, StepResult, call, calls, made
+from autograder.probes.calls import Plan, StepResult, call, calls, made
 from autograder.probes.parameters import override_arguments
 
 BUGS = ("AttributeError", "RuntimeError", "OSError", "ValueError")  # OSError is the base class of the given SensorError
@@ -19,11 +19,9 @@ def with_bugs(workspace: Workspace) -> tuple[dict[str, tuple[StepResult, StepRes
         By bug, what came of making the node, of the call, and of asking for its namespace. Then what came of the call
         of a node that has the last bug's generator and a seed.
     """
-    steps = [call("init", module="rclpy")]
-
-    def add(step: Step) -> int:
-        steps.append(step)
-        return len(steps) - 1
+    plan = Plan()
+    add = plan.add
+    add(call("init", module="rclpy"))
 
     numbers = {}
     for bug in BUGS:
@@ -37,5 +35,5 @@ def with_bugs(workspace: Workspace) -> tuple[dict[str, tuple[StepResult, StepRes
     seed = ["--ros-args", *override_arguments({"seed": 5})]
     node = add(call("RobustNode", generator=made(generator), cli_args=seed))
     add(call("timer_callback", on=node))
-    results = calls(workspace, ROBUST, *steps, network=True)
+    results = calls(workspace, ROBUST, *plan.steps, network=True)
     return {bug: (results[a], results[b], results[c]) for bug, (a, b, c) in numbers.items()}, results[-1]
