@@ -1,4 +1,4 @@
-"""Chooses the cases of a long test that run for this commit. The runs of several commits take all cases.
+"""Chooses the long tests, and their cases, that run for this commit. The runs of several commits take all of them.
 
 The environment variable `DRAW=all` takes all of them. The workflow sets it: its jobs have a machine each.
 """
@@ -15,6 +15,21 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+# Files of long tests. The three of a row take about the same time, and the commit draws one of them.
+ROWS = (
+    ("tests/browser/test_site.py", "tests/e2e/test_cluster.py", "tests/e2e/ros2_records/test_records.py"),
+    ("tests/browser/test_formgrader.py", "tests/e2e/test_new_chapter.py", "tests/e2e/test_second_course.py"),
+    (
+        "tests/browser/test_students_lab.py",
+        "tests/e2e/test_lockstep_or_real.py",
+        "tests/notebooks/test_student_answers.py",
+    ),
+    ("tests/browser/test_live_view.py", "tests/e2e/test_cmake_overlay.py", "tests/e2e/test_colcon_host.py"),
+    ("tests/e2e/test_build_outcomes.py", "tests/e2e/test_created_packages.py", "tests/e2e/test_interface_bundle.py"),
+    ("tests/e2e/test_bridge.py", "tests/e2e/test_hostile_class.py", "tests/e2e/test_ros2_command.py"),
+    ("tests/e2e/test_ros2_lifecycle.py", "tests/e2e/test_ros2_pkg_create.py", "tests/notebooks/test_two_robots.py"),
+    ("tests/browser/test_run_page.py", "tests/e2e/test_lms.py", "tests/e2e/test_notebook_parameters.py"),
+)
 
 
 @lru_cache(maxsize=1)
@@ -39,6 +54,11 @@ def sample(names: Iterable[str], one_in: int, draw: str | None = None) -> set[st
         return set(names)
     ranked = sorted(names, key=lambda name: hashlib.sha256(f"{text} {name}".encode()).digest())
     return set(ranked[: -(-len(ranked) // one_in)])
+
+
+def files_left_out(draw: str | None = None) -> set[str]:
+    """Return the files of `ROWS` that a draw leaves for the night; the argument is as in `sample`."""
+    return {file for row in ROWS for file in set(row) - sample(row, len(row), draw)}
 
 
 def unless(chosen: bool) -> list[pytest.MarkDecorator]:

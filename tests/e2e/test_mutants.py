@@ -1,7 +1,7 @@
 """The proof's part for each change: the references of all chapters, some releases, some variants and some mutants.
 
 The proof for each change, `autograder verify --quick`, has one mutant for each check. The commit draws one in thirty of
-a chapter's, one release in three, one variant in six, and a part of the population of mutants of one chapter in four.
+a chapter's, one release in three, one variant in nine, and a part of the population of mutants of one chapter in four.
 The runs of several commits take them all, and so does `make nightly`.
 """
 
@@ -41,7 +41,7 @@ def of(kind: CaseKind, assignment: str = "") -> list[str]:
 def chosen(draw: str | None = None) -> set[str]:
     """Return the ids of the cases that run for each change."""
     mutants = (sample(of(CaseKind.MUTANT, name), 30, draw) for name in suites.graded_assignments())
-    releases, variants = sample(of(CaseKind.RELEASE), 3, draw), sample(of(CaseKind.VARIANT), 6, draw)
+    releases, variants = sample(of(CaseKind.RELEASE), 3, draw), sample(of(CaseKind.VARIANT), 9, draw)
     return set().union(of(CaseKind.REFERENCE), releases, variants, *mutants)
 
 
