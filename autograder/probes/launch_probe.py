@@ -16,6 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
 from autograder.lockstep.tracebacks import with_source_paths
 from autograder.probes.parameters import Value, same
+from autograder.probes.rclpy_races import lost_a_race
 from autograder.workspace import Workspace
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
@@ -34,6 +35,7 @@ _PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"]+)", line (?P<line>\d+)', re.
 _STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
 _ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
 _DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
+_LABEL_OF_DEAD = re.compile(r"\[([^\]]+-\d+)\]: process has died")
 _NAMED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died .*__node:=(?P<node>\w+)")
 _RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
 
@@ -163,11 +165,12 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
 
     Where a process had to be killed, a second launch decides. Once in some two thousand ends of right nodes that leave
     together, Fast DDS 2.14 deadlocks: `DomainParticipant::set_listener` waits for a callback of discovery to end, which
-    waits for it. Such a node ends neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does.
+    waits for it. Such a node ends neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does. A
+    second launch also decides where rclpy lost a race.
     """
     nodes = harness.nodes()
     died = _died_of_ctrl_c(harness)
-    if any(code == KILLED for _, code in died):
+    if any(code == KILLED for _, code in died) or _lost_a_race(harness.output):
         with harness.another() as second:
             expect_nodes(second, nodes)
             died = _died_of_ctrl_c(second)
@@ -185,6 +188,14 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
         harness.parameters(node, ["use_sim_time"])
     expect_stopped(harness.interrupt(STOP_SECONDS))
     return [(match["name"], match["code"]) for match in _DIED.finditer(harness.output)]
+
+
+def _lost_a_race(output: str) -> bool:
+    """Return whether by a launch's output one of the programs that died did so because rclpy lost a race."""
+    return any(
+        lost_a_race("\n".join(re.findall(rf"^\[{re.escape(label)}\] (.*)$", output, re.MULTILINE)))
+        for label in _LABEL_OF_DEAD.findall(output)
+    )
 
 
 def expect_stopped(stop: Stop) -> None:

@@ -59,6 +59,46 @@ if sys.argv[1] == 'always' or not been_here.exists():
         signal.signal(number, signal.SIG_IGN)
 node = rclpy.create_node('stubborn')
 {SPINS}"""
+LOSES_THE_RACE = f"""#!{sys.executable}
+import pathlib
+import sys
+import time
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+
+
+class FoundValid:
+    # The handle of a context that has been shut down by rclpy's thread for signals since it was found valid.
+    def __init__(self, handle):
+        self._handle = handle
+        self.shutdown = handle.shutdown
+
+    def __enter__(self):
+        self._handle.__enter__()
+
+    def __exit__(self, *error):
+        self._handle.__exit__(*error)
+
+    def ok(self):
+        return True
+
+
+rclpy.init()
+been_here = pathlib.Path.home() / 'been_here'
+node = rclpy.create_node('racing')
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+context = rclpy.get_default_context()
+while context.ok():
+    time.sleep(0.01)
+if sys.argv[1] == 'always' or not been_here.exists():
+    been_here.touch()
+    context._Context__context = FoundValid(context.handle)
+rclpy.try_shutdown()
+"""
 SLOW = f"""#!{sys.executable}
 import time
 
@@ -204,6 +244,18 @@ def test_a_node_that_had_to_be_killed_gets_a_second_launch_which_decides(starts:
     with LaunchHarness(there, "fleet", "given.launch.py", {"how": "always"}) as harness:
         launch_probe.expect_nodes(harness, ["/stubborn"])
         with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with -9"):
+            launch_probe.expect_clean_stop(harness)
+
+
+def test_a_race_that_rclpy_loses_gets_a_second_launch_which_decides(starts: Callable[[str], Workspace]) -> None:
+    there = starts(LOSES_THE_RACE)
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness:
+        launch_probe.expect_nodes(harness, ["/racing"])
+        launch_probe.expect_clean_stop(harness)
+        assert "rcl_shutdown already called" in harness.output
+    with LaunchHarness(there, "fleet", "given.launch.py", {"how": "always"}) as harness:
+        launch_probe.expect_nodes(harness, ["/racing"])
+        with pytest.raises(CheckFailed, match=r"not every process ended cleanly: given with 1"):
             launch_probe.expect_clean_stop(harness)
 
 

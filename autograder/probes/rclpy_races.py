@@ -1,0 +1,21 @@
+"""Errors that rclpy raises at times when a signal ends a program, whatever that program does."""
+
+from __future__ import annotations
+
+
+def lost_a_race(output: str) -> bool:
+    """Return whether a program's output ends with the traceback of an error that rclpy raises by chance.
+
+    Each comes of a few microseconds in which rclpy's thread for signals shuts the context down: an executor has found
+    the context valid and builds its wait set, or `Context.try_shutdown` has found it valid and shuts it down itself. On
+    a busy machine the latter is one of 500 ends of a right program. A program that calls `rclpy.shutdown` is no such
+    case: it raises each time.
+    """
+    lines = output.splitlines()
+    frames = [line for line in lines if line.startswith("  File ")]
+    if not frames:
+        return False
+    frame, error = frames[-1], next(line for line in reversed(lines) if line.strip())
+    in_executor = "rclpy/executors.py" in frame and "context" in error
+    in_try_shutdown = frame.endswith("in try_shutdown") and "rclpy/context.py" in frame and "already called" in error
+    return in_executor or in_try_shutdown
