@@ -19,7 +19,7 @@ from autograder.cli.text_tables import score_text, table
 from autograder.proof.cases import cases
 from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.mutation_run import MutantResult, run_mutants
-from autograder.proof.population import Slipped, population
+from autograder.proof.population import GeneratedMutant, population
 from autograder.proof.prove import prove
 from autograder.proof.summary import summary
 from autograder.proof.survivors import ChapterMutationResult, holds, mutant_counts, reasons, report
@@ -117,7 +117,12 @@ def verify(
 
 
 def _run_mutants(
-    chapter: ChapterMutationResult, mutants: Sequence[Slipped], named: bool, workers: WorkerPool, seed: int, out: Path
+    chapter: ChapterMutationResult,
+    mutants: Sequence[GeneratedMutant],
+    named: bool,
+    workers: WorkerPool,
+    seed: int,
+    out: Path,
 ) -> ChapterMutationResult:
     """Grade the mutants of a chapter. One that may survive is graded only if it is `named`."""
 

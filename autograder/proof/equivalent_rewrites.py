@@ -20,8 +20,8 @@ from autograder.proof.python_operators import (
     FUNCTIONS,
     SYMBOLS,
     NodeInContext,
+    Replacement,
     Source,
-    Spot,
     nodes_in_context,
     replaced,
 )
@@ -60,14 +60,14 @@ def rewrites() -> Mapping[str, Callable[[str], str]]:
 
 
 def _where_it_fits(
-    rewriting: Callable[[Source, list[NodeInContext]], Iterator[Spot]],
-) -> Callable[[Source, list[NodeInContext]], Iterator[Spot]]:
+    rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
+) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
     """Keep of a rewriting what lies in no other replacement, and in one line, which it does not make too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+    def fitting(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
         reached = -1
-        for start, end, new in sorted(rewriting(source, found), key=lambda spot: (spot[0], -spot[1])):
+        for start, end, new in sorted(rewriting(source, found), key=lambda one: (one[0], -one[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
             columns = (start - first) + len(new) + (last - end)
             if start > reached and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
@@ -78,7 +78,7 @@ def _where_it_fits(
 
 
 @_where_it_fits
-def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `b > a` for `a < b`, unless both sides call something: the order of the calls may matter."""
     for context in found:
         node = context.node
@@ -91,7 +91,7 @@ def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator
 
 
 @_where_it_fits
-def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `b if not c else a` for `a if c else b`."""
     for context in found:
         node = context.node
@@ -101,7 +101,7 @@ def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Sp
 
 
 @_where_it_fits
-def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `x = x + 1` for `x += 1`: of numbers only, as a list would become another list."""
     for context in found:
         node = context.node
@@ -110,7 +110,7 @@ def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Spo
             yield (*source.span(node), f"{target} = {target} + {source.text(node.value)}")
 
 
-def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield another name for each local variable, of the same length, so that continued lines stay in their columns."""
     taken = set(re.findall(r"\w+", source.data.decode()))
     for context in found:
@@ -124,7 +124,7 @@ def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Sp
                 yield (*source.span(node), names[node.id])
 
 
-def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield the methods of each class in the opposite order, after `__init__`."""
     for node in (context.node for context in found if isinstance(context.node, ast.ClassDef)):
         methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
@@ -138,7 +138,7 @@ def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Sp
 
 
 @_where_it_fits
-def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `-> None` for each function that returns nothing."""
     for node in (context.node for context in found if isinstance(context.node, FUNCTIONS)):
         inside = list(ast.walk(node))
@@ -152,7 +152,7 @@ def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
             yield colon, colon, " -> None"
 
 
-def postponed_annotations(source: Source, found: list[NodeInContext]) -> Iterator[Spot]:
+def postponed_annotations(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield `from __future__ import annotations` below the module's docstring."""
     body = source.tree.body
     if found and ast.get_docstring(source.tree) and "__future__" not in source.data.decode():

@@ -26,7 +26,7 @@ from autograder.grading.job import Scope
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.proof.mutants import write_reference
-from autograder.proof.population import Slipped
+from autograder.proof.population import GeneratedMutant
 from autograder.proof.worker_pool import WorkerPool
 from autograder.result import Result, Status
 from autograder.ros import activate
@@ -79,7 +79,7 @@ class MutationRun:
         result = self._grade({}, Scope(pictures=False, built=str(built)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
-    def run_mutant(self, mutant: Slipped, version: str = "") -> MutantResult:
+    def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant up to the first check that it loses."""
         began = time.monotonic()
         killer = next(filter(None, self._stages(mutant)), "")
@@ -88,7 +88,7 @@ class MutationRun:
                 self._killers[place][killer] += 1
         return MutantResult(mutant.id, killer, round(time.monotonic() - began, 2), version)
 
-    def _stages(self, mutant: Slipped) -> Iterator[str]:
+    def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
         """Yield the killer of each stage, or "": first what is quick, and what is likely to kill."""
         texts = mutant.texts()
         in_tests = all("/test/" in file for file in texts)
@@ -106,7 +106,7 @@ class MutationRun:
         if counted - able:
             yield self._killer(texts, self._suite.with_dependencies(*counted), "")
 
-    def _likely(self, mutant: Slipped) -> frozenset[str]:
+    def _likely(self, mutant: GeneratedMutant) -> frozenset[str]:
         known = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
         return frozenset(name for name, _ in known.most_common(FIRST))
 
@@ -137,7 +137,7 @@ class MutationRun:
 
 def run_mutants(
     assignment: str,
-    mutants: Iterable[Slipped],
+    mutants: Iterable[GeneratedMutant],
     workers: WorkerPool,
     *,
     seed: int,

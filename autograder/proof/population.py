@@ -1,4 +1,4 @@
-"""The population of mutants of a chapter: every slip of every operator in everything that its students write."""
+"""The population of mutants of a chapter: every mutation by every operator in everything that its students write."""
 
 from __future__ import annotations
 
@@ -14,37 +14,47 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.course.cells import copied_file, is_solution
 from autograder.course.sync import Chapter
-from autograder.proof.python_operators import Slip, Source, Spot, classic, left_out, nodes_in_context, replaced
+from autograder.proof.python_operators import (
+    Mutation,
+    Replacement,
+    Source,
+    classic,
+    left_out,
+    nodes_in_context,
+    replaced,
+)
 from autograder.proof.ros_operators import is_queue_length, multi_node_mutations, ros_mutations, wall_time
-from autograder.proof.text_operators import text_slips
+from autograder.proof.text_operators import text_mutations
 
 PAIRS = 20  # mutants of second order in a chapter
 
 
 @dataclass(frozen=True)
-class Slipped:
+class GeneratedMutant:
     """A mutant: what it replaces in the reference, file by file.
 
     Attributes:
         id: names the file, the function, the operator and a digest of the change; it outlives changes elsewhere.
         operator: the operator's name; "pair" for a mutant of second order.
         function: the qualified name of the changed function, or "".
-        spots: what is replaced, by the path of the file below `solutions/`.
+        changes: what is replaced, by the path of the file below `solutions/`.
     """
 
     id: str
     operator: str
     function: str
-    spots: tuple[tuple[str, tuple[Spot, ...]], ...]
+    changes: tuple[tuple[str, tuple[Replacement, ...]], ...]
 
     @property
     def file(self) -> str:
         """The path of the first changed file."""
-        return self.spots[0][0]
+        return self.changes[0][0]
 
     def texts(self) -> dict[str, str]:
         """Return the new text of each changed file."""
-        return {file: replaced((layout.SOLUTIONS / file).read_bytes(), spots).decode() for file, spots in self.spots}
+        return {
+            file: replaced((layout.SOLUTIONS / file).read_bytes(), changes).decode() for file, changes in self.changes
+        }
 
     def diff(self) -> str:
         """Return the lines that differ, with the line's number, as a person reads them."""
@@ -64,26 +74,26 @@ class Slipped:
 class Population:
     """A chapter's mutants, those of second order last, and how many were left out as equivalent or duplicate."""
 
-    mutants: tuple[Slipped, ...]
+    mutants: tuple[GeneratedMutant, ...]
     left_out: int
 
 
 def population(assignment: str) -> Population:
     """Return the mutants of a chapter, always the same for one reference."""
-    found: dict[str, Slipped] = {}
+    found: dict[str, GeneratedMutant] = {}
     left_out = 0
     for file, functions, given in written_by_students(assignment):
         text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
         seen = {_meaning(file, text)}
-        for function, (operator, spots) in slips(file, text, functions):
-            if given.issuperset(_lines(text.encode(), spots)):
+        for function, (operator, changes) in mutations(file, text, functions):
+            if given.issuperset(_lines(text.encode(), changes)):
                 continue
-            meaning = _meaning(file, replaced(text.encode(), spots).decode())
+            meaning = _meaning(file, replaced(text.encode(), changes).decode())
             if meaning in seen:
                 left_out += 1
                 continue
             seen.add(meaning)
-            mutant = _named(file, function, operator, spots, text)
+            mutant = _named(file, function, operator, changes, text)
             assert mutant.id not in found, f"two mutants are called {mutant.id}"
             found[mutant.id] = mutant
     return Population((*found.values(), *_pairs(list(found.values()))), left_out)
@@ -109,10 +119,10 @@ def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] |
                 yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
 
 
-def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Slip]]:
-    """Yield (function, slip) of a file: the name of the changed function, and what a slip replaces."""
+def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
+    """Yield (function, mutation) of a file; the function is the name of the one that is changed."""
     if not file.endswith(".py"):
-        yield from (("", slip) for slip in text_slips(file, text))
+        yield from (("", mutation) for mutation in text_mutations(file, text))
         return
     source = Source(text)
     nodes: list[ast.AST] = []
@@ -123,40 +133,40 @@ def slips(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tu
         )
         yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
         wider = itertools.chain(left_out(source, context.node), multi_node_mutations(source, context))
-        yield from ((function, slip) for slip in wider)
-    yield from (("", slip) for slip in wall_time(source, nodes))
+        yield from ((function, mutation) for mutation in wider)
+    yield from (("", mutation) for mutation in wall_time(source, nodes))
 
 
-def _named(file: str, function: str, operator: str, spots: tuple[Spot, ...], text: str) -> Slipped:
+def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
     """Name a mutant by what stands around its change, so that it keeps its name when other lines move."""
     data = text.encode()
     name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
-    for start, end, new in spots:
+    for start, end, new in changes:
         begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
         before, old = data[begin:start], data[start:end]
         name_digest.update(b"\0".join((before, old, new.encode(), data[end:stop])))
         name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
     where = ".".join(filter(None, (file.rpartition("/")[2], function)))
-    return Slipped(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, spots),))
+    return GeneratedMutant(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, changes),))
 
 
-def _pairs(mutants: list[Slipped]) -> Iterator[Slipped]:
+def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
     """Yield mutants of second order: drawn pairs of mutants of different functions or files."""
     ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
     for one, other in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
-        spots = dict(one.spots)
-        for file, more in other.spots:
-            both = sorted((*spots.get(file, ()), *more))
+        changes = dict(one.changes)
+        for file, more in other.changes:
+            both = sorted((*changes.get(file, ()), *more))
             if any(first[1] > second[0] for first, second in itertools.pairwise(both)):
                 break
-            spots[file] = tuple(both)
+            changes[file] = tuple(both)
         else:
-            yield Slipped(f"{one.id} + {other.id}", "pair", one.function, tuple(spots.items()))
+            yield GeneratedMutant(f"{one.id} + {other.id}", "pair", one.function, tuple(changes.items()))
 
 
-def _lines(data: bytes, spots: tuple[Spot, ...]) -> Iterator[bytes]:
+def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
     """Yield the lines in which something is replaced."""
-    for start, end, _ in spots:
+    for start, end, _ in changes:
         last = start + len(data[start:end].rstrip())
         yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
 

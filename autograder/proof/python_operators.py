@@ -1,7 +1,7 @@
-"""Mutation operators for Python. Each makes one slip at one place, or one kind of slip at all its places.
+"""Mutation operators for Python. Each changes one place, or makes the same change at all its places.
 
 They change the text at the positions that `ast` gives, so that the rest of the text stays the same. cosmic-ray and
-mutmut have the classic ones only, and bring a parser and a dozen packages with them; the slips of robots,
+mutmut have the classic ones only, and bring a parser and a dozen packages with them; the operators for ROS,
 `ros_operators.py`, need the positions of `ast` in any case.
 """
 
@@ -22,9 +22,9 @@ LEVELS = {"debug": "info", "info": "debug", "warning": "info", "error": "warning
 FOR_PEOPLE = {"description", "additional_constraints", "reason", "msg", "maintainer", "maintainer_email"}  # words
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
-Spot = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text
-Slip = tuple[str, tuple[Spot, ...]]  # the operator, and what it replaces
-Simple = tuple[str, ast.AST, str]  # the operator, the node that it replaces, and the new text
+Replacement = tuple[int, int, str]  # offsets of the replaced part in bytes of UTF-8, and the new text
+Mutation = tuple[str, tuple[Replacement, ...]]  # the operator, and what it replaces
+NodeMutation = tuple[str, ast.AST, str]  # the operator, the node that it replaces, and the new text
 
 
 class Source:
@@ -53,9 +53,9 @@ class Source:
         return self.data[start:end].decode()
 
 
-def replaced(data: bytes, spots: Iterable[Spot]) -> bytes:
+def replaced(data: bytes, changes: Iterable[Replacement]) -> bytes:
     """Return a text in which some parts, which do not overlap, are replaced."""
-    for start, end, new in sorted(spots, reverse=True):
+    for start, end, new in sorted(changes, reverse=True):
         data = data[:start] + new.encode() + data[end:]
     return data
 
@@ -114,13 +114,13 @@ def _is_silent(node: ast.AST, context: NodeInContext) -> bool:
     return isinstance(node, ast.Constant | ast.Call) and isinstance(outer, ast.Raise | ast.Assert)
 
 
-def classic(source: Source, context: NodeInContext) -> Iterator[Simple]:
+def classic(source: Source, context: NodeInContext) -> Iterator[NodeMutation]:
     """Yield the classic mutations of a node."""
     for made in _OPERATORS:
         yield from made(source, context.node)
 
 
-def _operators(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Compare):
         operands = [source.text(operand) for operand in (node.left, *node.comparators)]
         for changed, old in enumerate(node.ops):
@@ -144,7 +144,7 @@ def _operators(source: Source, node: ast.AST) -> Iterator[Simple]:
             yield "boolean", node, f"({word.join(kept)})"
 
 
-def _conditions(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _conditions(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.If | ast.IfExp):
         yield "condition", node.test, "True"
         yield "condition", node.test, "False"
@@ -159,7 +159,7 @@ def _conditions(source: Source, node: ast.AST) -> Iterator[Simple]:
             yield "condition", test, "True"
 
 
-def _constants(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _constants(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if not isinstance(node, ast.Constant):
         return
     value = node.value
@@ -183,7 +183,7 @@ def numbers(value: float) -> Iterator[tuple[str, str]]:
             yield name, f"({text})" if text.startswith("-") else text
 
 
-def _statements(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _statements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
         yield f"no {_kind(node.value)}", node, "pass"
     elif isinstance(node, ast.Assign | ast.AugAssign):
@@ -205,7 +205,7 @@ def _kind(call: ast.Call) -> str:
     return {"publish": "publish", "create_timer": "timer"}.get(name, "log" if name in LEVELS else "call")
 
 
-def _arguments(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if not isinstance(node, ast.Call):
         return
     positional = [source.text(argument) for argument in node.args]
@@ -223,7 +223,7 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[Simple]:
             yield "arguments", node, f"{function}({', '.join(swapped + named)})"
 
 
-def _elements(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
         for at in range(len(elements)):
@@ -231,7 +231,7 @@ def _elements(source: Source, node: ast.AST) -> Iterator[Simple]:
             yield "element", node, f"({rest})"
 
 
-def left_out(source: Source, node: ast.AST) -> Iterator[Slip]:
+def left_out(source: Source, node: ast.AST) -> Iterator[Mutation]:
     """Yield the mutations that leave out an argument that has a name, or an element of a list or a dictionary."""
     parts: list[tuple[ast.AST, ast.AST]] = []
     if isinstance(node, ast.Call):
@@ -254,12 +254,12 @@ def left_out(source: Source, node: ast.AST) -> Iterator[Slip]:
         yield "keyword" if isinstance(node, ast.Call) else "element", ((start, end, ""),)
 
 
-def _exceptions(source: Source, node: ast.AST) -> Iterator[Simple]:
+def _exceptions(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.ExceptHandler) and node.type is not None and source.text(node.type) != "Exception":
         yield "exception", node.type, "Exception"
 
 
-_OPERATORS: Sequence[Callable[[Source, ast.AST], Iterator[Simple]]] = (
+_OPERATORS: Sequence[Callable[[Source, ast.AST], Iterator[NodeMutation]]] = (
     _operators,
     _conditions,
     _constants,

@@ -1,11 +1,11 @@
-"""Mutation operators for slips in programs of robots: quality of service, time, parameters, exceptions, units."""
+"""Mutation operators for the errors of ROS programs: quality of service, time, parameters, exceptions, units."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 
-from autograder.proof.python_operators import NodeInContext, Simple, Slip, Source
+from autograder.proof.python_operators import Mutation, NodeInContext, NodeMutation, Source
 
 QOS_AT = {"create_publisher": 2, "create_subscription": 3}
 QOS = "__import__('rclpy.qos').qos."
@@ -24,7 +24,7 @@ SWAPPED = dict(zip(_PAIRS.split()[::2], _PAIRS.split()[1::2], strict=True))
 SWAPPED |= {right: left for left, right in SWAPPED.items()}
 
 
-def ros_mutations(source: Source, context: NodeInContext) -> Iterator[Simple]:
+def ros_mutations(source: Source, context: NodeInContext) -> Iterator[NodeMutation]:
     """Yield the mutations of a node that are about robots."""
     node = context.node
     if isinstance(node, ast.Attribute | ast.Name):
@@ -37,7 +37,7 @@ def ros_mutations(source: Source, context: NodeInContext) -> Iterator[Simple]:
             yield "stamp", node.value, FROM_HEADER.format(arguments[0])
 
 
-def _names(source: Source, node: ast.Attribute | ast.Name, context: NodeInContext) -> Iterator[Simple]:
+def _names(source: Source, node: ast.Attribute | ast.Name, context: NodeInContext) -> Iterator[NodeMutation]:
     name = node.attr if isinstance(node, ast.Attribute) else node.id
     text = source.text(node)
     called = isinstance(context.ancestors[0], ast.Call) and context.ancestors[0].func is node
@@ -55,7 +55,7 @@ def _names(source: Source, node: ast.Attribute | ast.Name, context: NodeInContex
         yield "read once", node, f"{owner}.__dict__.setdefault(('once', {key}), {text})"
 
 
-def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[Simple]:
+def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[NodeMutation]:
     name, text = getattr(node.func, "attr", getattr(node.func, "id", "")), source.text(node)
     if name in ("radians", "degrees") and len(node.args) == 1:
         yield "units", node, f"({source.text(node.args[0])})"
@@ -80,7 +80,7 @@ def is_queue_length(context: NodeInContext) -> bool:
     return isinstance(outer, ast.Call) and len(outer.args) > at >= 0 and outer.args[at] is context.node
 
 
-def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Slip]:
+def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mutation]:
     """Yield the mutations that replace more than one node: a handler's body, a decorator."""
     node = context.node
     if isinstance(node, ast.ExceptHandler):
@@ -95,7 +95,7 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Sli
         yield "no decorator", ((source.data.rindex(b"@", 0, start), end, ""),)
 
 
-def wall_time(source: Source, within: list[ast.AST]) -> Iterator[Slip]:
+def wall_time(source: Source, within: list[ast.AST]) -> Iterator[Mutation]:
     """Yield the mutation that reads the machine's clock at every place where a module reads the clock of ROS."""
     clocks = [node for node in within if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:

@@ -26,7 +26,7 @@ KINDS = ("equivalent", "outside")
 MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
 HEAD = """# The mutants
 
-Every slip of every operator in what students write, graded up to the first check that it loses. A cell is
+Every mutation by every operator in what students write, graded up to the first check that it loses. A cell is
 `killed/all`. The score is killed / (all - equivalent); mutants outside of the contract count as not killed.
 Left out before grading, as equivalent or duplicate mutants: """
 

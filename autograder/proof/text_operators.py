@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from autograder.proof.python_operators import Slip, numbers
+from autograder.proof.python_operators import Mutation, numbers
 
 TYPES = {
     "float64": "float32",
@@ -25,7 +25,7 @@ WORD = re.compile(r"[\w./${}-]+")
 NO_WORDS = ("<description>", "<maintainer", "<?xml")  # for people, or for programs that no student runs
 
 
-def text_slips(file: str, text: str) -> Iterator[Slip]:
+def text_mutations(file: str, text: str) -> Iterator[Mutation]:
     """Yield the mutations of a text, by the kind of its file; offsets are in bytes."""
     at = 0
     before: tuple[int, str] | None = None

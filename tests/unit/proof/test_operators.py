@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from autograder.proof.population import slips
+from autograder.proof.population import mutations
 
 SOURCE = '''
 """A module: 1 < 2."""
@@ -50,9 +50,9 @@ def main():
 def made(functions: frozenset[str] | None = None) -> list[tuple[str, str, str]]:
     """Return (operator, function, changed lines) of each change."""
     lines, found = SOURCE.splitlines(), []
-    for function, (operator, spots) in slips("robot.py", SOURCE, functions):
+    for function, (operator, changes) in mutations("robot.py", SOURCE, functions):
         data = SOURCE.encode()
-        for start, end, new in sorted(spots, reverse=True):
+        for start, end, new in sorted(changes, reverse=True):
             data = data[:start] + new.encode() + data[end:]
         ast.parse(data)
         changed = [line.strip() for line in data.decode().splitlines() if line not in lines]
@@ -129,7 +129,7 @@ def test_only_the_named_functions_and_the_module_are_changed() -> None:
 )
 def test_other_files_have_operators_of_their_own(file: str, text: str, operator: str, changed: str) -> None:
     found = []
-    for _, (name, ((start, end, new),)) in slips(file, text, None):
+    for _, (name, ((start, end, new),)) in mutations(file, text, None):
         data = text.encode()
         found.append((name, (data[:start] + new.encode() + data[end:]).decode()))
     assert (operator, changed) in found
