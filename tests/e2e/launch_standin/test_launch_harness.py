@@ -127,9 +127,9 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    limits = {'sigterm_timeout': '0.5', 'sigkill_timeout': '0.5'}
     how = LaunchConfiguration('how')
-    given = Node(package='fleet', executable='given', arguments=[how], **limits)
+    # A program that ignores both signals is killed soon. One that heeds them has the default time on a busy machine.
+    given = Node(package='fleet', executable='given', arguments=[how], sigkill_timeout='0.5')
     beacon = Node(package='fleet', executable='beacon', condition=LaunchConfigurationEquals('how', 'with_beacon'))
     return LaunchDescription([given, beacon])
 """
