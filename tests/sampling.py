@@ -15,20 +15,43 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-# Files of long tests. The three of a row take about the same time, and the commit draws one of them.
+# Files of long tests. Those of a row take about the same time, and the commit draws one of them.
 ROWS = (
-    ("tests/browser/test_site.py", "tests/e2e/test_cluster.py", "tests/e2e/ros2_records/test_records.py"),
-    ("tests/browser/test_formgrader.py", "tests/e2e/test_new_chapter.py", "tests/e2e/test_second_course.py"),
     (
+        "tests/e2e/test_nbgrader.py",
+        "tests/e2e/test_attacks.py",
+        "tests/e2e/test_grading.py",
+        "tests/browser/test_site.py",
+        "tests/e2e/test_cluster.py",
+        "tests/e2e/ros2_records/test_records.py",
+    ),
+    (
+        "tests/browser/test_formgrader.py",
+        "tests/e2e/test_lockstep_features.py",
+        "tests/e2e/test_new_chapter.py",
+        "tests/e2e/test_notebook_api.py",
+        "tests/e2e/test_second_course.py",
+        "tests/e2e/test_solutions.py",
+    ),
+    (
+        "tests/browser/test_live_view.py",
         "tests/browser/test_students_lab.py",
+        "tests/e2e/test_cmake_overlay.py",
+        "tests/e2e/test_colcon_host.py",
         "tests/e2e/test_lockstep_or_real.py",
         "tests/notebooks/test_student_answers.py",
     ),
-    ("tests/browser/test_live_view.py", "tests/e2e/test_cmake_overlay.py", "tests/e2e/test_colcon_host.py"),
-    ("tests/e2e/test_build_outcomes.py", "tests/e2e/test_created_packages.py", "tests/e2e/test_interface_bundle.py"),
-    ("tests/e2e/test_bridge.py", "tests/e2e/test_hostile_class.py", "tests/e2e/test_ros2_command.py"),
-    ("tests/e2e/test_ros2_lifecycle.py", "tests/e2e/test_ros2_pkg_create.py", "tests/notebooks/test_two_robots.py"),
-    ("tests/browser/test_run_page.py", "tests/e2e/test_lms.py", "tests/e2e/test_notebook_parameters.py"),
+    (
+        "tests/browser/test_solve_in_jupyterlab.py",
+        "tests/e2e/test_build_outcomes.py",
+        "tests/e2e/test_created_packages.py",
+        "tests/e2e/test_gradescope.py",
+        "tests/e2e/test_hostile_class.py",
+        "tests/e2e/test_interface_bundle.py",
+    ),
+    ("tests/e2e/test_bridge.py", "tests/e2e/test_ros2_command.py", "tests/notebooks/test_two_robots.py"),
+    ("tests/e2e/test_notebook_parameters.py", "tests/e2e/test_ros2_lifecycle.py", "tests/e2e/test_ros2_pkg_create.py"),
+    ("tests/browser/test_feedback.py", "tests/browser/test_run_page.py", "tests/e2e/test_lms.py"),
 )
 
 

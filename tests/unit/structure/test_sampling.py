@@ -1,4 +1,4 @@
-"""A commit's tests take one of three long files of a row, and the runs of several commits take all."""
+"""A commit's tests take one of the long files of a row, and the runs of several commits take all."""
 
 from __future__ import annotations
 
