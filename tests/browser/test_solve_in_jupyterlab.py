@@ -1,6 +1,6 @@
 """A chapter's release is opened in JupyterLab, the answers are typed in, and the check passes.
 
-`make test` takes one chapter, with a robot that drives; `make tour` and `make nightly` take them all.
+`make test` takes at most one chapter, with a robot that drives; `make tour` and `make nightly` take them all.
 Screenshots of each chapter's pictures and of its check stay in `.build/screenshots`.
 """
 
