@@ -51,7 +51,7 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
         seen = robot.see(scan(Part(-3.0, 3.0, distance)))
         expect_reaction(seen, f"With something {distance:.3f} m ahead", fraction=fraction)
     if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
-        for distance, expect_reaction in ((near, expect_turn), (far, expect_forward)):
+        for distance, expect_reaction in ((far, expect_forward), (near, expect_turn)):  # each unlike the scans before
             began = robot.seconds
             robot.show(scan(Part(-3.0, 3.0, distance)), SHOWN_SECONDS)
             seen = robot.messages("/cmd_vel", since=began + SETTLED)
