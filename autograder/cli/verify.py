@@ -22,7 +22,7 @@ from autograder.proof.mutation_run import MutantResult, run_mutants
 from autograder.proof.population import GeneratedMutant, population
 from autograder.proof.prove import prove
 from autograder.proof.summary import summary
-from autograder.proof.survivors import ChapterMutationResult, holds, mutant_counts, reasons, report
+from autograder.proof.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
 from autograder.proof.worker_pool import WorkerPool
 from autograder.result import write_atomically, write_json
 from autograder.sandbox import Tier
@@ -113,7 +113,9 @@ def verify(
     for path in filter(None, (out / "verify.json", json_file)):
         write_json(path, plain)
     write_atomically(out / "mutants.md", report(chapter_results).encode())
-    sys.exit(0 if all(claim.holds for claim in claims) and holds(chapter_results) else 1)
+    for fault in (found := faults(chapter_results)):
+        click.echo(fault, err=True)
+    sys.exit(0 if all(claim.holds for claim in claims) and not found else 1)
 
 
 def _run_mutants(

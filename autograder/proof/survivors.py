@@ -56,10 +56,14 @@ class ChapterMutationResult:
         return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
+    def failed(self) -> list[str]:
+        """The mutants on which the grader failed."""
+        return [result.id for result in self.results if result.killer == FAILED]
+
+    @property
     def unexplained(self) -> list[str]:
-        """The survivors that have no reason, and the mutants on which the grader failed."""
-        failed = {result.id for result in self.results if result.killer == FAILED}
-        return [name for name, reason in self.survivors.items() if not reason or name in failed]
+        """The survivors that have no reason."""
+        return [name for name, reason in self.survivors.items() if not reason and name not in self.failed]
 
 
 def reasons(assignment: str, population: Population) -> dict[str, str]:
@@ -85,12 +89,23 @@ def reasons(assignment: str, population: Population) -> dict[str, str]:
     return found
 
 
-def holds(chapters: Sequence[ChapterMutationResult]) -> bool:
-    """Return whether enough mutants were killed, of each chapter and of all, and every other one has a reason."""
-    killed, killable = sum(each.killed for each in chapters), sum(each.killable for each in chapters)
-    enough = all(each.killed >= MIN_KILLED * each.killable for each in chapters)
-    enough = enough and killed >= MIN_KILLED_OF_ALL * killable
-    return enough and not any(each.unexplained for each in chapters)
+def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
+    """Return a sentence for each mutant without a result or a reason, and for each score that is too low.
+
+    A score counts only where all mutants of the chapter, or of all chapters, were graded.
+    """
+    found = [f"{each.assignment}: the grader failed on {name}" for each in chapters for name in each.failed]
+    found += [f"{each.assignment}: {name} survives without a reason" for each in chapters for name in each.unexplained]
+    whole = [each for each in chapters if len(each.results) == len(each.population.mutants)]
+    scores = [(each.assignment, each.killed, each.killable, MIN_KILLED) for each in whole]
+    if {each.assignment for each in whole} == set(suites.graded_assignments()):
+        killed, killable = sum(each.killed for each in whole), sum(each.killable for each in whole)
+        scores.append(("all chapters", killed, killable, MIN_KILLED_OF_ALL))
+    return found + [
+        f"{name}: {killed} of {killable} mutants lose a check, at least {required:.0%} have to"
+        for name, killed, killable, required in scores
+        if killed < required * killable
+    ]
 
 
 def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:

@@ -13,7 +13,7 @@ from autograder.exceptions import GraderError
 from autograder.proof import survivors
 from autograder.proof.mutation_run import FAILED, MutantResult
 from autograder.proof.population import Population, population
-from autograder.proof.survivors import ChapterMutationResult, holds, mutant_counts, reasons, report
+from autograder.proof.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
 
 ASSIGNMENT = "02_nodes"
 
@@ -64,10 +64,10 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     survivor = found.results[-1].id
     found = with_reason(found, monkeypatch, "[]", tmp_path)
     assert found.unexplained == [survivor]
-    assert not holds([found])
+    assert faults([found]) == [f"{ASSIGNMENT}: {survivor} survives without a reason"]
     found = with_reason(found, monkeypatch, f"- {{equivalent: so it is, mutants: ['{survivor}']}}", tmp_path)
     assert found.survivors == {survivor: "equivalent: so it is"}
-    assert holds([found])
+    assert faults([found]) == []
     assert "| 39/40" in report([found])
     assert "39/39" in report([found])
     assert (found.killed, found.killable) == (39, 39)
@@ -75,16 +75,42 @@ def test_a_survivor_needs_a_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     assert mutant_counts([found])[ASSIGNMENT]["all"] == [39, 40]
 
 
-@pytest.mark.parametrize(("kind", "killable", "enough"), [("equivalent", 38, True), ("outside", 40, False)])
+LOW = "02_nodes: 37 of 40 mutants lose a check, at least 95% have to"
+LOW_OF_ALL = "all chapters: 38 of 40 mutants lose a check, at least 97% have to"
+
+
+@pytest.mark.parametrize(
+    ("kind", "killed", "killable", "graded", "said"),
+    [
+        ("equivalent", 38, 38, [ASSIGNMENT], []),
+        ("outside", 38, 40, [ASSIGNMENT], [LOW_OF_ALL]),
+        ("outside", 38, 40, [ASSIGNMENT, "03_interfaces"], []),
+        ("outside", 37, 40, [ASSIGNMENT, "03_interfaces"], [LOW]),
+    ],
+)
 def test_the_score_leaves_out_the_equivalent_and_counts_those_outside_of_the_contract(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: str, killable: int, enough: bool
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    kind: str,
+    killed: int,
+    killable: int,
+    graded: list[str],
+    said: list[str],
 ) -> None:
-    found = chapter_result(*["starts"] * 38, "", "")
-    names = [result.id for result in found.results[-2:]]
+    found = chapter_result(*["starts"] * killed, *[""] * (40 - killed))
+    names = [result.id for result in found.results[killed:]]
     found = with_reason(found, monkeypatch, f"- {{{kind}: so it is, mutants: {names}}}", tmp_path)
+    monkeypatch.setattr(suites, "graded_assignments", lambda: graded)
     assert found.unexplained == []
-    assert (found.killed, found.killable) == (38, killable)
-    assert holds([found]) == enough
+    assert (found.killed, found.killable) == (killed, killable)
+    assert faults([found]) == said
+
+
+def test_a_part_of_a_population_has_no_score(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = chapter_result("starts", "")
+    survivor = found.results[-1].id
+    found = with_reason(found, monkeypatch, f"- {{outside: so it is, mutants: ['{survivor}']}}", tmp_path)
+    assert faults([replace(found, results=found.results[-1:])]) == []
 
 
 def test_a_pair_of_mutants_has_the_reason_of_its_two_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -100,7 +126,7 @@ def test_a_mutant_that_was_not_graded_makes_the_proof_fail(monkeypatch: pytest.M
     found = with_reason(
         found, monkeypatch, f"- {{outside: nobody says so, mutants: ['{found.results[-1].id}']}}", tmp_path
     )
-    assert not holds([found])
+    assert faults([found]) == [f"{ASSIGNMENT}: the grader failed on {found.results[-1].id}"]
 
 
 @pytest.mark.parametrize(
