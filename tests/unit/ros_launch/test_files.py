@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import launch
@@ -25,6 +26,7 @@ from launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
     InvalidPythonLaunchFileError,
     PythonLaunchDescriptionSource,
+    load_python_launch_file_as_module,
 )
 from launch.substitutions import LaunchConfiguration, ThisLaunchFile, ThisLaunchFileDir
 
@@ -101,6 +103,66 @@ def test_a_required_argument_that_an_include_does_not_give_is_an_error(
         "[ERROR] [launch]: Caught exception in launch (see debug for traceback): Included launch description "
         "missing required argument 'robot' (description: 'no description given'), given: [colour]"
     ) in capsys.readouterr().out
+
+
+READS_ANNOTATIONS = {
+    "a dataclass": """
+        from dataclasses import dataclass, field
+
+        @dataclass(order=True)
+        class Robot:
+            name: str
+            speed: float = field(default=0.3)
+
+        seen = f"{Robot('r2')}"
+        """,
+    "a named tuple": """
+        from typing import NamedTuple
+
+        class Robot(NamedTuple):
+            name: str
+            speed: float = 0.3
+
+        seen = f"{Robot('r2')}"
+        """,
+    "a generic function": """
+        from functools import singledispatch
+
+        @singledispatch
+        def describe(thing): return "other"
+
+        @describe.register
+        def _(thing: float): return f"Robot(name='r2', speed={thing})"
+
+        seen = describe(0.3)
+        """,
+    "type hints": """
+        import inspect
+        import typing
+
+        def start(name: str, speed: float): ...
+
+        hints = typing.get_type_hints(start)
+        assert start.__annotations__ == hints == {"name": str, "speed": float}
+        assert "speed: float" in inspect.getsource(start)
+        seen = f"Robot(name={hints['name']('r2')!r}, speed={hints['speed']('0.3')})"
+        """,
+}
+
+
+@pytest.mark.parametrize("text", READS_ANNOTATIONS.values(), ids=READS_ANNOTATIONS)
+def test_a_file_can_read_its_annotations_while_it_is_loaded(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "annotated.launch.py"
+    path.write_text(dedent(text))
+    assert load_python_launch_file_as_module(str(path)).seen == "Robot(name='r2', speed=0.3)"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_annotations_are_strings_only_in_a_file_that_asks_for_it(tmp_path: Path) -> None:
+    path = tmp_path / "annotated.launch.py"
+    for ask, expected in (("", int), ("from __future__ import annotations\n", "int")):
+        path.write_text(f"{ask}def start(robots: int): ...\n")
+        assert load_python_launch_file_as_module(str(path)).start.__annotations__ == {"robots": expected}
 
 
 @pytest.mark.parametrize("arguments", [{"robot": "r2"}, ["robot:=r2"], [("a", "b", "c")]])

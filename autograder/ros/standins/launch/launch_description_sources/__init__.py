@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 from standin_notice import guard
@@ -28,12 +30,22 @@ __all__ = [
 ]
 
 
+class _UncachedLoader(SourceFileLoader):
+    """The loader of the real launch, which here reads a file anew each time and leaves no compiled file behind."""
+
+    def get_code(self, fullname: str) -> types.CodeType:
+        code: types.CodeType = self.source_to_code(self.get_data(self.path), self.path)
+        return code
+
+
 def load_python_launch_file_as_module(python_launch_file_path: str) -> types.ModuleType:
-    """Return the launch file as a module; it is read anew each time and leaves no compiled file behind."""
-    path = Path(python_launch_file_path)
-    module = types.ModuleType("python_launch_file")
-    module.__file__ = str(path)
-    exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
+    """Return the launch file as a module. As in the real launch, `sys.modules` does not have it."""
+    loader = _UncachedLoader("python_launch_file", str(python_launch_file_path))
+    spec = spec_from_loader(loader.name, loader)
+    if spec is None:
+        raise RuntimeError("Failed to load module spec!")
+    module = module_from_spec(spec)
+    loader.exec_module(module)
     return module
 
 
