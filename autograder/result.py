@@ -53,6 +53,7 @@ class CheckResult:
     visibility: Visibility
     seconds: float  # wall time of the check
     holds: tuple[str, ...] = ()  # ids of the sentences of the contract that it holds
+    after: tuple[str, ...] = ()  # ids of the checks that explain its failure if they did not pass either
     talk: tuple[Exchange, ...] = ()  # what the nodes were asked, and what they answered
 
     @classmethod
@@ -78,6 +79,7 @@ class CheckResult:
             visibility=check.visibility,
             seconds=round(seconds, 3),
             holds=check.holds,
+            after=check.dependencies,
         )
 
     @classmethod

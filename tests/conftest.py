@@ -106,7 +106,7 @@ MakeResult = Callable[..., Result]
 
 
 def _check(id: str, title: str, points: float, group: str, **more: Any) -> Check:
-    contract: dict[str, Any] = {"visibility": Visibility.HIDDEN, "hints": (), "doc": None, "depends": ()}
+    contract: dict[str, Any] = {"visibility": Visibility.HIDDEN, "hints": (), "doc": None}
     return Check(id=id, title=title, points=points, group=group, **(contract | more))
 
 
@@ -120,7 +120,7 @@ TURNS = _check(
     hints=("Where is 0 rad in a scan?", "Compare the smallest forward range with 1.0."),
     doc="https://docs.ros.org/en/jazzy/p/sensor_msgs/",
 )
-STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", depends=("turns",))
+STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", needs=("turns",))
 LATE = _check("late", "The robot starts in time.", 1, "safety")
 
 

@@ -4,7 +4,7 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 
     check = group("reaction")
 
-    @check(points=2, holds="turns", depends=("starts",), doc=contract.LASER_SCAN)
+    @check(points=2, holds="turns", needs=("starts",), doc=contract.LASER_SCAN)
     @hint("Where is 0 rad in a scan?")
     @hint("Compare the smallest forward range with 1.0.")
     def test_turns_when_blocked(robot: Robot) -> None:
@@ -15,8 +15,10 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
 `check` itself takes the group as an argument, for a module whose checks belong to several. `check_each_row` declares a
 check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
-A check passes, fails (with the fraction of its points that was reached) or is not checked because a check that it
-depends on did not pass. Any other exception is the grader's own failure, never the student's zero.
+A check passes, fails (with the fraction of its points that was reached) or is not checked, because a check that it
+`needs` did not pass: there is no program to run, or no topic to look at. A check `after` another is run in any case and
+judges its own sentence; if both fail, feedback shows it under the other. Any other exception is the grader's own
+failure, never the student's zero.
 """
 
 from __future__ import annotations
@@ -67,8 +69,9 @@ class Check:
         group: the locked grade cell that it counts for.
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
-        depends: ids of checks that must have passed first; they stand earlier in the suite.
+        needs: ids of checks without which this one cannot be run; it is not checked unless all of them passed.
         holds: ids of the sentences of the contract that it holds; see `autograder.checks.contract`.
+        after: ids of checks whose failure is likely to be the cause if this one fails, too; it is run in any case.
     """
 
     id: str
@@ -78,8 +81,14 @@ class Check:
     visibility: Visibility
     hints: tuple[str, ...]
     doc: str | None
-    depends: tuple[str, ...]
+    needs: tuple[str, ...] = ()
     holds: tuple[str, ...] = ()
+    after: tuple[str, ...] = ()
+
+    @property
+    def dependencies(self) -> tuple[str, ...]:
+        """Ids of the checks that it needs or comes after. They stand earlier in the suite."""
+        return self.needs + self.after
 
 
 class CheckFailed(Exception):
@@ -101,7 +110,8 @@ class Declare(Protocol):
         *,
         points: float,
         holds: str | tuple[str, ...] = ...,
-        depends: tuple[str, ...] = ...,
+        needs: tuple[str, ...] = ...,
+        after: tuple[str, ...] = ...,
         doc: str | None = ...,
     ) -> Callable[[F], F]: ...
 
@@ -130,7 +140,8 @@ def check(
     points: float,
     group: str,
     holds: str | tuple[str, ...] = (),
-    depends: tuple[str, ...] = (),
+    needs: tuple[str, ...] = (),
+    after: tuple[str, ...] = (),
     doc: str | None = None,
 ) -> Callable[[F], F]:
     """Declare a pytest function a check; what the arguments are, `Check` says. One sentence needs no tuple.
@@ -152,25 +163,27 @@ def check(
         visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
         hints = getattr(function, "__hints__", ())
         held = (holds,) if isinstance(holds, str) else holds
-        declared = Check(name.removeprefix(PREFIX), title, float(points), group, visibility, hints, doc, depends, held)
+        id = name.removeprefix(PREFIX)
+        declared = Check(id, title, float(points), group, visibility, hints, doc, needs, held, after)
         function.__check__ = declared  # type: ignore[attr-defined]
         return function
 
     return declare
 
 
-def group(name: str, *, depends: tuple[str, ...] = (), doc: str | None = None) -> Declare:
-    """Return `check` for one group, with what its checks depend on and their page unless a check says otherwise."""
-    default_depends, default_doc = depends, doc
+def group(name: str, *, needs: tuple[str, ...] = (), after: tuple[str, ...] = (), doc: str | None = None) -> Declare:
+    """Return `check` for one group, with what its checks need, come after and link to unless a check says otherwise."""
+    default_needs, default_after, default_doc = needs, after, doc
 
     def check_of_group(
         *,
         points: float,
         holds: str | tuple[str, ...] = (),
-        depends: tuple[str, ...] = default_depends,
+        needs: tuple[str, ...] = default_needs,
+        after: tuple[str, ...] = default_after,
         doc: str | None = default_doc,
     ) -> Callable[[F], F]:
-        return check(points=points, group=name, holds=holds, depends=depends, doc=doc)
+        return check(points=points, group=name, holds=holds, needs=needs, after=after, doc=doc)
 
     return check_of_group
 

@@ -8,7 +8,7 @@ The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py
     READS             optional: files and folders of the course, by their paths below its root, that the checks read
                       besides what lies in their own chapter's folder
     BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see
-                      it by the fixture `builds`, and those that need a built package depend on one that asks for it.
+                      it by the fixture `builds`, and those of a built package name one that asks for it in `needs`.
     OWN_TESTS         optional: the checks that lose points by what the submission's own tests say of its other files
 """
 
@@ -81,11 +81,11 @@ class Suite:
         return points
 
     def with_dependencies(self, *wanted: str) -> tuple[str, ...]:
-        """Return the ids of checks and of all that they depend on, in the order of the suite."""
+        """Return the ids of checks and of all that they need, in the order of the suite."""
         needed = set(wanted)
-        for check in reversed(self.checks):  # what a check depends on stands before it
+        for check in reversed(self.checks):  # a check stands after those that it needs
             if check.id in needed:
-                needed.update(check.depends)
+                needed.update(check.needs)
         return tuple(check.id for check in self.checks if check.id in needed)
 
 
@@ -154,7 +154,7 @@ def _require_order(assignment: str, checks: list[Check]) -> None:
     for check in checks:
         if check.id in seen:
             raise GraderError(f"{assignment}: two checks are called {check.id!r}")
-        unmet = set(check.depends) - seen
+        unmet = set(check.dependencies) - seen
         if unmet:
-            raise GraderError(f"{assignment}: {check.id!r} depends on {sorted(unmet)}, which must stand before it")
+            raise GraderError(f"{assignment}: {check.id!r} names {sorted(unmet)}, which must stand before it")
         seen.add(check.id)

@@ -71,7 +71,7 @@ def _one(path: Path) -> Stored:
 
 
 def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: Tier, recordings: bool) -> Stored:
-    """Grade a check, and what it depends on, once more with the seed of its result."""
+    """Grade a check, and those that it needs, once more with the seed of its result."""
     needed = suites.hidden(result.assignment).with_dependencies(check)
     graded = grade_submission(
         submission,

@@ -107,7 +107,7 @@ class GradingPlugin:
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)
         self._workspace.exchanges.take()  # those before this check are not its own
-        for needed in check.depends if check else ():
+        for needed in check.needs if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'first "{self.results[needed].title}" has to pass')
 

@@ -63,16 +63,16 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
 def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
     """Return few mutants that fail every check, each with the checks that it stands for and those that these need.
 
-    A mutant that fails the check itself is preferred to one that only fails a check on which this one depends.
+    A mutant that fails the check alone is preferred to one that also fails a check that this one needs or comes after.
     """
     suite = suites.hidden(assignment)
-    depends = {check.id: frozenset(check.depends) for check in suite.checks}
+    dependencies = {check.id: frozenset(check.dependencies) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
-    direct = {m.id: {name for name in m.loses if not depends[name] & m.loses} for m in candidates}
+    direct = {m.id: {name for name in m.loses if not dependencies[name] & m.loses} for m in candidates}
     lost = {m.id: set(m.loses) for m in candidates}
     quick = [m for m in candidates if not m.slow]
     chosen: dict[str, set[str]] = {}
-    uncovered = set(depends)
+    uncovered = set(dependencies)
     for covers, among in ((direct, quick), (lost, quick), (lost, candidates)):
         while best := max(among, key=lambda m: len(covers[m.id] & uncovered), default=None):
             if not covers[best.id] & uncovered:

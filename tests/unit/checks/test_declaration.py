@@ -14,7 +14,7 @@ from autograder.exceptions import GraderError
 
 
 def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
-    @check(points=2, group="reaction", doc="https://docs.ros.org", depends=("starts",))
+    @check(points=2, group="reaction", doc="https://docs.ros.org", needs=("starts",))
     @hint("one")
     @hint("two")
     def test_turns() -> None:
@@ -28,7 +28,7 @@ def test_a_declared_check_takes_its_id_and_title_from_the_function() -> None:
     assert found is not None
     assert (found.id, found.title, found.points) == ("turns", "The robot turns when it must.", 2.0)
     assert (found.group, found.hints, found.doc) == ("reaction", ("one", "two"), "https://docs.ros.org")
-    assert (found.depends, found.visibility) == (("starts",), Visibility.HIDDEN)
+    assert (found.needs, found.visibility) == (("starts",), Visibility.HIDDEN)
 
 
 def test_a_function_that_declares_nothing_is_no_check() -> None:
@@ -36,21 +36,22 @@ def test_a_function_that_declares_nothing_is_no_check() -> None:
 
 
 def test_checks_of_a_group_inherit_its_page_and_dependencies_unless_they_declare_their_own() -> None:
-    check = group("reaction", doc="https://docs.ros.org", depends=("starts",))
+    check = group("reaction", doc="https://docs.ros.org", needs=("starts",), after=("sees",))
 
     @check(points=1)
     def test_turns() -> None:
         """The robot turns."""
 
-    @check(points=1, doc=None, depends=())
+    @check(points=1, doc=None, needs=(), after=("turns",))
     def test_stops() -> None:
         """The robot stops."""
 
     turns, stops = check_of(test_turns), check_of(test_stops)
     assert turns is not None
     assert stops is not None
-    assert (turns.group, turns.doc, turns.depends) == ("reaction", "https://docs.ros.org", ("starts",))
-    assert (stops.group, stops.doc, stops.depends) == ("reaction", None, ())
+    assert (turns.group, turns.doc, turns.needs) == ("reaction", "https://docs.ros.org", ("starts",))
+    assert (turns.after, turns.dependencies, stops.dependencies) == (("sees",), ("starts", "sees"), ("turns",))
+    assert (stops.group, stops.doc, stops.needs) == ("reaction", None, ())
 
 
 def test_hints_above_the_declaration_are_an_error() -> None:

@@ -39,9 +39,9 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Home:
     return write
 
 
-def _check(name: str, depends: str = "()", points: float = 1, group: str = "g") -> str:
+def _check(name: str, needs: str = "()", points: float = 1, group: str = "g", after: str = "()") -> str:
     return f"""
-@check(points={points}, group="{group}", depends={depends})
+@check(points={points}, group="{group}", needs={needs}, after={after})
 def test_{name}():
     '''It is {name}.'''
 """
@@ -56,6 +56,12 @@ def test_checks_have_the_order_of_modules_and_of_lines(home: Home) -> None:
     assert suites.assignments_with(name, KIND) == ["01_tiny"]
 
 
+def test_a_check_is_graded_with_the_checks_that_it_needs_and_without_those_that_it_comes_after(home: Home) -> None:
+    first = _check("a") + _check("b", '("a",)') + _check("c")
+    read = suites.read(home(first=first, second=_check("d", '("b",)', after='("c",)')), "01_tiny", KIND)
+    assert read.with_dependencies("d") == ("a", "b", "d")
+
+
 def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: Home) -> None:
     with pytest.raises(UsageError, match="no hidden checks for '09_none'; there are for: 01_tiny"):
         suites.read(home(modules="()"), "09_none", KIND)
@@ -65,9 +71,10 @@ def test_an_unknown_assignment_is_a_usage_error_that_names_the_known_ones(home: 
     ("first", "second", "reason"),
     [
         (_check("a"), _check("a"), "two checks are called 'a'"),
-        (_check("a", '("b",)'), _check("b"), r"'a' depends on \['b'\], which must stand before it"),
-        (_check("a", '("a",)'), _check("b"), r"'a' depends on \['a'\]"),
-        (_check("a"), _check("b", '("none",)'), r"depends on \['none'\]"),
+        (_check("a", '("b",)'), _check("b"), r"'a' names \['b'\], which must stand before it"),
+        (_check("a", '("a",)'), _check("b"), r"'a' names \['a'\]"),
+        (_check("a"), _check("b", '("none",)'), r"'b' names \['none'\]"),
+        (_check("a", after='("b",)'), _check("b"), r"'a' names \['b'\], which must stand before it"),
         (_check("a", points=0), _check("b"), "points must be above 0"),
     ],
 )

@@ -101,19 +101,19 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
     assert plugin.diagnosis is OK
 
 
-def test_checks_that_depend_on_a_failed_check_directly_or_not_are_not_run(grade: Grade) -> None:
+def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
         def test_first():
             '''The first thing.'''
             raise CheckFailed("no")
 
-        @check(points=1, group="g", depends=("first",))
+        @check(points=1, group="g", needs=("first",))
         def test_second():
             '''The second thing.'''
             raise GraderError("never reached")
 
-        @check(points=1, group="g", depends=("second",))
+        @check(points=1, group="g", needs=("second",))
         def test_third():
             '''The third thing.'''
 
@@ -125,6 +125,31 @@ def test_checks_that_depend_on_a_failed_check_directly_or_not_are_not_run(grade:
     assert outcomes == [Outcome.FAILED, Outcome.NOT_CHECKED, Outcome.NOT_CHECKED, Outcome.PASSED]
     assert plugin.results["second"].message == 'not checked: first "The first thing." has to pass'
     assert plugin.failures == []
+
+
+def test_a_check_after_one_that_failed_is_run_and_judged_by_itself(grade: Grade) -> None:
+    plugin = grade("""
+        @check(points=1, group="g")
+        def test_first():
+            '''The first thing.'''
+            raise CheckFailed("no")
+
+        @check(points=2, group="g", after=("first",))
+        def test_second():
+            '''The second thing.'''
+
+        @check(points=3, group="g", needs=("second",), after=("first",))
+        def test_third():
+            '''The third thing.'''
+            raise CheckFailed("not this one either")
+        """)
+    assert _outcomes(plugin) == {
+        "first": (Outcome.FAILED, 0.0),
+        "second": (Outcome.PASSED, 2.0),
+        "third": (Outcome.FAILED, 0.0),
+    }
+    assert [result.after for result in plugin.results.values()] == [(), ("first",), ("second", "first")]
+    assert plugin.results["third"].message == "not this one either"
 
 
 def test_a_fault_of_the_student_s_in_a_fixture_fails_the_check_and_is_the_diagnosis(grade: Grade) -> None:

@@ -26,7 +26,7 @@ def test_side(workspace: Workspace) -> None:
     _expect(workspace, SIDE - 0.1, SPEED, 0.0)
 
 
-@check(points=1, holds="corner", depends=("side",))
+@check(points=1, holds="corner", needs=("side",))
 @hint("After SIDE_SECONDS it turns: return 0.0, TURN_RATE", "A positive rate turns to the left.")
 def test_corner(workspace: Workspace) -> None:
     """After 4 s it turns left on the spot, 90 degrees in 2 s."""
@@ -34,7 +34,7 @@ def test_corner(workspace: Workspace) -> None:
     _expect(workspace, SIDE + TURN - 0.1, 0.0, RATE)
 
 
-@check(points=1, holds="rounds", depends=("corner",), doc=DOC)
+@check(points=1, holds="rounds", needs=("corner",), doc=DOC)
 @hint("seconds % (SIDE_SECONDS + TURN_SECONDS) is how far the present round is.", "7.5 % 6.0 is 1.5.")
 def test_goes_on(workspace: Workspace) -> None:
     """After 6 s the next side begins, and so on for ever."""
@@ -42,7 +42,7 @@ def test_goes_on(workspace: Workspace) -> None:
     _expect(workspace, 7.0 * (SIDE + TURN) + SIDE + 1.0, 0.0, RATE)
 
 
-@check(points=1, holds=("side", "corner"), depends=("goes_on",))
+@check(points=1, holds=("side", "corner"), needs=("goes_on",))
 @hint("The node calls command_at; leave the class as it is.", "Save the file by running its cell.")
 def test_robot(workspace: Workspace) -> None:
     """The robot itself does so, ten commands a second."""

@@ -34,7 +34,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds=("files", "empty-files"), depends=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds=("files", "empty-files"), needs=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("ros2 finds a package by an empty file of its name in share/ament_index/resource_index/packages.")
 @hint("data_files: that folder with ['resource/' + package_name], 'share/' + package_name with ['package.xml'].")
 def test_marker(workspace: Workspace, installed_dance: Installed) -> None:
@@ -47,7 +47,7 @@ def test_marker(workspace: Workspace, installed_dance: Installed) -> None:
     expect_empty(source_of(workspace, contract.SQUARE_DANCE), contract.EMPTY_FILES)
 
 
-@check(points=1, holds="program", depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="program", needs=("builds",), doc=contract.DEVELOP)
 @hint("console_scripts in setup.py says which programs there are, setup.cfg says where they go.")
 @hint("dancer = square_dance.nodes.dancer:main, and install_scripts=$base/lib/square_dance under [install].")
 def test_executable(workspace: Workspace, installed_dance: Installed) -> None:
@@ -56,7 +56,7 @@ def test_executable(workspace: Workspace, installed_dance: Installed) -> None:
     expect_develop(source_of(workspace, contract.SQUARE_DANCE), contract.SQUARE_DANCE)
 
 
-@check(points=2, holds=("modules", "empty-files"), depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=2, holds=("modules", "empty-files"), needs=("builds",), doc=contract.SUBPACKAGES)
 @hint("packages=[package_name] means one folder, not those in it.")
 @hint("find_packages takes a folder for a package when there is an __init__.py in it.")
 def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
@@ -64,21 +64,21 @@ def test_subpackages(workspace: Workspace, installed_dance: Installed) -> None:
     expect_modules(installed_dance, source_of(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Launch files are data to setuptools: data_files.", "glob('launch/*.launch.py') gives the list of files.")
 def test_launch_file(workspace: Workspace, installed_dance: Installed) -> None:
     """Its launch file is installed in share/square_dance/launch."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_LAUNCH)
 
 
-@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Configuration is data to setuptools: data_files.", "glob('config/*.yaml') gives the list of files.")
 def test_config(workspace: Workspace, installed_dance: Installed) -> None:
     """Its configuration is installed in share/square_dance/config."""
     expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), contract.DANCE_CONFIG)
 
 
-@check(points=1, holds="same-facts", depends=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds="same-facts", needs=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("package.xml and setup.py each say the version, the licence and the maintainer.")
 @hint("license='Apache-2.0' in setup.py is the licence in the form of package.xml.")
 def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
@@ -86,7 +86,7 @@ def test_same_facts(workspace: Workspace, installed_dance: Installed) -> None:
     expect_same_facts(installed_dance, expect_manifest(workspace, contract.SQUARE_DANCE))
 
 
-@check(points=1, holds="pytest", depends=("builds",), doc=contract.COLCON)
+@check(points=1, holds="pytest", needs=("builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
@@ -94,7 +94,7 @@ def test_names_pytest(workspace: Workspace, installed_dance: Installed) -> None:
     expect_pytest(workspace, installed_dance)
 
 
-@check(points=2, holds=("modules", "files"), depends=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
+@check(points=2, holds=("modules", "files"), needs=("subpackages", "launch_file", "config"), doc=contract.SUBPACKAGES)
 @hint("A list of names written by hand is wrong on the day when somebody adds a file.")
 @hint("find_packages(...) and glob(...) look at what is there when the package is built.")
 def test_grows(extended: ExtendedPackage) -> None:
@@ -103,7 +103,7 @@ def test_grows(extended: ExtendedPackage) -> None:
     expect(not missing, f"The new {', '.join(missing)} stayed behind.", fraction=1.0 - len(missing) / 4)
 
 
-@check(points=1, holds=("tests-stay", "modules", "program"), depends=("builds",), doc=contract.SUBPACKAGES)
+@check(points=1, holds=("tests-stay", "modules", "program"), needs=("builds",), doc=contract.SUBPACKAGES)
 @hint("find_packages() takes test/ for a package of yours when there is an __init__.py in it.", "exclude=['test']")
 @hint("A setup.py copied from another package still names its programs: remove the lines of those that are not yours.")
 def test_tests_stay(extended: ExtendedPackage) -> None:
@@ -119,7 +119,7 @@ def test_tests_stay(extended: ExtendedPackage) -> None:
             expect(module in modules, said, fraction=0.5)
 
 
-@check(points=1, holds="given", depends=("builds",), doc=contract.COLCON)
+@check(points=1, holds="given", needs=("builds",), doc=contract.COLCON)
 @hint(*HINTS)
 def test_given_tests(workspace: Workspace) -> None:
     """The tests given with square_dance, the linters' too, notice a fault that is put into a copy of the package."""

@@ -29,14 +29,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", depends=("manifest",), doc=contract.REP_149)
+@check(points=1, holds="licence", needs=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="description", depends=("manifest",), doc=contract.CREATE)
+@check(points=1, holds="description", needs=("manifest",), doc=contract.CREATE)
 @hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
@@ -44,7 +44,7 @@ def test_description(workspace: Workspace) -> None:
     expect(len(said.split()) >= 3 and PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
-@check(points=2, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
+@check(points=2, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
@@ -52,7 +52,7 @@ def test_run_dependencies(workspace: Workspace) -> None:
     expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
@@ -60,7 +60,7 @@ def test_launch_dependencies(workspace: Workspace) -> None:
     expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""

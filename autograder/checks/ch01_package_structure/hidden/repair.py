@@ -35,7 +35,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=1, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("No executable found: look for the program in install/wall_alarm, and see where it is.")
 @hint("setup.cfg: install_scripts=$base/lib/wall_alarm under [install].")
 def test_alarm_executable(installed_alarm: Installed) -> None:
@@ -43,7 +43,7 @@ def test_alarm_executable(installed_alarm: Installed) -> None:
     expect_executable(installed_alarm, contract.ALARM)
 
 
-@check(points=2, holds="alarm-runs", depends=("alarm_builds",), doc=contract.SUBPACKAGES)
+@check(points=2, holds="alarm-runs", needs=("alarm_builds",), doc=contract.SUBPACKAGES)
 @hint("ModuleNotFoundError: No module named 'wall_alarm.nodes': was it installed?")
 @hint("packages=find_packages(exclude=['test']) in setup.py.")
 def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -51,7 +51,7 @@ def test_alarm_subpackages(workspace: Workspace, installed_alarm: Installed) -> 
     expect_modules(installed_alarm, source_of(workspace, contract.WALL_ALARM))
 
 
-@check(points=1, holds="alarm-config", depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-config", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Look into install/wall_alarm/share/wall_alarm.", "The pattern says yml, the file is called yaml.")
 def test_alarm_config(workspace: Workspace, installed_alarm: Installed) -> None:
     """Its configuration is installed."""
@@ -70,7 +70,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
     expect("numpy" not in manifest.needs(), said, fraction=0.75)
 
 
-@check(points=1, holds="alarm-licence", depends=("alarm_builds",), doc=contract.REP_149)
+@check(points=1, holds="alarm-licence", needs=("alarm_builds",), doc=contract.REP_149)
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
 def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None:
     """Both files name the licence Apache-2.0."""
@@ -87,7 +87,7 @@ def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None
     expect(not others, told, fraction=0.5)
 
 
-@check(points=1, holds="alarm-pytest", depends=("alarm_builds",), doc=contract.COLCON)
+@check(points=1, holds="alarm-pytest", needs=("alarm_builds",), doc=contract.COLCON)
 @hint("colcon test runs pytest only for a package that says that it uses it.")
 @hint("extras_require={'test': ['pytest']} says so to every setuptools.")
 def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -98,7 +98,7 @@ def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) ->
 @check(
     points=2,
     holds=("alarm-runs", "alarm-given"),
-    depends=("alarm_executable", "alarm_subpackages"),
+    needs=("alarm_executable", "alarm_subpackages"),
     doc=contract.CREATE,
 )
 @hint("ros2 run wall_alarm alarm in a new shell, after source install/setup.bash: what does it print?")
@@ -110,7 +110,7 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
         robots.expect_alarm(harness, round(draw.uniform(0.52, 0.54), 3), False)
 
 
-@check(points=1, holds=("alarm-config", "alarm-given"), depends=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
+@check(points=1, holds=("alarm-config", "alarm-given"), needs=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
 @hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
 def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""
@@ -120,7 +120,7 @@ def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw
         robots.expect_alarm(harness, round(draw.uniform(0.84, 0.98), 2), False)
 
 
-@check(points=1, holds="alarm-given", depends=("alarm_builds",), doc=contract.COLCON)
+@check(points=1, holds="alarm-given", needs=("alarm_builds",), doc=contract.COLCON)
 @hint(*HINTS)
 def test_alarm_given_tests(workspace: Workspace) -> None:
     """The tests given with wall_alarm, the linters' too, notice a fault that is put into a copy of the package."""

@@ -34,14 +34,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", depends=("manifest",), doc=contract.REP_149)
+@check(points=1, holds="licence", needs=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="dependencies", depends=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
 @hint("Read the import lines of each file in square_dance: all that is neither Python's own nor the package's.")
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
@@ -59,7 +59,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds=("program", "given"), depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds=("program", "given"), needs=("builds",), doc=contract.DEVELOP)
 @hint("Was a module left behind, or the program not found? packages= in setup.py says which, or the entry points.")
 @hint("find_packages finds folders that have an __init__.py; setup.cfg says where programs go.")
 def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
@@ -70,7 +70,7 @@ def test_dancer(workspace: Workspace, installed_dance: Installed) -> None:
         robots.expect_dance(harness, 1.0)
 
 
-@check(points=1, holds="files", depends=("builds",), doc=contract.DEVELOP)
+@check(points=1, holds="files", needs=("builds",), doc=contract.DEVELOP)
 @hint("Each entry of data_files is a pair: a folder below the install prefix, and a list of files.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')); config goes the same way.")
 def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
@@ -79,7 +79,7 @@ def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
-@check(points=1, holds=("same-facts", "pytest"), depends=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds=("same-facts", "pytest"), needs=("builds", "manifest"), doc=contract.DEVELOP)
 @hint("Compare version, license and maintainer_email in setup.py with package.xml, letter by letter.")
 @hint("extras_require={'test': ['pytest']} tells colcon that pytest runs the tests.")
 def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
@@ -88,7 +88,7 @@ def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
     expect_pytest(workspace, installed_dance)
 
 
-@check(points=1, holds=("modules", "files"), depends=("dancer", "shared"), doc=contract.SUBPACKAGES)
+@check(points=1, holds=("modules", "files"), needs=("dancer", "shared"), doc=contract.SUBPACKAGES)
 @hint("A list of names that you wrote does not hold a file that is added later.")
 @hint("find_packages(exclude=['test']), glob('launch/*.launch.py') and glob('config/*.yaml').")
 def test_grows(workspace: Workspace) -> None:
@@ -105,7 +105,7 @@ def test_alarm_builds(builds: Mapping[str, Diagnosis]) -> None:
     expect_built(builds, contract.WALL_ALARM)
 
 
-@check(points=1, holds="alarm-runs", depends=("alarm_builds",), doc=contract.DEVELOP)
+@check(points=1, holds="alarm-runs", needs=("alarm_builds",), doc=contract.DEVELOP)
 @hint("Mend one error, then build again: what does ros2 run wall_alarm alarm say now?")
 @hint("No executable found: setup.cfg. No module named ...: packages= in setup.py.")
 def test_alarm_runs(workspace: Workspace, installed_alarm: Installed) -> None:
@@ -130,7 +130,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("alarm-licence", "alarm-config", "alarm-pytest"),
-    depends=("alarm_builds", "alarm_dependencies"),
+    needs=("alarm_builds", "alarm_dependencies"),
     doc=contract.DEVELOP,
 )
 @hint("<license> in package.xml and license= in setup.py both say Apache-2.0.")

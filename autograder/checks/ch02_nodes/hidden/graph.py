@@ -23,7 +23,7 @@ def test_starts(robot: Robot) -> None:
         raise StudentError(diagnose_ending(robot.processes[0]))
 
 
-@check(points=1, holds="node-name", depends=("starts",))
+@check(points=1, holds="node-name", needs=("starts",))
 @hint("The name is the argument of super().__init__.")
 def test_node_name(robot: Robot) -> None:
     """The node is called robot_controller."""
@@ -31,14 +31,14 @@ def test_node_name(robot: Robot) -> None:
     expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
 
 
-@check(points=1, holds="scan", depends=("starts",))
+@check(points=1, holds="scan", needs=("starts",))
 @hint("create_subscription(LaserScan, 'scan', self.scan_callback, ...) in __init__.")
 def test_subscribes_scan(robot: Robot) -> None:
     """It subscribes to scan as sensor_msgs/msg/LaserScan."""
     _expect_endpoint(robot, "subscription", "/scan", "sensor_msgs/msg/LaserScan")
 
 
-@check(points=2, holds=("scan", "cmd-vel", "status"), depends=("subscribes_scan",), doc=contract.QOS)
+@check(points=2, holds=("scan", "cmd-vel", "status"), needs=("subscribes_scan",), doc=contract.QOS)
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
@@ -49,21 +49,21 @@ def test_scan_qos(robot: Robot) -> None:
     expect(not differs, differs, fraction=0.5)
 
 
-@check(points=1, holds=("cmd-vel", "twist"), depends=("starts",))
+@check(points=1, holds=("cmd-vel", "twist"), needs=("starts",))
 @hint("create_publisher(Twist, 'cmd_vel', 10) in __init__.")
 def test_publishes_cmd_vel(robot: Robot) -> None:
     """It publishes cmd_vel as geometry_msgs/msg/Twist."""
     _expect_endpoint(robot, "publisher", "/cmd_vel", "geometry_msgs/msg/Twist")
 
 
-@check(points=1, holds="status", depends=("starts",))
+@check(points=1, holds="status", needs=("starts",))
 @hint("create_subscription(String, 'status', self.status_callback, 10) in __init__.")
 def test_subscribes_status(robot: Robot) -> None:
     """It subscribes to status as std_msgs/msg/String."""
     _expect_endpoint(robot, "subscription", "/status", "std_msgs/msg/String")
 
 
-@check(points=1, holds="relative", depends=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"))
+@check(points=1, holds="relative", needs=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"))
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:

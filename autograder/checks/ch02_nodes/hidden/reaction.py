@@ -18,7 +18,7 @@ JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it fo
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
 
-@check(points=2, holds=("clear", "in-range"), depends=TALKS)
+@check(points=2, holds=("clear", "in-range"), needs=TALKS)
 @hint(contract.RULE_FORWARD, "Look at the last branch of control_loop.")
 def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     """It drives straight on at 0.3 m/s while the nearest thing in front is far away."""
@@ -26,7 +26,7 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
 
 
-@check(points=2, holds=("near", "in-range"), depends=TALKS)
+@check(points=2, holds=("near", "in-range"), needs=TALKS)
 @hint(contract.RULE_TURN, "Look at the middle branch of control_loop.")
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
@@ -35,7 +35,7 @@ def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead, at {bearing:.0f}°")
 
 
-@check(points=2, holds=("near", "clear"), depends=("forward_when_clear", "turns_when_blocked"))
+@check(points=2, holds=("near", "clear"), needs=("forward_when_clear", "turns_when_blocked"))
 @hint("The limit is 1.0 m: nearer blocks, farther does not.", "Compare metres with metres, and with < rather than <=.")
 def test_threshold(robot: Robot, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
@@ -58,7 +58,7 @@ def test_threshold(robot: Robot, draw: random.Random) -> None:
             expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 
 
-@check(points=3, holds=("sector", "minus-inf"), depends=("forward_when_clear",), doc=contract.LASER_SCAN)
+@check(points=3, holds=("sector", "minus-inf"), needs=("forward_when_clear",), doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
 def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
@@ -79,7 +79,7 @@ def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
 @check(
     points=2,
     holds=("bearings", "sector"),
-    depends=("forward_when_clear", "turns_when_blocked"),
+    needs=("forward_when_clear", "turns_when_blocked"),
     doc=contract.LASER_SCAN,
 )
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")

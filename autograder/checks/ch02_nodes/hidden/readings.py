@@ -16,7 +16,7 @@ OTHER_LIMITS = ((0.5, RANGE_MAX, 0.5, 0.25), (RANGE_MIN, 0.75, 0.75, 0.875))
 REACTS = ("forward_when_clear", "turns_when_blocked")
 
 
-@check(points=2, holds=("nan", "readings"), depends=REACTS, doc=contract.REP_117)
+@check(points=2, holds=("nan", "readings"), needs=REACTS, doc=contract.REP_117)
 @hint("min([nan, 0.5]) is nan, and nan < 1.0 is False.", "Leave nan out before you take the minimum: math.isnan.")
 def test_nan(robot: Robot, draw: random.Random) -> None:
     """A nan among the readings hides no obstacle and is none itself."""
@@ -34,14 +34,14 @@ def test_nan(robot: Robot, draw: random.Random) -> None:
         expect_reaction(robot.see(lone), said, fraction=0.75)
 
 
-@check(points=1, holds=("plus-inf", "readings"), depends=REACTS, doc=contract.REP_117)
+@check(points=1, holds=("plus-inf", "readings"), needs=REACTS, doc=contract.REP_117)
 @hint("+inf says: nothing within range_max.")
 def test_plus_inf(robot: Robot) -> None:
     """+inf means that nothing is there, and the way is clear."""
     expect_forward(robot.see(scan(fill=math.inf)), "With +inf from every beam")
 
 
-@check(points=2, holds=("minus-inf", "readings"), depends=REACTS, doc=contract.REP_117)
+@check(points=2, holds=("minus-inf", "readings"), needs=REACTS, doc=contract.REP_117)
 @hint("-inf says: something is nearer than range_min.", "Do not throw -inf away together with other odd numbers.")
 def test_minus_inf(robot: Robot, draw: random.Random) -> None:
     """-inf means that something is too near to measure, and the way is blocked."""
@@ -49,7 +49,7 @@ def test_minus_inf(robot: Robot, draw: random.Random) -> None:
     expect_turn(robot.see(scan(Part(bearing, bearing + 5.0, -math.inf))), f"With -inf at {bearing:.0f}°")
 
 
-@check(points=2, holds=("phantom", "readings"), depends=REACTS, doc=contract.LASER_SCAN)
+@check(points=2, holds=("phantom", "readings"), needs=REACTS, doc=contract.LASER_SCAN)
 @hint("Many lidars send 0.0 where they measured nothing.")
 @hint("A finite reading counts only from range_min to range_max of the message.")
 def test_phantoms(robot: Robot, draw: random.Random) -> None:
@@ -71,7 +71,7 @@ def test_phantoms(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(far), f"With 5 m of free space all around, from a lidar of {RANGE_MIN:g} to 10 m")
 
 
-@check(points=2, holds=("blind", "phantom", "stale"), depends=REACTS)
+@check(points=2, holds=("blind", "phantom", "stale"), needs=REACTS)
 @hint(contract.RULE_STOP, 'What does your minimum give when no reading is left? It must not mean "clear".')
 def test_blind(robot: Robot) -> None:
     """It stands still when no beam in front has a usable reading."""

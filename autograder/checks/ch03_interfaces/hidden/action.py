@@ -40,7 +40,7 @@ EXECUTOR = (
 )
 
 
-@check(points=1, holds=("drive-action", "drive-node"), depends=("drive_distance", "generated"), doc=contract.ACTION)
+@check(points=1, holds=("drive-action", "drive-node"), needs=("drive_distance", "generated"), doc=contract.ACTION)
 @hint("Start it with ros2 run my_robot_package distance_driver and read its last lines.")
 @hint("ActionServer(self, DriveDistance, 'drive_distance', execute_callback=..., ...) in __init__.")
 def test_drive_serves(driver: Driver) -> None:
@@ -59,7 +59,7 @@ def test_drive_serves(driver: Driver) -> None:
     expect(there[ACTION] == [wanted], f"{ACTION} has the type {', '.join(there[ACTION])}, it should be {wanted}.")
 
 
-@check(points=1, holds=("no-odometry", "drive-cmd-vel"), depends=("drive_serves",), doc=contract.ACTION)
+@check(points=1, holds=("no-odometry", "drive-cmd-vel"), needs=("drive_serves",), doc=contract.ACTION)
 @hint("Start with self.position = None, and reject while it is None.")
 @hint("Nothing but a goal that is driven publishes on cmd_vel, not even a stop.")
 def test_drive_needs_odometry(driver: Driver) -> None:
@@ -76,7 +76,7 @@ def test_drive_needs_odometry(driver: Driver) -> None:
     expect(count == 0, said, fraction=0.5)
 
 
-@check(points=2, holds=("drives", "drive-cmd-vel"), depends=("drive_serves",), doc=contract.GROUPS)
+@check(points=2, holds=("drives", "drive-cmd-vel"), needs=("drive_serves",), doc=contract.GROUPS)
 @hint(*EXECUTOR)
 def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     """An accepted goal moves the robot straight on, at the goal's speed, ten times a second."""
@@ -93,7 +93,7 @@ def test_drive_moves(placed_driver: Driver, draw: random.Random) -> None:
     expect(rate <= 20.0, f"{rate:.0f} commands a second came, instead of 10.", fraction=0.5)
 
 
-@check(points=2, holds=("arrives", "stop", "odom", "overshoot", "drives"), depends=MOVES, doc=contract.ACTION)
+@check(points=2, holds=("arrives", "stop", "odom", "overshoot", "drives"), needs=MOVES, doc=contract.ACTION)
 @hint(*EXECUTOR)
 def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
     """The goal succeeds once the robot has gone the distance, in whichever direction it looks, and the robot stops."""
@@ -114,7 +114,7 @@ def test_drive_succeeds(placed_driver: Driver, draw: random.Random) -> None:
         placed_driver.place(placed_driver.x, placed_driver.y, placed_driver.heading + math.pi / 2.0)
 
 
-@check(points=2, holds=("driven", "arrives", "drive-cmd-vel", "odom"), depends=("drive_succeeds",), doc=contract.ACTION)
+@check(points=2, holds=("driven", "arrives", "drive-cmd-vel", "odom"), needs=("drive_succeeds",), doc=contract.ACTION)
 @hint("DriveDistance.Result(driven=driven, reason=''), where driven is by the odometry.")
 @hint("driven is a distance, from the start to the newest position; it is not the sum of steps.")
 @hint("self.create_publisher(Twist, 'cmd_vel', 10)")
@@ -159,7 +159,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         expect(min(soon) <= top - PUSHED / 2, said, fraction=0.75)
 
 
-@check(points=2, holds=("drives", "driven"), depends=MOVES, doc=contract.ACTION)
+@check(points=2, holds=("drives", "driven"), needs=MOVES, doc=contract.ACTION)
 @hint("goal_handle.publish_feedback(DriveDistance.Feedback(driven=..., remaining=...)) each time around the loop.")
 def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     """Ten times a second come a command and feedback: driven grows, and remaining is what is left."""
@@ -188,7 +188,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     expect(len(still) >= count / 2, said, fraction=0.5)
 
 
-@check(points=2, holds="rejects", depends=("drive_serves",), doc=contract.ACTION)
+@check(points=2, holds="rejects", needs=("drive_serves",), doc=contract.ACTION)
 @hint("goal_callback=self.accept returns GoalResponse.ACCEPT or GoalResponse.REJECT.")
 @hint("0.0 < goal.distance <= MAX_DISTANCE is false for nan, too.")
 def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
@@ -214,7 +214,7 @@ def test_drive_rejects(placed_driver: Driver, draw: random.Random) -> None:
     expect(not accepted, f"Accepted was a goal of {'; '.join(accepted[:3])}.", fraction=share / 2)
 
 
-@check(points=1, holds=("rejects", "drives", "no-odometry"), depends=MOVES, doc=contract.ACTION)
+@check(points=1, holds=("rejects", "drives", "no-odometry"), needs=MOVES, doc=contract.ACTION)
 @hint("At most means <=: 5.0 m and 0.5 m/s can be driven.", "speed has a default in the goal; do not ask for more.")
 def test_drive_limits(placed_driver: Driver) -> None:
     """The largest distance, the largest speed and the default speed can be driven."""

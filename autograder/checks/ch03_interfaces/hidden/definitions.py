@@ -37,7 +37,7 @@ def test_readable(workspace: Workspace) -> None:
         "status-charging",
         "status-joints",
     ),
-    depends=READABLE,
+    needs=READABLE,
     doc=contract.DEFINE,
 )
 @hint(*TABLES)
@@ -57,7 +57,7 @@ def test_robot_status(workspace: Workspace) -> None:
         "trip-at-end",
         "trip-reason-field",
     ),
-    depends=READABLE,
+    needs=READABLE,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLES)
@@ -77,7 +77,7 @@ def test_check_trip(workspace: Workspace) -> None:
         "result-reason",
         "feedback-fields",
     ),
-    depends=READABLE,
+    needs=READABLE,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLES)
@@ -87,7 +87,7 @@ def test_drive_distance(workspace: Workspace) -> None:
 
 
 @check(
-    points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), depends=READABLE, doc=contract.LANGUAGE
+    points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), needs=READABLE, doc=contract.LANGUAGE
 )
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
@@ -98,7 +98,7 @@ def test_constants(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
-    depends=READABLE,
+    needs=READABLE,
     doc=contract.LANGUAGE,
 )
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
@@ -110,7 +110,7 @@ def test_defaults(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
-    depends=READABLE,
+    needs=READABLE,
     doc=contract.LANGUAGE,
 )
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")

@@ -33,7 +33,7 @@ def test_manifest(workspace: Workspace) -> None:
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
-@check(points=2, holds="interfaces-manifest", depends=("readable",))
+@check(points=2, holds="interfaces-manifest", needs=("readable",))
 @hint("Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.")
 @hint("Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
@@ -42,7 +42,7 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
         raise StudentError(builds[INTERFACES])
 
 
-@check(points=2, holds="names-and-order", depends=("builds",))
+@check(points=2, holds="names-and-order", needs=("builds",))
 @hint("Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.")
 @hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
@@ -62,7 +62,7 @@ def test_generated(workspace: Workspace) -> None:
         raise CheckFailed(f"There is no class for {', '.join(absent)}: {why}.", fraction=fraction)
 
 
-@check(points=1, holds="interfaces-manifest", depends=("builds",))
+@check(points=1, holds="interfaces-manifest", needs=("builds",))
 @hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
 def test_indexed(workspace: Workspace) -> None:
     """The ament index knows the package, so that ros2 and other packages find it."""

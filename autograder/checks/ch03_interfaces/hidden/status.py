@@ -24,7 +24,7 @@ SOME_SECONDS = 5.0  # until a status has come, even where its period is wrong
 SILENCE = 6.2  # s, so that a status comes more than 5 s after the sensors
 
 
-@check(points=1, holds="status-node", depends=("robot_status", "check_trip", "generated"), doc=contract.DEFINE)
+@check(points=1, holds="status-node", needs=("robot_status", "check_trip", "generated"), doc=contract.DEFINE)
 @hint("Start it with ros2 run my_robot_package status_publisher and read its last lines.")
 @hint("setup.py is given: it names my_robot_package.nodes.status_publisher:main.")
 def test_status_starts(reporter: Reporter) -> None:
@@ -33,7 +33,7 @@ def test_status_starts(reporter: Reporter) -> None:
     expect(f"/{contract.STATUS}" in names, f"The graph holds {', '.join(names) or 'no node'}, but no status_publisher.")
 
 
-@check(points=1, holds="status-topic", depends=("status_starts",), doc=contract.DEFINE)
+@check(points=1, holds="status-topic", needs=("status_starts",), doc=contract.DEFINE)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS) in __init__.")
 def test_publishes_status(reporter: Reporter) -> None:
     """It publishes robot_status as my_robot_interfaces/msg/RobotStatus."""
@@ -49,7 +49,7 @@ def test_publishes_status(reporter: Reporter) -> None:
     expect(there == [wanted], f"/robot_status carries {', '.join(there)}, it should carry {wanted}.")
 
 
-@check(points=1, holds="status-topic", depends=NEEDS, doc=contract.QOS)
+@check(points=1, holds="status-topic", needs=NEEDS, doc=contract.QOS)
 @hint("STATUS_QOS is defined above the class; use it instead of a number.")
 def test_status_for_late_joiners(reporter: Reporter) -> None:
     """Its quality of service keeps the last status for whoever joins late."""
@@ -64,7 +64,7 @@ def test_status_for_late_joiners(reporter: Reporter) -> None:
         expect(kept == 1, f"A watcher that joins late got {kept} messages, not the last one alone.", fraction=0.5)
 
 
-@check(points=1, holds=("status-topic", "status-period", "newest"), depends=NEEDS)
+@check(points=1, holds=("status-topic", "status-period", "newest"), needs=NEEDS)
 @hint("create_timer(period, self.publish_status), with the period that read_parameters() returns.")
 def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     """It publishes once a second, and at another rate when status_period says so."""
@@ -91,7 +91,7 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     )
 
 
-@check(points=1, holds="status-stamp", depends=NEEDS, doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html")
+@check(points=1, holds="status-stamp", needs=NEEDS, doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html")
 @hint("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.")
 def test_status_stamp(hasty_reporter: Reporter) -> None:
     """Each status carries the time at which it was put together, by the node's clock."""
@@ -106,7 +106,7 @@ def test_status_stamp(hasty_reporter: Reporter) -> None:
     expect(abs(age) <= 0.2, f"header.stamp is {age:.1f} s older than the message.", fraction=fraction)
 
 
-@check(points=2, holds="unknown", depends=NEEDS, doc=contract.BATTERY)
+@check(points=2, holds="unknown", needs=NEEDS, doc=contract.BATTERY)
 @hint("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.")
 def test_status_unknown(silent_reporter: Reporter) -> None:
     """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
@@ -116,7 +116,7 @@ def test_status_unknown(silent_reporter: Reporter) -> None:
     expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
 
 
-@check(points=1, holds="status-name", depends=NEEDS)
+@check(points=1, holds="status-name", needs=NEEDS)
 @hint("self.robot_name comes from read_parameters(); put it into each message.")
 def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     """The status carries the name that the parameter robot_name holds."""
@@ -127,7 +127,7 @@ def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     expect(said == tuned_name, f"With robot_name {tuned_name!r} the status says {said!r}.")
 
 
-@check(points=2, holds=("battery-topic", "percent", "newest"), depends=NEEDS, doc=contract.BATTERY)
+@check(points=2, holds=("battery-topic", "percent", "newest"), needs=NEEDS, doc=contract.BATTERY)
 @hint("percentage goes from 0.0 to 1.0; 0.855 is 86 percent.")
 @hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would cut.")
 def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
@@ -148,7 +148,7 @@ def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(said == up, f"At percentage {half} battery_level is {said}, instead of {up}: halves go up.")
 
 
-@check(points=1, holds="percent-unknown", depends=NEEDS, doc=contract.BATTERY)
+@check(points=1, holds="percent-unknown", needs=NEEDS, doc=contract.BATTERY)
 @hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
     """A percentage that is nan or outside 0 to 1 is unknown."""
@@ -162,7 +162,7 @@ def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
         expect(said == UNKNOWN, sentence, fraction=0.5 if percentage > 2.0 else 0.0)
 
 
-@check(points=1, holds="charging", depends=NEEDS, doc=contract.BATTERY)
+@check(points=1, holds="charging", needs=NEEDS, doc=contract.BATTERY)
 @hint("Compare power_supply_status with BatteryState.POWER_SUPPLY_STATUS_CHARGING.")
 def test_status_charging(reporter: Reporter) -> None:
     """is_charging follows the battery's power_supply_status."""
@@ -175,7 +175,7 @@ def test_status_charging(reporter: Reporter) -> None:
     expect(said, "is_charging is False while the battery is charging, and does not say its level.", fraction=0.5)
 
 
-@check(points=1, holds=("joint-topic", "newest"), depends=NEEDS)
+@check(points=1, holds=("joint-topic", "newest"), needs=NEEDS)
 @hint("msg.joint_positions = list(self.joints.position), when there are joints.")
 def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
     """joint_positions are the newest joint state's positions, as many as there are."""

@@ -26,7 +26,7 @@ def test_two_robots(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.fleet(), in_spaces(FIRST, SECOND))
 
 
-@check(points=2, holds="included", depends=("two_robots",), doc=contract.LARGE)
+@check(points=2, holds="included", needs=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
 @hint("path leads to launch/robot.launch.py in the package's share folder.")
 @hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
@@ -53,14 +53,14 @@ def test_fleet_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, holds=("first", "second"), depends=("two_robots",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("first", "second"), needs=("two_robots",), doc=contract.SUBSTITUTIONS)
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
     launch_probe.expect_nodes(_renamed(launches, inputs), in_spaces(*inputs.names))
 
 
-@check(points=2, holds=("first", "second"), depends=("spaces",), doc=contract.LARGE)
+@check(points=2, holds=("first", "second"), needs=("spaces",), doc=contract.LARGE)
 @hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
 @hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
@@ -70,7 +70,7 @@ def test_robot_names(launches: Launches, inputs: Inputs) -> None:
         launch_probe.expect_parameters(harness, f"/{name}/reporter", {"robot_name": name})
 
 
-@check(points=2, holds="fleet-speed", depends=("spaces",), doc=contract.LARGE)
+@check(points=2, holds="fleet-speed", needs=("spaces",), doc=contract.LARGE)
 @hint("The included file has an argument of its own called speed: hand yours on to it.")
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
@@ -80,7 +80,7 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
         launch_probe.expect_parameters(harness, f"/{name}/driver", {"speed": inputs.speed})
 
 
-@check(points=3, holds="fleet-status", depends=("two_robots",), doc=contract.LARGE)
+@check(points=3, holds="fleet-status", needs=("two_robots",), doc=contract.LARGE)
 @hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
 @hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
 def test_status(launches: Launches, inputs: Inputs) -> None:
@@ -104,7 +104,7 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
         expect(alike, f"With other names of the robots, reports on {SHARED} come from {said}.", fraction=0.8)
 
 
-@check(points=2, holds="fleet-status", depends=("two_robots",), doc=contract.LARGE)
+@check(points=2, holds="fleet-status", needs=("two_robots",), doc=contract.LARGE)
 @hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
@@ -119,7 +119,7 @@ def test_own_commands(launches: Launches, inputs: Inputs) -> None:
             _expect_own_commands(harness, name, where, fraction=0.75)
 
 
-@check(points=1, holds="fleet-ctrl-c", depends=("two_robots",))
+@check(points=1, holds="fleet-ctrl-c", needs=("two_robots",))
 @hint("What Node(...) starts, the launch ends.")
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""

@@ -26,7 +26,7 @@ def test_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, holds="report", depends=("arguments",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds="report", needs=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
 def test_choices(workspace: Workspace, launches: Launches) -> None:
@@ -47,7 +47,7 @@ def test_starts(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
 
 
-@check(points=1, holds=("argument-wins", "robot-name", "speed", "screen"), depends=("starts",))
+@check(points=1, holds=("argument-wins", "robot-name", "speed", "screen"), needs=("starts",))
 @hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
 @hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
@@ -58,7 +58,7 @@ def test_defaults(launches: Launches) -> None:
         _expect_on_screen(launches.robot(), node, line)
 
 
-@check(points=2, holds=("file", "driver", "reporter"), depends=("starts",), doc=contract.LARGE)
+@check(points=2, holds=("file", "driver", "reporter"), needs=("starts",), doc=contract.LARGE)
 @hint("config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').")
 @hint("parameters=[config, {...}] is a list: first the file, then what has to win over it.")
 def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
@@ -71,7 +71,7 @@ def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
         expect(found is True, said, fraction=0.75)
 
 
-@check(points=2, holds=("speed", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("speed", "driver"), needs=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
 def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
@@ -80,7 +80,7 @@ def test_speed(launches: Launches, inputs: Inputs) -> None:
     launch_probe.expect_parameters(harness, DRIVER, {"speed": inputs.speed})
 
 
-@check(points=2, holds=("robot-name", "reporter"), depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("robot-name", "reporter"), needs=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
 @hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
@@ -100,7 +100,7 @@ def test_name(launches: Launches, inputs: Inputs) -> None:
     expect(found == inputs.quoted_name, f"{said} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
 
 
-@check(points=2, holds=("report", "reporter", "driver"), depends=("starts",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("report", "reporter", "driver"), needs=("starts",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 @hint("UnlessCondition is the other way round.")
 def test_quiet(launches: Launches, inputs: Inputs) -> None:
@@ -114,7 +114,7 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
     expect(len(nodes) < 2, f"With report:=false, {', '.join(nodes)} run, instead of {DRIVER} alone.", fraction=0.75)
 
 
-@check(points=1, holds=("speed", "screen"), depends=("speed",))
+@check(points=1, holds=("speed", "screen"), needs=("speed",))
 @hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
@@ -128,7 +128,7 @@ def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     _expect_on_screen(harness, DRIVER, "Driving at")
 
 
-@check(points=2, holds="ctrl-c", depends=("starts",))
+@check(points=2, holds="ctrl-c", needs=("starts",))
 @hint("What a launch file starts with Node(...) ends with the launch.")
 @hint("A program that the launch file starts by other means, such as subprocess, is nobody's child in the end.")
 def test_clean_stop(launches: Launches) -> None:

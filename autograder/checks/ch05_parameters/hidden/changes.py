@@ -22,7 +22,7 @@ UNEVEN = (31.6, 40.6, 46.5)  # Hz: more than 1 % off in whole hertz, and their p
 EXACT = 0.005  # of a rate, in lockstep
 
 
-@check(points=3, holds=("contradiction", "refused", "keep-value"), depends=("names",), doc=contract.PARAMETERS)
+@check(points=3, holds=("contradiction", "refused", "keep-value"), needs=("names",), doc=contract.PARAMETERS)
 @hint("add_on_set_parameters_callback(self.validate) in __init__; it returns SetParametersResult(successful=...).")
 @hint("A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).")
 def test_contradiction(robot: Robot, draw: random.Random) -> None:
@@ -41,7 +41,7 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It refused {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("reason", "refused", "keep-value"), depends=("contradiction",))
+@check(points=1, holds=("reason", "refused", "keep-value"), needs=("contradiction",))
 @hint("SetParametersResult(successful=False, reason=...), with contradiction's sentence.")
 @hint("The distance that a request does not name is the present one: neither the default nor that of the start.")
 def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
@@ -63,7 +63,7 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
         expect(sentence[:100] in reason, f"{said}; contradiction says “{sentence}”.", fraction=0.5)
 
 
-@check(points=2, holds="validate", depends=("contradiction",))
+@check(points=2, holds="validate", needs=("contradiction",))
 @hint("Judge what will be, with all the values of the request; not one value after the other.")
 def test_together(robot: Robot, draw: random.Random) -> None:
     """Two distances that fit each other are taken in one request, in either order and far from the present ones."""
@@ -78,7 +78,7 @@ def test_together(robot: Robot, draw: random.Random) -> None:
         expect(not wrong, f"It took {_values_text(request)}, and yet {'; '.join(wrong)}.")
 
 
-@check(points=2, holds="no-effect", depends=("contradiction",), doc=contract.PARAMETERS)
+@check(points=2, holds="no-effect", needs=("contradiction",), doc=contract.PARAMETERS)
 @hint("validate says yes or no and does nothing else: no attribute, no timer, no log of a change.")
 @hint("What is to be done once a request was accepted stands in apply.")
 def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
@@ -109,7 +109,7 @@ def test_no_side_effects(fresh_robot: Robot, workspace: Workspace) -> None:
     expect(accepted is not True, f"{told}, though slow_distance is still 1.0.", fraction=0.75)
 
 
-@check(points=2, holds="at-once", depends=("names",), doc=contract.IN_A_CLASS)
+@check(points=2, holds="at-once", needs=("names",), doc=contract.IN_A_CLASS)
 @hint("A value that was copied to an attribute in __init__ stays what it was.")
 @hint("speed, which is given, asks self.value(...) at each command: leave it so, or renew your copies in apply.")
 def test_speed_change(robot: Robot, draw: random.Random) -> None:
@@ -120,7 +120,7 @@ def test_speed_change(robot: Robot, draw: random.Random) -> None:
     expect_speed(robot.speed_at(2.5), speed, f"After max_linear_velocity was set to {speed}")
 
 
-@check(points=2, holds=("at-once", "contradiction"), depends=("together",))
+@check(points=2, holds=("at-once", "contradiction"), needs=("together",))
 @hint("Both distances decide about the speed at each command, as they are then.")
 def test_distance_change(robot: Robot, draw: random.Random) -> None:
     """New distances decide immediately where it slows down and where it stops."""
@@ -133,7 +133,7 @@ def test_distance_change(robot: Robot, draw: random.Random) -> None:
     _change(robot, {"slow_distance": round(safety + 0.004, 3)}, fraction=0.75)  # millimetres count, too
 
 
-@check(points=1, holds="at-once", depends=("names",))
+@check(points=1, holds="at-once", needs=("names",))
 @hint("The threshold is asked for at each command, as it is then.")
 def test_threshold_change(robot: Robot) -> None:
     """A new battery_threshold decides immediately whether it stands still."""
@@ -143,7 +143,7 @@ def test_threshold_change(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.0, "After battery_threshold was set to 60, with a charge of 50")
 
 
-@check(points=3, holds="apply-rate", depends=("names",))
+@check(points=3, holds="apply-rate", needs=("names",))
 @hint("add_post_set_parameters_callback(self.apply) in __init__, and in apply: self.timer.timer_period_ns = ...")
 @hint("A period is 1e9 / frequency nanoseconds, a whole number; a second timer beside the first adds its commands.")
 def test_rate_change(robot: Robot, draw: random.Random) -> None:
@@ -163,7 +163,7 @@ def test_rate_change(robot: Robot, draw: random.Random) -> None:
 @check(
     points=1,
     holds=("apply-rate", "lets-pass", "refused", "max_linear_velocity"),
-    depends=("rate_change", "speed_change"),
+    needs=("rate_change", "speed_change"),
 )
 @hint("apply gets what has changed: look for control_frequency among the names, and leave the timer alone else.")
 @hint("ROS has already checked the range, and the limits are part of it: validate judges the distances alone.")
@@ -179,7 +179,7 @@ def test_undisturbed(robot: Robot) -> None:
     expect_rate(robot.rate_since(began), 10.0, "While max_linear_velocity was changed all the time")
 
 
-@check(points=1, holds="lets-pass", depends=("names",))
+@check(points=1, holds="lets-pass", needs=("names",))
 @hint("A request may name no distance at all, or only rclpy's own use_sim_time: let it pass.")
 def test_passes(robot: Robot) -> None:
     """Requests that have nothing to do with the distances pass."""
@@ -188,7 +188,7 @@ def test_passes(robot: Robot) -> None:
     expect_speed(robot.speed_at(2.5), 0.4, "After these requests")
 
 
-@check(points=1, holds=("lets-pass", "validate", "apply-rate"), depends=("contradiction", "rate_change", "passes"))
+@check(points=1, holds=("lets-pass", "validate", "apply-rate"), needs=("contradiction", "rate_change", "passes"))
 @hint("Pass over a name that you do not know: neither return nor break at it, wherever it stands in the request.")
 def test_beside_others(robot: Robot, draw: random.Random) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""

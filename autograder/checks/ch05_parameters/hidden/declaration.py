@@ -39,7 +39,7 @@ def test_starts(robot: Robot) -> None:
 @check(
     points=2,
     holds=contract.TABLE_ROWS,
-    depends=("starts",),
+    needs=("starts",),
     doc=contract.PARAMETERS,
 )
 @hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
@@ -54,7 +54,7 @@ def test_names(robot: Robot) -> None:
 @check(
     points=2,
     holds=contract.TABLE_ROWS,
-    depends=("names",),
+    needs=("names",),
     doc=contract.PARAMETERS,
 )
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
@@ -72,7 +72,7 @@ def test_types(robot: Robot) -> None:
 @check(
     points=1,
     holds=contract.TABLE_ROWS,
-    depends=("types",),
+    needs=("types",),
 )
 @hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
@@ -81,7 +81,7 @@ def test_defaults(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, holds="described", depends=("names",))
+@check(points=1, holds="described", needs=("names",))
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
@@ -101,7 +101,7 @@ def test_descriptions(robot: Robot) -> None:
         "control_frequency",
         "battery_threshold",
     ),
-    depends=("names",),
+    needs=("names",),
     doc=contract.PARAMETERS,
 )
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
@@ -121,7 +121,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
 
-@check(points=1, holds="robot_name", depends=("names",))
+@check(points=1, holds="robot_name", needs=("names",))
 @hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
     """The robot's name is fixed once it has started."""
@@ -136,7 +136,7 @@ def test_read_only(robot: Robot) -> None:
 @check(
     points=1,
     holds=contract.TABLE_ROWS,
-    depends=("types",),
+    needs=("types",),
 )
 @hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
 def test_typed(robot: Robot) -> None:
@@ -155,7 +155,7 @@ def test_typed(robot: Robot) -> None:
     expect(not taken, f"It took {', '.join(taken)}.", fraction=_share(len(taken)))
 
 
-@check(points=1, holds="no-others", depends=("names",))
+@check(points=1, holds="no-others", needs=("names",))
 @hint("Every declared name has work to do: what is not in the table is not declared.")
 @hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:

@@ -23,7 +23,7 @@ def fleet(workspace: Workspace) -> Callable[[], Entries]:
     return lambda: read_file(fleet_path(workspace))
 
 
-@check(points=2, holds="types", depends=("starts",), doc=contract.ARGUMENTS)
+@check(points=2, holds="types", needs=("starts",), doc=contract.ARGUMENTS)
 @hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(fleet: Callable[[], Entries]) -> None:
@@ -31,7 +31,7 @@ def test_file(fleet: Callable[[], Entries]) -> None:
     expect(bool(fleet()), "It names no node.")
 
 
-@check(points=1, holds="types", depends=("file",), doc=contract.PARAMETERS)
+@check(points=1, holds="types", needs=("file",), doc=contract.PARAMETERS)
 @hint("A name that no node declares is dropped without a word: compare it with the table of exercise 1.")
 def test_file_names(fleet: Callable[[], Entries]) -> None:
     """The file sets declared names only."""
@@ -45,7 +45,7 @@ def test_file_names(fleet: Callable[[], Entries]) -> None:
 @check(
     points=2,
     holds=(*contract.FLEET_ROWS, "empty-field"),
-    depends=("file_names", "overrides", "types"),
+    needs=("file_names", "overrides", "types"),
 )
 @hint("What every robot has stands under /**, which fits every name.")
 def test_any_robot(workspace: Workspace) -> None:
@@ -56,7 +56,7 @@ def test_any_robot(workspace: Workspace) -> None:
 @check(
     points=2,
     holds=(*contract.FLEET_ROWS, "empty-field"),
-    depends=("file_names", "overrides", "types"),
+    needs=("file_names", "overrides", "types"),
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
@@ -68,7 +68,7 @@ def test_scout(workspace: Workspace) -> None:
 @check(
     points=2,
     holds=(*contract.FLEET_ROWS, "empty-field"),
-    depends=("file_names", "overrides", "types"),
+    needs=("file_names", "overrides", "types"),
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
 @hint("20.0 and 1.0 are doubles; 20 and 1 would keep the node from starting.")
@@ -77,7 +77,7 @@ def test_porter(workspace: Workspace) -> None:
     _expect_values(workspace, "porter")
 
 
-@check(points=1, holds="once", depends=("file_names",))
+@check(points=1, holds="once", needs=("file_names",))
 @hint("A robot's entry holds only what is its own: the rest comes from /**.")
 def test_stands_once(fleet: Callable[[], Entries]) -> None:
     """What every robot has stands once, under /**."""

@@ -60,7 +60,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 @check(
     points=2,
     holds=contract.TABLE_ROWS,
-    depends=("names",),
+    needs=("names",),
     doc=contract.ARGUMENTS,
 )
 @hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
@@ -71,7 +71,7 @@ def test_overrides(configured: Configured) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
 
 
-@check(points=2, holds="max_linear_velocity", depends=("overrides",))
+@check(points=2, holds="max_linear_velocity", needs=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
 def test_start_speed(configured: Configured) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
@@ -79,7 +79,7 @@ def test_start_speed(configured: Configured) -> None:
     expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
 
 
-@check(points=2, holds="control_frequency", depends=("overrides",))
+@check(points=2, holds="control_frequency", needs=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
 def test_start_rate(configured: Configured) -> None:
     """It publishes at the frequency that it was started with."""
@@ -88,7 +88,7 @@ def test_start_rate(configured: Configured) -> None:
     )
 
 
-@check(points=1, holds="battery_threshold", depends=("overrides",))
+@check(points=1, holds="battery_threshold", needs=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
 def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
@@ -98,7 +98,7 @@ def test_start_threshold(configured: Configured) -> None:
         expect_speed(configured.robot.speed_at(3.0), speed, situation)
 
 
-@check(points=3, holds="safety_distance", depends=("start_speed", "start_threshold"))
+@check(points=3, holds="safety_distance", needs=("start_speed", "start_threshold"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
 def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) -> None:
@@ -117,7 +117,7 @@ def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) ->
     expect(end < configured.safety + NEAR, sentence, fraction=0.5)
 
 
-@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), depends=("overrides",))
+@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), needs=("overrides",))
 @hint("After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.")
 @hint("Equal distances do not fit together, either: it divides by their difference.")
 @hint("At a value outside of a range, declare_parameter raises: let that end the node, too.")

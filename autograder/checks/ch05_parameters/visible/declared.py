@@ -28,7 +28,7 @@ def test_starts(robot: Robot) -> None:
 @check(
     points=1,
     holds=(*contract.TABLE_ROWS, "no-others"),
-    depends=("starts",),
+    needs=("starts",),
     doc=contract.PARAMETERS,
 )
 @hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
@@ -47,7 +47,7 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("ranges", "robot_name"), depends=("table",), doc=contract.PARAMETERS)
+@check(points=1, holds=("ranges", "robot_name"), needs=("table",), doc=contract.PARAMETERS)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
@@ -67,7 +67,7 @@ def test_refuses(robot: Robot) -> None:
         expect(bool(answer.reason), f"It refused {value_text(value)} for {name}, but gave no reason.")
 
 
-@check(points=1, holds="described", depends=("table",))
+@check(points=1, holds="described", needs=("table",))
 @hint("ParameterDescriptor(description='...', ...): one sentence for each name, with the unit in it.")
 def test_described(robot: Robot) -> None:
     """Each parameter has a description; that of max_linear_velocity names m/s, that of control_frequency Hz."""
@@ -78,7 +78,7 @@ def test_described(robot: Robot) -> None:
         expect(unit.lower() in described[name].lower(), f"The description of {name} does not name {unit}.")
 
 
-@check(points=1, holds="contradictory-start", depends=("table",))
+@check(points=1, holds="contradictory-start", needs=("table",))
 @hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
 def test_start_refused(workspace: Workspace) -> None:
     """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""

@@ -19,7 +19,7 @@ def test_guard_pass(examination: Examination) -> None:
     expect_passed(GUARD, examination.trial.get(GUARD))
 
 
-@check(points=1, holds=("guard-pass", "over-topics"), depends=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, holds=("guard-pass", "over-topics"), needs=("guard_pass",), doc=contract.PYTEST)
 @hint("Ask over topics, as another robot would; attributes of the node may have other names tomorrow.")
 @hint("Each test starts its own guard and leaves nothing behind.")
 def test_guard_right(examination: Examination) -> None:
@@ -27,7 +27,7 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, BACKWARDS)
 
 
-@check(points=2, holds="own-domain", depends=RIGHT, doc=contract.DOMAIN)
+@check(points=2, holds="own-domain", needs=RIGHT, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
@@ -38,7 +38,7 @@ def test_alone(examination: Examination) -> None:
     )
 
 
-@check(points=1, holds="guard-pass", depends=RIGHT, doc=contract.FIXTURES)
+@check(points=1, holds="guard-pass", needs=RIGHT, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
@@ -159,7 +159,7 @@ LINES = (
 )
 
 
-@check_each_row(group("node", depends=RIGHT), LINES)
+@check_each_row(group("node", needs=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

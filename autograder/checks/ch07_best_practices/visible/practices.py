@@ -46,7 +46,7 @@ def test_mean_distance(workspace: Workspace) -> None:
     points=1,
     holds=("history", "average", "leave-lists"),
     group="utils",
-    depends=("mask_invalid", "mean_distance"),
+    needs=("mask_invalid", "mean_distance"),
     doc=contract.DEQUE,
 )
 @hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the means remembered.")
@@ -63,7 +63,7 @@ def test_data_processor(workspace: Workspace) -> None:
     expect(same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
 
 
-@check(points=1, holds="scan-filtered", group="processor", depends=("data_processor",), doc=contract.QOS)
+@check(points=1, holds="scan-filtered", group="processor", needs=("data_processor",), doc=contract.QOS)
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
@@ -79,7 +79,7 @@ def test_filters_scans(processor: Processor) -> None:
     expect(intensities == [4.0, 0.0, 2.0], f"intensities went in as [4.0, 0.0, 2.0] and came out as {intensities}.")
 
 
-@check(points=1, holds=("scan", "scan-filtered"), group="processor", depends=("filters_scans",), doc=contract.QOS)
+@check(points=1, holds=("scan", "scan-filtered"), group="processor", needs=("filters_scans",), doc=contract.QOS)
 @hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
 def test_sensor_profile(processor: Processor) -> None:
     """It takes scan and offers scan_filtered best effort, as a lidar does."""
@@ -92,7 +92,7 @@ def test_sensor_profile(processor: Processor) -> None:
         expect(not reliable, f"{topic} is reliable.")
 
 
-@check(points=1, holds=("mean-of-ten", "blind", "warns"), group="processor", depends=("filters_scans",))
+@check(points=1, holds=("mean-of-ten", "blind", "warns"), group="processor", needs=("filters_scans",))
 @hint("One DataProcessor(HISTORY), made in __init__; after each scan publish its average().")
 @hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
 def test_means(fresh_processor: Processor) -> None:
@@ -123,7 +123,7 @@ def test_counts_failures(workspace: Workspace) -> None:
     points=1,
     holds=("failure-probability", "seed", "max-errors"),
     group="robust",
-    depends=("counts_failures",),
+    needs=("counts_failures",),
     doc=contract.QOS,
 )
 @hint("create_publisher(String, 'status', STATUS_QOS), not 10.")
@@ -143,7 +143,7 @@ def test_declares(workspace: Workspace) -> None:
     points=1,
     holds=("unstable", "fatal-log", "error-log"),
     group="robust",
-    depends=("counts_failures",),
+    needs=("counts_failures",),
     doc=contract.LOGGING,
 )
 @hint("unstable begins when the count is above max_errors; fatal is logged when it is max_errors + 1.")
@@ -159,7 +159,7 @@ def test_dead_sensor(workspace: Workspace) -> None:
     expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
 
 
-@check(points=1, holds="recovery-log", group="robust", depends=("counts_failures",), doc=contract.LOGGING)
+@check(points=1, holds="recovery-log", group="robust", needs=("counts_failures",), doc=contract.LOGGING)
 @hint("Log 'Recovered after N errors' before you set the count back to 0.")
 def test_recovers(workspace: Workspace) -> None:
     """It logs each recovery, with the number of failures before it."""
@@ -170,7 +170,7 @@ def test_recovers(workspace: Workspace) -> None:
     expect(lines[0].endswith("Recovered after 2 errors"), f"The first recovery comes after 2 failures: {lines[0]}")
 
 
-@check(points=1, holds=("catch", "generator"), group="robust", depends=("counts_failures",), doc=contract.ERRORS)
+@check(points=1, holds=("catch", "generator"), group="robust", needs=("counts_failures",), doc=contract.ERRORS)
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""

@@ -25,7 +25,7 @@ check = group("step_2")
 @check(
     points=2,
     holds=("sector", "processor", "clearance-header", "front", "left", "right"),
-    depends=("processor",),
+    needs=("processor",),
     doc=contract.SCAN_DOC,
 )
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
@@ -60,7 +60,7 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
 @check(
     points=3,
     holds=("readings", "no-reading", "valid-field", "sector", "processor", "clearance-header"),
-    depends=("sectors",),
+    needs=("sectors",),
     doc=contract.REP_117,
 )
 @hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")

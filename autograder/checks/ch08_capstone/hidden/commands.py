@@ -35,7 +35,7 @@ EDGE = 0.03  # m around the safety distance, a twentieth of it
 BLIND = scan(Part(-35.0, 35.0, math.nan))
 
 
-@check(points=2, holds=("drive", "ten-hertz", "stand-or-go"), depends=("sectors", "controller"), doc=contract.NODES_DOC)
+@check(points=2, holds=("drive", "ten-hertz", "stand-or-go"), needs=("sectors", "controller"), doc=contract.NODES_DOC)
 @hint("The way is clear: linear.x is forward_speed.")
 @hint("The timer calls control ten times a second, and control publishes once each time, whatever happens.")
 def test_drives(driving: System, draw: random.Random) -> None:
@@ -48,7 +48,7 @@ def test_drives(driving: System, draw: random.Random) -> None:
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
 
 
-@check(points=3, holds=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"), depends=("drives",))
+@check(points=3, holds=("turn", "more-room", "keeps-turn", "starts-turn", "ends-turn"), needs=("drives",))
 @hint("Compare left with right when the turn begins, and remember the choice.")
 @hint("The remembered turn ends when the way is clear again, not when the sides look different.")
 def test_turns(driving: System, draw: random.Random) -> None:
@@ -75,7 +75,7 @@ def test_turns(driving: System, draw: random.Random) -> None:
     expect_turn_kept(driving, lambda: driving.see(BLIND), "When it saw again after nan from every beam ahead")
 
 
-@check(points=3, holds=("untrusted", "newest"), depends=("drives",))
+@check(points=3, holds=("untrusted", "newest"), needs=("drives",))
 @hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
 @hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
 def test_stops(driving: System, slow_system: SharedSystem) -> None:
@@ -102,7 +102,7 @@ def test_stops(driving: System, slow_system: SharedSystem) -> None:
         expect_still(still, f"More than {STALE} s of ROS time after the last scan", fraction=0.75)
 
 
-@check(points=1, holds="untrusted", depends=("stops",))
+@check(points=1, holds="untrusted", needs=("stops",))
 @hint("The lidar's computer has a clock of its own. A stamp that is ahead of yours gives an age below 0.")
 @hint("An age below 0 is not more than data_timeout: no abs().")
 def test_stamp_ahead(driving: System) -> None:
@@ -111,7 +111,7 @@ def test_stamp_ahead(driving: System) -> None:
     expect_driving(said, f"With scans whose stamp is {AHEAD} s ahead of the clock", SPEED)
 
 
-@check(points=2, holds=("enable", "disabled", "keeps-turn", "ten-hertz"), depends=("drives",), doc=contract.SERVICE_DOC)
+@check(points=2, holds=("enable", "disabled", "keeps-turn", "ten-hertz"), needs=("drives",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
 @hint("Held still, the robot does not choose a turn anew, and does not forget the one that it has begun.")

@@ -20,28 +20,28 @@ ENDS = (
 )
 
 
-@check(points=1, holds="processor-name", depends=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="processor-name", needs=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness.node, PROCESSOR)
 
 
-@check(points=1, holds="controller-name", depends=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="controller-name", needs=BUILT, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness.node, CONTROLLER)
 
 
-@check(points=1, holds="monitor-name", depends=(*BUILT, "health_message"), doc=contract.NODES_DOC)
+@check(points=1, holds="monitor-name", needs=(*BUILT, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
 
 
-@check(points=1, holds="relative", depends=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@check(points=1, holds="relative", needs=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
@@ -52,7 +52,7 @@ def test_relative(workspace: Workspace) -> None:
     expect(not left, " ".join(left))
 
 
-@check(points=2, holds=("processor", "late-joiner"), depends=("processor", "monitor"), doc=contract.QOS_DOC)
+@check(points=2, holds=("processor", "late-joiner"), needs=("processor", "monitor"), doc=contract.QOS_DOC)
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
 def test_qos(shared_system: SharedSystem) -> None:

@@ -41,7 +41,7 @@ def test_manifests(workspace: Workspace) -> None:
         )
 
 
-@check(points=2, holds=("imports", "depend", "exec-depend", "test-depend"), depends=("manifests",))
+@check(points=2, holds=("imports", "depend", "exec-depend", "test-depend"), needs=("manifests",))
 @hint(
     "rosdep installs what package.xml names, before anything runs: what is missing there is missing on every other "
     "machine."
@@ -73,7 +73,7 @@ def test_build(builds: Mapping[str, Diagnosis]) -> None:
     require_built(builds, PACKAGE)
 
 
-@check(points=1, holds=("processor-executable", "controller-executable", "monitor-executable"), depends=("build",))
+@check(points=1, holds=("processor-executable", "controller-executable", "monitor-executable"), needs=("build",))
 @hint("entry_points={'console_scripts': ['sensor_processor = robot_navigation_tutorial.sensor_processor:main', ...]}")
 @hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
@@ -89,7 +89,7 @@ def test_executables(workspace: Workspace) -> None:
     )
 
 
-@check(points=1, holds="installs", depends=("build",))
+@check(points=1, holds="installs", needs=("build",))
 @hint("data_files holds pairs: a folder below share/, and the files that go there.")
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
@@ -100,7 +100,7 @@ def test_shares(workspace: Workspace) -> None:
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
-@check(points=1, holds="installs", depends=("shares",))
+@check(points=1, holds="installs", needs=("shares",))
 @hint("A list of names written by hand is wrong on the day when somebody adds a file.")
 @hint("glob('launch/*.launch.py') and glob('config/*.yaml') look at what is there when the package is built.")
 def test_grows(workspace: Workspace, draw: random.Random) -> None:
@@ -123,7 +123,7 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
         "controller-executable",
         "monitor-executable",
     ),
-    depends=("manifests", "build"),
+    needs=("manifests", "build"),
 )
 @hint("Copy the four from one file to the other, to the letter.")
 @hint("data_files as ros2 pkg create writes it installs the marker and package.xml; ament_package() does it in CMake.")

@@ -24,7 +24,7 @@ def tested(workspace: Workspace) -> Report:
     return colcon_test(workspace, PACKAGE)
 
 
-@check(points=2, holds="pytest", depends=("build", "interface_package"))
+@check(points=2, holds="pytest", needs=("build", "interface_package"))
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: Report) -> None:
@@ -41,7 +41,7 @@ def test_colcon_finds_tests(tested: Report) -> None:
         )
 
 
-@check(points=2, holds="linters", depends=("colcon_finds_tests",))
+@check(points=2, holds="linters", needs=("colcon_finds_tests",))
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("The linters name a file, a line and a rule: fix them one by one.")
 def test_linters_pass(workspace: Workspace, tested: Report) -> None:
@@ -55,7 +55,7 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
 @check(
     points=2,
     holds=("integration", "sector-tests"),
-    depends=(
+    needs=(
         "colcon_finds_tests",
         "qos",
         "readings",

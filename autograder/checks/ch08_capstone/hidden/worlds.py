@@ -33,7 +33,7 @@ SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
-@check(points=3, holds=("turn", "starts-turn"), depends=DRIVES)
+@check(points=3, holds=("turn", "starts-turn"), needs=DRIVES)
 @hint(*PICTURE)
 def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
@@ -51,7 +51,7 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
     _expect_no_touch(driving)
 
 
-@check(points=2, holds=("more-room", "ends-turn"), depends=("drives", "turns"))
+@check(points=2, holds=("more-room", "ends-turn"), needs=("drives", "turns"))
 @hint("A turn that has begun keeps its direction until the way is clear.")
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
@@ -66,7 +66,7 @@ def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
             _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds, rules)
 
 
-@check(points=3, holds=("drive", "more-room"), depends=DRIVES)
+@check(points=3, holds=("drive", "more-room"), needs=DRIVES)
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
@@ -80,7 +80,7 @@ def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
     _expect_drive_between(driving)
 
 
-@check(points=3, holds="untrusted", depends=("stops",))
+@check(points=3, holds="untrusted", needs=("stops",))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> None:
@@ -104,7 +104,7 @@ def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> Non
     _expect_half_blind_stop(driving)
 
 
-@check(points=2, holds="drive", depends=("stops_in_time",))
+@check(points=2, holds="drive", needs=("stops_in_time",))
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, gallery: Gallery) -> None:
     """Within 2 s of its lidar's return it drives again."""

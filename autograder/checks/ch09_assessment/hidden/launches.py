@@ -38,7 +38,7 @@ def hot(seed: int) -> int:
     return Random(f"{seed}:hot").randint(52, 58)
 
 
-@check(points=3, holds=("launch", "thermometer-topics", "smoother-topics", "guard-topics"), depends=("installs",))
+@check(points=3, holds=("launch", "thermometer-topics", "smoother-topics", "guard-topics"), needs=("installs",))
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
 @hint("ros2 topic echo /decision shows whether the three talk to each other.")
 def test_launches(launched: LaunchHarness) -> None:
@@ -48,7 +48,7 @@ def test_launches(launched: LaunchHarness) -> None:
     expect(came, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
-@check(points=2, holds=("hot-argument", "hot-cool"), depends=("launches",))
+@check(points=2, holds=("hot-argument", "hot-cool"), needs=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0', description='...')")
 @hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> None:
@@ -61,7 +61,7 @@ def test_argument(workspace: Workspace, launched: LaunchHarness, hot: int) -> No
         raise CheckFailed(f"Launched with hot:={hot} and nothing else: {failed.message}", fraction=0.75) from failed
 
 
-@check(points=1, holds="ctrl-c", depends=("launches",))
+@check(points=1, holds="ctrl-c", needs=("launches",))
 @hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
 @hint("A node that never ends by itself has to be killed: look at loops of your own.")
 def test_stops(launched: LaunchHarness) -> None:

@@ -42,7 +42,7 @@ SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a node that mu
 @check(
     points=2,
     holds=("reading", "formula", "period", "mean-swing", "thermometer-topics"),
-    depends=BUILT,
+    needs=BUILT,
     doc=contract.NODES_DOC,
 )
 @hint("create_timer(period, self.timer_callback), and a count in self.", "math.sin takes radians.")
@@ -53,7 +53,7 @@ def test_readings(start: Start) -> None:
         harness.expect_readings(30)
 
 
-@check(points=2, holds=("period", "mean-swing", "at-start"), depends=("readings",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("period", "mean-swing", "at-start"), needs=("readings",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
     """Thermometer measures by its parameters period, mean and swing."""
@@ -68,7 +68,7 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
             raise CheckFailed(f"With other parameters set after the start: {failed.message}", fraction=0.5) from failed
 
 
-@check(points=1, holds=("reading", "formula"), depends=("readings",), doc=contract.NODES_DOC)
+@check(points=1, holds=("reading", "formula"), needs=("readings",), doc=contract.NODES_DOC)
 @hint("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time.")
 @hint("The timer starts in __init__, and its callback does not ask who listens.")
 def test_stamps(start: Start) -> None:
@@ -94,7 +94,7 @@ def test_stamps(start: Start) -> None:
         expect(near(celsius, wanted), f"{said}, {wish}", fraction=0.5)
 
 
-@check(points=2, holds=("smoother", "window", "smoother-topics"), depends=BUILT, doc=contract.NODES_DOC)
+@check(points=2, holds=("smoother", "window", "smoother-topics"), needs=BUILT, doc=contract.NODES_DOC)
 @hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
 def test_average(start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
@@ -112,7 +112,7 @@ def test_average(start: Start, draw: Random) -> None:
     expect(len(told) == QUEUE, said, fraction=0.75)
 
 
-@check(points=2, holds=("smoother", "window", "at-start"), depends=("average",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("smoother", "window", "at-start"), needs=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """The parameter window says how many readings count, from 1 to 100; 0, 101 and 2.5 are refused at the start."""
@@ -135,7 +135,7 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
     _expect_averages([message.celsius for message in told], cold, 1, where, fraction=0.75)
 
 
-@check(points=2, holds=("not-finite", "window"), depends=("average",))
+@check(points=2, holds=("not-finite", "window"), needs=("average",))
 @hint("math.isfinite(reading.celsius)", "A reading that does not count gets no average either.")
 def test_no_number(start: Start, draw: Random) -> None:
     """A reading that is nan or infinite does not count, and nothing is published for it."""
@@ -155,7 +155,7 @@ def test_no_number(start: Start, draw: Random) -> None:
     )
 
 
-@check(points=4, holds=("hysteresis", "guard-topics"), depends=BUILT, doc=contract.NODES_DOC)
+@check(points=4, holds=("hysteresis", "guard-topics"), needs=BUILT, doc=contract.NODES_DOC)
 @hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
@@ -170,7 +170,7 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         _expect_decisions(harness, between[:1], "At the start the fan is off: ", fraction=0.75)
 
 
-@check(points=2, holds=("hot-cool", "hysteresis", "at-start"), depends=("hysteresis",), doc=contract.PARAMETERS_DOC)
+@check(points=2, holds=("hot-cool", "hysteresis", "at-start"), needs=("hysteresis",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__.")
 @hint("self.hot = ... in __init__ is read once; get_parameter in a callback is not.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
@@ -194,7 +194,7 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         expect(refused, f"guard started with hot {high} and cool {low}.", fraction=0.5)
 
 
-@check(points=1, holds="unknown", depends=("hysteresis",))
+@check(points=1, holds="unknown", needs=("hysteresis",))
 @hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first.")
 def test_unknown(start: Start) -> None:
     """When the temperature is no finite number, it is not known, and the fan runs."""
@@ -203,7 +203,7 @@ def test_unknown(start: Start) -> None:
             _expect_decisions(harness, [20.0, unknown, 55.0], "")
 
 
-@check(points=1, holds=("guard", "guard-topics"), depends=("hysteresis",))
+@check(points=1, holds=("guard", "guard-topics"), needs=("hysteresis",))
 @hint("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was.")
 def test_passes_on(start: Start, draw: Random) -> None:
     """Each average gets a decision, which carries the stamp and the temperature that it was made of."""
@@ -230,7 +230,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
     expect(made == QUEUE, said, fraction=0.5)
 
 
-@check(points=1, holds="relative", depends=("readings", "average", "hysteresis"), doc=contract.NODES_DOC)
+@check(points=1, holds="relative", needs=("readings", "average", "hysteresis"), doc=contract.NODES_DOC)
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:

@@ -18,7 +18,7 @@ def test_greets(workspace: Workspace, draw: random.Random) -> None:
     expect_greeting(workspace, name, f"Hello, {name}!")
 
 
-@check(points=1, holds="strips", depends=("greets",))
+@check(points=1, holds="strips", after=("greets",))
 @hint("str.strip() takes the spaces away.")
 def test_strips(workspace: Workspace, draw: random.Random) -> None:
     """It takes the spaces around a name away."""
