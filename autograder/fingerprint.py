@@ -31,7 +31,9 @@ NOT_READ = frozenset(
     }
 )
 # In a chapter's checks, for the proof only.
-PROOF = frozenset({"attack_payloads.py", "attacks.py", "mutants.yaml", "survivors.yaml", "variants"})
+PROOF = frozenset(
+    {"attack_payloads.py", "attacks.py", "mutants.snapshot.yaml", "mutants.yaml", "survivors.yaml", "variants"}
+)
 CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\w+)")
 
 

@@ -7,7 +7,7 @@ The package of a chapter::
         support/       contract, robots and stimuli: what visible and hidden checks share
         visible/       the checks that students run themselves
         hidden/        the checks that grade; students never get this folder
-        mutants.yaml   flawed versions of the reference, with the checks that each loses
+        mutants.yaml   flawed versions of the reference, each with the check for which it was written
         variants/      right answers in another style
         attacks.py     optional: submissions that try to get points that they have not earned
 

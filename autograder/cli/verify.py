@@ -21,6 +21,7 @@ from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.mutation_run import MutantResult, run_mutants
 from autograder.proof.population import GeneratedMutant, population
 from autograder.proof.prove import prove
+from autograder.proof.record import record_failures
 from autograder.proof.summary import summary
 from autograder.proof.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
 from autograder.proof.worker_pool import WorkerPool
@@ -45,6 +46,11 @@ HEADINGS = ("submission", "marks", "claim")
     "Use it after every change.",
 )
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Grade only these submissions or mutants.")
+@click.option(
+    "--record",
+    is_flag=True,
+    help="Write what each graded mutant fails to mutants.snapshot.yaml, beside mutants.yaml. Read the difference.",
+)
 @click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the populations of mutants.")
 @click.option(
     "--out",
@@ -60,6 +66,7 @@ def verify(
     assignments: tuple[str, ...],
     quick: bool,
     names: tuple[str, ...],
+    record: bool,
     mutants_only: bool,
     out: Path,
     jobs: int,
@@ -70,19 +77,21 @@ def verify(
     """Grade submissions whose marks are known, and compare the results with these marks.
 
     The reference and right answers in another style have every point. The untouched release has none. Each named
-    mutant loses the checks that it names, and no other. No attack gains a point. Of the generated mutants that are not
-    equivalent to the reference, at least 95 in 100 of each chapter and 97 in 100 of all chapters lose a check. Every
-    other one has a reason in survivors.yaml. A mutant with a reason is graded only if --only names it. A stopped run
-    continues: a result counts as long as the checks, the grader and the submission are the same. The file mutants.md in
-    the folder for the results has the table.
+    mutant fails the check for which it was written, and what the snapshot records, and no other. No attack gains a
+    point. Of the generated mutants that are not equivalent to the reference, at least 95 in 100 of each chapter and
+    97 in 100 of all chapters lose a check. Every other one has a reason in survivors.yaml. A mutant with a reason
+    is graded only if --only names it. A stopped run continues: a result counts as long as the checks, the grader
+    and the submission are the same. The file mutants.md in the folder for the results has the table.
 
     The exit status is 0 when all of this is true, and 1 otherwise.
     """
+    if record and quick:
+        raise click.UsageError("--record needs whole gradings: leave --quick out")
     began = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
     proof = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
     chosen = [case for case in proof if not names or case.name in names]
-    populations = {} if quick else {name: population(name) for name in chapters}
+    populations = {} if quick or record else {name: population(name) for name in chapters}
     mutants = {
         chapter: [mutant for mutant in each.mutants if not names or mutant.id in names]
         for chapter, each in populations.items()
@@ -103,6 +112,9 @@ def verify(
             if mutants[name]
         ]
     click.echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
+    if record:
+        for chapter in dict.fromkeys(claim.assignment for claim in claims):
+            click.echo(record_failures(chapter, claims), err=True)
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
     click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     plain = {

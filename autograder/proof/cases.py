@@ -68,8 +68,8 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
     suite = suites.hidden(assignment)
     dependencies = {check.id: frozenset(check.dependencies) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
-    direct = {m.id: {name for name in m.loses if not dependencies[name] & m.loses} for m in candidates}
-    lost = {m.id: set(m.loses) for m in candidates}
+    direct = {m.id: {name for name in m.fails if not dependencies[name] & m.fails} for m in candidates}
+    lost = {m.id: set(m.fails) for m in candidates}
     quick = [m for m in candidates if not m.slow]
     chosen: dict[str, set[str]] = {}
     uncovered = set(dependencies)

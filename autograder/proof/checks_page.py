@@ -52,4 +52,4 @@ def _rows(checks: Sequence[Check], flawed: Sequence[Mutant]) -> Iterator[tuple[s
 
 def _fails(mutant: Mutant, check: Check) -> bool:
     """Return whether a mutant fails a check by itself, not with one that the check needs or comes after."""
-    return check.id in mutant.loses and not mutant.loses & set(check.dependencies)
+    return check.id in mutant.fails and not mutant.fails & set(check.dependencies)

@@ -19,6 +19,8 @@ from autograder.proof.mutants import Mutant
 from autograder.proof.payloads import LOOT
 from autograder.result import Result
 
+RECORD = "`autograder verify --record`"
+
 
 class CaseKind(str, Enum):
     """The kinds of submissions of the proof."""
@@ -63,7 +65,9 @@ def verify_zero(result: Result) -> str:
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
-    """Return how a mutant's result differs from the losses and the diagnosis that the mutant names.
+    """Return how a mutant's result differs from its recorded failures and its diagnosis.
+
+    A mutant that passes the check for which it was written is wrong, whatever is recorded.
 
     Args:
         mutant: the mutant that was graded.
@@ -71,11 +75,17 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
         only: the ids of the checks that were run; every check if there are none. The diagnosis is compared only if
             every check was run, because any of them may have made it.
     """
-    missing, named = lost_checks(result), mutant.loses
-    if only:
-        missing, named = missing & only, named & only
-    wrong = [f"also loses {', '.join(sorted(missing - named))}"] if missing - named else []
-    wrong += [f"keeps {', '.join(sorted(named - missing))}"] if named - missing else []
+    failed, recorded, asked = lost_checks(result), mutant.fails, only or {check.id for check in result.checks}
+    wrong = []
+    if mutant.check in asked - failed:
+        wrong.append(f"passes {mutant.check}, for which it was written")
+    if not recorded:
+        wrong.append(f"has no recorded failures: {RECORD} writes them")
+    else:
+        failed, recorded = failed & asked, recorded & asked
+        changes = [f"also fails {', '.join(sorted(failed - recorded))}"] if failed - recorded else []
+        changes += [f"passes {', '.join(sorted(recorded - failed))}"] if recorded - failed else []
+        wrong += [f"{'; '.join(changes)} (if this is right, {RECORD} records it)"] if changes else []
     if not only and result.diagnosis.kind is not mutant.diagnosis:
         wrong.append(f"is diagnosed {result.diagnosis.kind.value} instead of {mutant.diagnosis.value}")
     return "; ".join(wrong)

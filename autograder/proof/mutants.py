@@ -1,11 +1,13 @@
 """Mutants: copies of the reference solution with one realistic student error each.
 
-The file `mutants.yaml` of a suite holds the edits of each mutant and the checks that it loses.
+The file `mutants.yaml` of a suite holds the edits of each mutant and the check that it is for. All checks that it fails
+are recorded in a snapshot beside that file (`autograder.proof.snapshot`).
 """
 
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ from autograder import layout
 from autograder.checks import suites
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError
+from autograder.proof import snapshot
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same, ten times as fast where it was compiled
 
@@ -37,15 +40,24 @@ class Edit:
 
 @dataclass(frozen=True)
 class Mutant:
-    """A flawed version of the reference solution: the error in words, its edits, and the checks that do not pass.
+    """A flawed version of the reference solution.
 
-    `make demo` grades the ones for the demo. Grading a slow one waits for a time-out.
+    Attributes:
+        id: unique in the assignment.
+        title: the error in words.
+        edits: changes of the reference.
+        check: id of the check for which the mutant was written.
+        fails: ids of all checks that do not pass, as recorded; empty if the mutant is not recorded.
+        diagnosis: what the result says of building and starting the programs.
+        demo: whether `make demo` grades it.
+        slow: whether grading it waits for a time-out.
     """
 
     id: str
     title: str
     edits: tuple[Edit, ...]
-    loses: frozenset[str]
+    check: str
+    fails: frozenset[str] = frozenset()
     diagnosis: Kind = Kind.OK
     demo: bool = False
     slow: bool = False
@@ -58,9 +70,9 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
         GraderError: `mutants.yaml` names a check that the suite does not have.
     """
     suite = suites.hidden(assignment)
-    known = frozenset(check.id for check in suite.checks)
+    known, recorded = frozenset(check.id for check in suite.checks), snapshot.recorded(assignment)
     data = yaml.load((suite.folder / "mutants.yaml").read_text(), LOADER)
-    return tuple(_mutant(entry, data["file"], known) for entry in data["mutants"])
+    return tuple(_mutant(entry, data["file"], known, recorded) for entry in data["mutants"])
 
 
 def write_reference(sources: tuple[str, ...], folder: Path) -> None:
@@ -108,18 +120,18 @@ def _edit(entry: dict[str, Any], file: str) -> Edit:
     return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
 
 
-def _mutant(entry: dict[str, Any], file: str, known: frozenset[str]) -> Mutant:
-    loses = known if entry["loses"] == "all" else frozenset(entry["loses"])
-    if not loses <= known:
+def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: Mapping[str, frozenset[str]]) -> Mutant:
+    check = entry.get("check")
+    if check not in known:
         raise GraderError(
-            f"mutant {entry['id']}: there is no check {', '.join(sorted(loses - known))}: "
-            "correct `loses` in mutants.yaml"
+            f"mutant {entry['id']}: the suite has no check {check}: correct `check` of this mutant in mutants.yaml"
         )
     return Mutant(
         id=entry["id"],
         title=entry["title"],
         edits=tuple(_edit(edit, file) for edit in entry["edits"]),
-        loses=loses,
+        check=check,
+        fails=recorded.get(entry["id"], frozenset()),
         diagnosis=Kind(entry.get("diagnosis", "ok")),
         demo=entry.get("demo", False),
         slow=entry.get("slow", False),

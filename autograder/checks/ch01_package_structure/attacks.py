@@ -24,7 +24,7 @@ FAIL_ALWAYS = "# Copyright 2026 The ROS 2 Python Course Authors\n" + "\n\n".join
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").loses, CHAPTER.mutant("launch_not_installed").loses
+    unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").fails, CHAPTER.mutant("launch_not_installed").fails
     return (
         Attack(
             "package thief",

@@ -102,7 +102,7 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks. One submission combines attacks that do not disturb each other."""
-    slow, blind = mutant("five_hertz").loses, mutant("drives_blind").loses
+    slow, blind = mutant("five_hertz").fails, mutant("drives_blind").fails
     everything = all_checks()
     return (
         Attack(

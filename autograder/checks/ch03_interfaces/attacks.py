@@ -25,7 +25,7 @@ def attacks() -> tuple[Attack, ...]:
             "CMake thief",
             "CMakeLists.txt steals while it is read and while it installs",
             CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": steal}),
-            CHAPTER.mutant("default_qos").loses,
+            CHAPTER.mutant("default_qos").fails,
             exactly=True,
         ),
     )

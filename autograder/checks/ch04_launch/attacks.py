@@ -22,12 +22,12 @@ def attacks() -> tuple[Attack, ...]:
             "launch thief",
             "a launch file that steals, stops its parent, and prints marks",
             CHAPTER.write("no_respawn", heads={ROBOT: SEARCH + STOP_PARENT + FORGE_PASSES}),
-            CHAPTER.mutant("no_respawn").loses,
+            CHAPTER.mutant("no_respawn").fails,
         ),
         Attack(
             "pretended order",
             "a launch file that starts everything at once, and prints that the self-test has ended",
             CHAPTER.write("driver_at_once", heads={SAFE: PRETEND}),
-            CHAPTER.mutant("driver_at_once").loses,
+            CHAPTER.mutant("driver_at_once").fails,
         ),
     )

@@ -53,7 +53,7 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write(
                 "no_range", heads={NODE: STEAL_SECRETS}, swaps={NODE: ("        declare_configuration(self)\n", LIE)}
             ),
-            CHAPTER.mutant("no_range").loses,
+            CHAPTER.mutant("no_range").fails,
             exactly=True,
             says="max_linear_velocity: it took",
         ),

@@ -128,7 +128,7 @@ def attacks() -> tuple[Attack, ...]:
             "report without tests",
             "names no pytest, and setup.py writes the report",
             CHAPTER.write("pytest_unnamed", heads={"speed_guard/setup.py": FORGE_REPORT}),
-            CHAPTER.mutant("pytest_unnamed").loses,
+            CHAPTER.mutant("pytest_unnamed").fails,
             exactly=True,
             says="`colcon test` ran 0 tests.",
         ),

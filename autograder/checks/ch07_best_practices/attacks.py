@@ -35,7 +35,7 @@ def attacks() -> tuple[Attack, ...]:
             "forged answers",
             "a module that answers in the place of the program that calls its functions",
             CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
-            utils | CHAPTER.mutant("never_fatal").loses,
+            utils | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
             "printed warnings",
@@ -49,6 +49,6 @@ def attacks() -> tuple[Attack, ...]:
                     "    due = now - _last[0] >= 10**9\n    _last[0] = now if due else _last[0]\n    return due\n"
                 },
             ),
-            CHAPTER.mutant("silent_when_blind").loses,
+            CHAPTER.mutant("silent_when_blind").fails,
         ),
     )

@@ -34,14 +34,14 @@ def attacks() -> tuple[Attack, ...]:
                     f"{PACKAGE}/{PACKAGE}/status_monitor.py": STEAL_SECRETS + FORGE_PASSES,
                 },
             ),
-            CHAPTER.mutant("other_version").loses,
+            CHAPTER.mutant("other_version").fails,
             says="version: package.xml says",
         ),
         Attack(
             "forged verdicts",
             "a conftest.py that lets every test pass, the linters' too, and takes failures out of the report",
             CHAPTER.write("unused_import", files={f"{PACKAGE}/test/conftest.py": FORGE_VERDICTS}),
-            CHAPTER.mutant("unused_import").loses | {"sector_tests_find_faults"},
+            CHAPTER.mutant("unused_import").fails | {"sector_tests_find_faults"},
             says="Your tests are content with",
         ),
         Attack(

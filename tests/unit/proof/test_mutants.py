@@ -29,26 +29,28 @@ def described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_mutant_is_read_with_defaults_for_missing_fields(described: Path) -> None:
     described.write_text(
-        HEAD + "  - {id: a, title: t, loses: [nan], edits: [{find: x, replace: y}]}\n"
-        "  - {id: b, title: t, loses: all, diagnosis: stuck, demo: true, slow: true,"
+        HEAD + "  - {id: a, title: t, check: nan, edits: [{find: x, replace: y}]}\n"
+        "  - {id: b, title: t, check: warns, diagnosis: stuck, demo: true, slow: true,"
         " edits: [{file: other.py, find: x, replace: y}]}\n"
     )
+    described.with_name("mutants.snapshot.yaml").write_text("b: all\n")
     first, second = mutants("02_nodes")
-    assert (first.loses, first.diagnosis, first.demo, first.slow) == (frozenset({"nan"}), Kind.OK, False, False)
+    assert (first.check, first.fails) == ("nan", frozenset())
+    assert (first.diagnosis, first.demo, first.slow) == (Kind.OK, False, False)
     assert first.edits == (Edit("my_robot_package/setup.py", "x", "y"),)
-    assert second.loses == {check.id for check in suites.hidden("02_nodes").checks}
+    assert second.fails == {check.id for check in suites.hidden("02_nodes").checks}
     assert (second.diagnosis, second.demo, second.slow) == (Kind.STUCK, True, True)
     assert second.edits[0].file == "other.py"
 
 
-def test_a_mutant_that_loses_an_unknown_check_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, loses: [nan, flies], edits: []}\n")
-    with pytest.raises(GraderError, match="mutant a: there is no check flies"):
+def test_a_mutant_for_an_unknown_check_is_refused(described: Path) -> None:
+    described.write_text(HEAD + "  - {id: a, title: t, check: flies, edits: []}\n")
+    with pytest.raises(GraderError, match="mutant a: the suite has no check flies"):
         mutants("02_nodes")
 
 
 def test_a_diagnosis_that_does_not_exist_is_refused(described: Path) -> None:
-    described.write_text(HEAD + "  - {id: a, title: t, loses: [nan], diagnosis: tired, edits: []}\n")
+    described.write_text(HEAD + "  - {id: a, title: t, check: nan, diagnosis: tired, edits: []}\n")
     with pytest.raises(ValueError, match="tired"):
         mutants("02_nodes")
 
@@ -59,7 +61,7 @@ def test_an_edit_whose_text_does_not_occur_exactly_once_is_refused(tmp_path: Pat
     text = (tmp_path / "reference" / "setup.py").read_text()
     times = text.count(find)
     assert times != 1
-    flawed = Mutant("a", "t", (Edit("my_robot_package/setup.py", find, ""),), frozenset())
+    flawed = Mutant("a", "t", (Edit("my_robot_package/setup.py", find, ""),), "nan")
     with pytest.raises(GraderError, match=f"mutant a: '{find}' occurs {times} times in my_robot_package/setup.py"):
         write_mutant(flawed, ("my_robot_package",), tmp_path / "out")
 
@@ -76,20 +78,20 @@ def test_every_mutant_of_the_course_fits_the_reference_and_changes_it(assignment
                 for name in ("reference", mutant.id)
             )
             assert before != after
-        assert mutant.loses
+        assert mutant.check in mutant.fails
 
 
 def test_mutants_have_unique_names_and_every_check_is_lost_by_one() -> None:
     for assignment in suites.graded_assignments():
         every = mutants(assignment)
         assert len({mutant.id for mutant in every}) == len(every)
-        lost = frozenset().union(*(mutant.loses for mutant in every))
+        lost = frozenset().union(*(mutant.fails for mutant in every))
         assert lost == {check.id for check in suites.hidden(assignment).checks}
 
 
 def test_a_mutant_can_write_and_delete_whole_files(described: Path, tmp_path: Path) -> None:
     described.write_text(
-        HEAD + "  - {id: a, title: t, loses: [nan], edits: [{file: my_robot_package/new/notes.txt, write: hello},"
+        HEAD + "  - {id: a, title: t, check: nan, edits: [{file: my_robot_package/new/notes.txt, write: hello},"
         " {delete: true}]}\n"
     )
     (mutant,) = mutants("02_nodes")

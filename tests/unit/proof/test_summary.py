@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
@@ -56,10 +57,14 @@ def test_a_release_gains_nothing() -> None:
     assert verify_zero(result("nan")).startswith("it scores")
 
 
-def test_a_mutant_loses_the_checks_that_it_names_and_no_other() -> None:
+def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> None:
     mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
-    assert verify_mutant(mutant, result(*mutant.loses)) == ""
-    assert verify_mutant(mutant, result("nan")) == "also loses nan; keeps minus_inf, warns"
+    assert verify_mutant(mutant, result(*mutant.fails)) == ""
+    wrong = verify_mutant(mutant, result("nan"))
+    assert wrong.startswith(f"passes {mutant.check}, for which it was written; also fails nan; passes minus_inf, warns")
+    assert "`autograder verify --record`" in wrong
+    unrecorded = replace(mutant, fails=frozenset())
+    assert verify_mutant(unrecorded, result(*mutant.fails)).startswith("has no recorded failures")
 
 
 def test_the_summary_counts_each_kind() -> None:
@@ -94,11 +99,11 @@ def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_the_quick_proof_fails_every_check(assignment: str) -> None:
     names = {case.name for case in cases(assignment, quick=True)}
-    covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.loses}
+    covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.fails}
     assert covered == {check.id for check in suites.hidden(assignment).checks}
 
 
 @pytest.mark.parametrize("assignment", suites.graded_assignments())
 def test_each_check_has_three_mutants(assignment: str) -> None:
-    lost = Counter(name for mutant in mutants(assignment) for name in mutant.loses)
+    lost = Counter(name for mutant in mutants(assignment) for name in mutant.fails)
     assert [check.id for check in suites.hidden(assignment).checks if lost[check.id] < 3] == []
