@@ -25,7 +25,6 @@ from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.sandbox.launcher import restore_sigint
-from tests.sampling import files_left_out
 
 # The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
 # A busy machine is slow, and that is no failure.
@@ -46,7 +45,7 @@ _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
 # Files of long tests that share nothing. What takes longest comes first, so that all workers end at the same time.
 _NOTEBOOKS, _PROOF = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
 _JUPYTERLAB = "tests/browser/test_solve_in_jupyterlab.py"
-_APART = (_NOTEBOOKS, _PROOF, "tests/e2e/test_attacks.py")
+_APART = (_NOTEBOOKS, _PROOF, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
 _FIRST = (_NOTEBOOKS, "tests/e2e/test_nbgrader.py", _JUPYTERLAB, _PROOF, "tests/e2e", "tests/browser")
 
 
@@ -66,13 +65,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile:
     return ByFile(config, log)
 
 
-@pytest.hookimpl(tryfirst=True)  # before the option -m reads the marks
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave some files for the night, but none that the command line names, and sort the tests by their place."""
-    left_out = files_left_out() - {argument.partition("::")[0] for argument in config.args}
-    for item in items:
-        if item.nodeid.partition("::")[0] in left_out:
-            item.add_marker(pytest.mark.nightly)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Sort the tests by their place."""
 
     def place(item: pytest.Item) -> int:
         return next((place for place, start in enumerate(_FIRST) if item.nodeid.startswith(start)), len(_FIRST))

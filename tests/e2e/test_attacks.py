@@ -1,8 +1,8 @@
 """No attack gains a point, sees a hidden check, or stops the grader.
 
 Each attack is graded by the checks that it must lose. Those on 02 are graded by all checks but two sorts: the drives
-through a world take most of a grading, and one attack makes each check wait. Of the attacks on the other chapters, the
-commit draws one. The others run at night, and `make verify` grades all of them by all checks.
+through a world take most of a grading, and one attack makes each check wait. `make verify` grades every attack by all
+checks.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from autograder.proof.claims import Attack, hidden_lines
 from autograder.proof.payloads import CANARY, LOOT
 from autograder.result import Result
 from autograder.sandbox import cgroup
-from tests.sampling import commit, sample, unless
 
 DRIVES = frozenset({"room", "pillars", "corridor"})
 STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends
@@ -33,12 +32,9 @@ STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the message
 
 def _attacks() -> Iterator[object]:
     """Yield each attack with its assignment."""
-    found = [(assignment, attack) for assignment in suites.graded_assignments() for attack in attacks(assignment)]
-    others = [attack.id for assignment, attack in found if assignment != ASSIGNMENT]
-    chosen = sample(others, len(others), commit())
-    for assignment, attack in found:
-        marks = unless(assignment == ASSIGNMENT or attack.id in chosen)
-        yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}", marks=marks)
+    for assignment in suites.graded_assignments():
+        for attack in attacks(assignment):
+            yield pytest.param(assignment, attack, id=f"{assignment} {attack.id}")
 
 
 def _everything_written(out: Path) -> str:

@@ -1,8 +1,6 @@
-"""The proof's part for each change: some references, releases, variants and mutants.
+"""The proof's part for each change: `autograder verify --quick`, the rewritten answers, and a part of each population.
 
-`autograder verify --quick` has one mutant for each check. The commit draws one in 40 of them, a third of the
-references, a ninth of the releases, an 18th of the variants, and eight mutants of one chapter's population. The runs of
-many commits take them all, and so does `make nightly`.
+It has every reference, release and variant, and one mutant for each check. `make nightly` has the whole proof.
 """
 
 from __future__ import annotations
@@ -14,14 +12,12 @@ import pytest
 
 from autograder.checks import suites
 from autograder.proof.cases import Case, cases, rewritten_cases
-from autograder.proof.claims import CaseKind
 from autograder.proof.mutation_run import prepared_run
 from autograder.proof.population import population
 from autograder.proof.prove import prove
 from autograder.proof.survivors import reasons
 from autograder.proof.worker_pool import WorkerPool
 from autograder.sandbox import Tier
-from tests.sampling import commit, sample, unless
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case
@@ -30,22 +26,7 @@ PROOF = {
 }
 # Chapters of which the whole population was graded, and every survivor has a reason.
 SURVEYED = [name for name in suites.graded_assignments() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
-PART = 8  # mutants of a chapter's population for a commit
-# Of how many submissions of a kind the commit draws one.
-ONE_IN = {CaseKind.REFERENCE: 3, CaseKind.RELEASE: 9, CaseKind.VARIANT: 18, CaseKind.MUTANT: 40}
-
-
-def chosen(draw: str | None = None) -> set[str]:
-    """Return the ids of the cases that run for each change."""
-    of_kinds = ((one_in, [id for id, case in PROOF.items() if case.kind is kind]) for kind, one_in in ONE_IN.items())
-    return set().union(*(sample(ids, one_in, draw) for one_in, ids in of_kinds))
-
-
-def test_the_samples_of_many_commits_contain_all_cases() -> None:
-    draws = [chosen(str(number)) for number in range(800)]
-    assert set.union(*draws) == set(PROOF)
-    assert len({len(draw) for draw in draws}) == 1
-    assert len(draws[0]) < len(PROOF) / 5
+PART = 4  # mutants of a chapter's population
 
 
 @pytest.fixture(scope="session")
@@ -55,9 +36,7 @@ def workers() -> Iterator[WorkerPool]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "case", [pytest.param(PROOF[id], id=id, marks=unless(id in now)) for now in [chosen()] for id in PROOF]
-)
+@pytest.mark.parametrize("case", PROOF.values(), ids=PROOF)
 def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:
     (claim,) = prove([case], seed=2026, out=tmp_path, workers=workers)
     log = tmp_path / case.assignment / case.name / "grader.log"
@@ -67,15 +46,14 @@ def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "assignment", [pytest.param(name, marks=unless(name in now)) for now in [sample(SURVEYED, 9)] for name in SURVEYED]
-)
-def test_each_sampled_mutant_of_the_population_is_killed_or_has_a_reason(assignment: str, workers: WorkerPool) -> None:
+@pytest.mark.parametrize("assignment", SURVEYED)
+def test_mutants_of_each_population_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
     found = population(assignment)
     mutants = {mutant.id: mutant for mutant in found.mutants}
-    chosen = sample(mutants, -(-len(mutants) // PART), commit()) - reasons(assignment, found).keys()
+    asked = sorted(mutants.keys() - reasons(assignment, found).keys())
+    chosen = asked[:: -(-len(asked) // PART)]
     with prepared_run(assignment, workers, 2026) as run:
-        results = [run.run_mutant(mutants[name]) for name in sorted(chosen)]
+        results = [run.run_mutant(mutants[name]) for name in chosen]
     print(*results, sep="\n")
     assert not [mutants[result.id].diff() for result in results if not result.killed]
 

@@ -69,8 +69,8 @@ def typical_mistake(chapter: Chapter) -> dict[str, str]:
         else:
             if not mutant.slow:
                 candidates.append((mutant, {name: text for name, text in texts.items() if text != right[name]}))
-    seen = [each for each in candidates if each[0].loses & visible]
-    return (min if seen else max)(seen or candidates, key=lambda each: len(each[0].loses))[1]
+    seen = [each for each in candidates if each[0].fails & visible]
+    return (min if seen else max)(seen or candidates, key=lambda each: len(each[0].fails))[1]
 
 
 def typed(cell: NotebookNode, text: str, round: int) -> NotebookNode:
