@@ -6,13 +6,13 @@ import importlib.util
 import os
 import sys
 import sysconfig
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from autograder.ros.exceptions import RosNotFoundError, WrongDistroError
+from autograder.ros.log_folder import log_folder
 
 DISTRO = "jazzy"
 
@@ -70,7 +70,7 @@ class RosEnvironment:
         Args:
             overlays: install prefixes of colcon workspaces, the nearest first; they go before the installation.
             domain: `ROS_DOMAIN_ID` (0 to 232); left alone when not given.
-            log_dir: a writable folder for log files. `rclpy.init` raises without one.
+            log_dir: a writable folder for log files, `log_folder()` by default. `rclpy.init` raises without one.
 
         Raises:
             ValueError: `domain` is outside 0..232.
@@ -87,7 +87,7 @@ class RosEnvironment:
             # Shared memory between two /dev/shm discovers peers and then silently delivers nothing.
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
             "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
-            "ROS_LOG_DIR": str(log_dir or Path(tempfile.gettempdir()) / f"ros2-log-{os.getuid()}"),
+            "ROS_LOG_DIR": str(log_dir or log_folder()),
         }
         if domain is not None:
             variables["ROS_DOMAIN_ID"] = str(domain)

@@ -1,0 +1,44 @@
+"""ROS's log folder is the user's own: nobody else can make it first, or write to it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from autograder.ros import RosEnvironment
+from autograder.ros.log_folder import log_folder
+
+ROS = RosEnvironment("wheels", (Path("/venv"),), Path("/venv/lib/rclpy"))
+
+
+def test_logs_go_below_the_user_s_home_and_to_no_name_that_another_user_could_take(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = tmp_path / "tmp"
+    taken.mkdir()
+    (taken / f"ros2-log-{os.getuid()}").write_text("a victim's folder, made first")
+    monkeypatch.setattr(tempfile, "tempdir", str(taken))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.delenv("ROS_HOME", raising=False)
+    folder = Path(ROS.variables()["ROS_LOG_DIR"])
+    assert folder == tmp_path / "home" / ".ros" / "log"
+    assert folder.is_dir()
+    assert log_folder({"ROS_HOME": str(tmp_path / "ros")}) == tmp_path / "ros" / "log"
+
+
+@pytest.mark.parametrize("home", ["open", "closed", "missing"])
+def test_where_the_home_s_folder_is_not_this_user_s_alone_a_new_folder_is_made(tmp_path: Path, home: str) -> None:
+    environ = {"HOME": str(tmp_path)} if home != "missing" else {}
+    if home == "open":
+        (tmp_path / ".ros" / "log").mkdir(parents=True)
+        (tmp_path / ".ros" / "log").chmod(0o777)
+    if home == "closed":
+        (tmp_path / ".ros").write_text("in the way")
+    folder = log_folder(environ)
+    assert not folder.is_relative_to(tmp_path / ".ros")
+    assert folder.stat().st_uid == os.geteuid()
+    assert folder.stat().st_mode & 0o077 == 0
+    assert log_folder(environ) == folder
