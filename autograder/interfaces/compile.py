@@ -86,8 +86,8 @@ def _unit(work: Path, name: str, sources: list[Path]) -> Path:
 
 
 def _compilation(source: Path, target: str, flags: list[str]) -> list[str]:
-    # C++14 is the least that Fast CDR takes, and its standard headers are the shortest.
-    compiler = ["g++", "-std=c++14"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
+    # C++14 is the least that Fast CDR takes, and its standard headers are the shortest. GNU's has no trigraphs.
+    compiler = ["g++", "-std=gnu++14"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
     return [*compiler, "-c", *flags, str(source), "-o", target]
 
 

@@ -1,8 +1,8 @@
 """Reading interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
 
 The real parser decides what a definition means. What it would let through and generated code could not bear (words of
-C and Python, values that end a string literal, gigantic arrays) is refused here. The texts that go on hold no comment:
-comments do not count for a type's hash, and nothing of them shall reach generated code.
+C and Python, gigantic arrays) is refused here. The text that goes on is written anew from what was parsed, without
+comments: nothing of the author's own text reaches a generator, and comments do not count for a type's hash.
 """
 
 from __future__ import annotations
@@ -57,13 +57,68 @@ class DefinitionError(InterfaceError):
         self.file, self.line = file, line
 
 
+Value = bool | int | float | str
+"""The value of a constant; that of a field may also be a list of them."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a message."""
+
+    name: str
+    base: str  # `float64`, `string`; of a message its name, `Header`
+    package: str | None = None  # of a message
+    max_length: int | None = None  # of a text
+    is_array: bool = False
+    size: int | None = None  # of an array: how many elements there are
+    at_most: bool = False  # whether `size` is a bound
+    default: Value | list[Value] | None = None
+
+    def __str__(self) -> str:
+        """Return the line that defines the field."""
+        base = f"{self.package}/{self.base}" if self.package else self.base
+        length = "" if self.max_length is None else f"<={self.max_length}"
+        array = f"[{'<=' * self.at_most}{'' if self.size is None else self.size}]" if self.is_array else ""
+        return f"{base}{length}{array} {self.name}{'' if self.default is None else f' {_literal(self.default)}'}"
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A constant of a message."""
+
+    name: str
+    base: str
+    value: Value
+
+    def __str__(self) -> str:
+        """Return the line that defines the constant."""
+        return f"{self.base} {self.name}={_literal(self.value)}"
+
+
+@dataclass(frozen=True)
+class Section:
+    """A message, or one section of a service or an action."""
+
+    fields: tuple[Field, ...]
+    constants: tuple[Constant, ...]
+
+    def __str__(self) -> str:
+        """Return the lines that define the section."""
+        return "".join(f"{element}\n" for element in (*self.constants, *self.fields))
+
+
 @dataclass(frozen=True)
 class Definition:
     """One interface."""
 
     path: str  # `msg/RobotStatus.msg`
-    text: str  # the definition without comments
+    sections: tuple[Section, ...]
     uses: tuple[tuple[str, str, str], ...]  # the messages of other packages in it, as (package, type, the line's text)
+
+    @property
+    def text(self) -> str:
+        """The definition, written anew."""
+        return "---\n".join(map(str, self.sections))
 
 
 def require_package_name(name: str) -> None:
@@ -100,7 +155,7 @@ def read(package: str, files: Mapping[str, str]) -> tuple[Definition, ...]:
     messages = {path[4:-4]: reader for path, reader in read.items() if path.startswith("msg/")}
     for reader in read.values():
         reader.weigh(messages, ())
-    return tuple(Definition(path, reader.text, tuple(reader.uses)) for path, reader in read.items())
+    return tuple(Definition(path, reader.sections, tuple(reader.uses)) for path, reader in read.items())
 
 
 class _Reader:
@@ -114,12 +169,9 @@ class _Reader:
         self._name = name.rpartition(".")[0]
         lines = raw.replace("\r\n", "\n").split("\n")
         self._lines = [self._clean(line) for line in lines]
-        self.text = "\n".join(line for line in self._lines if line) + "\n"
         self.uses: list[tuple[str, str, str]] = []
         self._arrays: list[tuple[int, str | None, str]] = []
-        sections = self._sections()
-        for section in sections:
-            self._read_section(section)
+        self.sections = tuple(self._read_section(lines) for lines in self._split())
 
     def weigh(self, messages: Mapping[str, _Reader], above: tuple[str, ...]) -> int:
         """Count the elements that a fresh message of this type makes room for."""
@@ -151,7 +203,7 @@ class _Reader:
             raise self._error("the separator --- stands alone, without comment or space", line)
         return code
 
-    def _sections(self) -> list[list[str]]:
+    def _split(self) -> list[list[str]]:
         sections: list[list[str]] = [[]]
         for line in self._lines:
             if line == "---":
@@ -164,10 +216,12 @@ class _Reader:
             raise self._error(problem)
         return sections
 
-    def _read_section(self, lines: list[str]) -> None:
+    def _read_section(self, lines: list[str]) -> Section:
         if len(lines) > MAX_FIELDS:
             raise self._error(f"more than {MAX_FIELDS} fields: use an array")
         names: set[str] = set()
+        fields: list[Field] = []
+        constants: list[Constant] = []
         for line in lines:
             if line.startswith(" "):
                 raise self._error("the line begins with a space: take it out", line)
@@ -178,8 +232,26 @@ class _Reader:
                 names.add(element.name)
             for constant in spec.constants:
                 self._check_value(constant.value, line)
+                constants.append(Constant(constant.name, str(constant.type), constant.value))
             for field in spec.fields:
                 self._check_field(field, line)
+                kind = field.type
+                fields.append(
+                    Field(
+                        *(field.name, kind.type, kind.pkg_name, kind.string_upper_bound, bool(kind.is_array)),
+                        *(kind.array_size, bool(kind.is_upper_bound), field.default_value),
+                    )
+                )
+        section = Section(tuple(fields), tuple(constants))
+        if not self._reads_the_same(section):
+            raise self._error("a text with both kinds of quotation marks: use one kind in it")
+        return section
+
+    def _reads_the_same(self, section: Section) -> bool:
+        """Return whether the lines that are written anew mean what they were written from."""
+        spec = self._parse(str(section))
+        values = [constant.value for constant in section.constants] + [field.default for field in section.fields]
+        return values == [constant.value for constant in spec.constants] + [f.default_value for f in spec.fields]
 
     def _parse(self, line: str) -> Any:
         from rosidl_adapter.parser import parse_message_string
@@ -218,6 +290,14 @@ class _Reader:
         for single in value if isinstance(value, list) else [value]:
             if isinstance(single, float) and not math.isfinite(single):
                 raise self._error("a value must be a finite number", line)
+
+
+def _literal(value: Value | list[Value]) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_literal, value))}]"
+    if isinstance(value, str):
+        return next((f"{quote}{value}{quote}" for quote in "\"'" if quote not in value), value)
+    return repr(value).lower()
 
 
 def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:

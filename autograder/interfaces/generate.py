@@ -75,6 +75,20 @@ def adapt(prefix: Path, package: str, texts: dict[str, str]) -> tuple[str, ...]:
     return tuple(path.rpartition(".")[0] + ".idl" for path in texts)
 
 
+def escape_texts() -> None:
+    """Let the generators write each character of a text as an escape, but for plain letters and digits.
+
+    So no text can leave its literal, whatever a compiler makes of quotation marks, trigraphs or line ends.
+    """
+    c, python = import_module("rosidl_generator_c"), import_module("rosidl_generator_py.generate_py_impl")
+
+    def escaped(text: str, code: str) -> str:
+        return "".join(chr(byte) if chr(byte).isalnum() and byte < 128 else code % byte for byte in text.encode())
+
+    c.escape_string = c.escape_wstring = lambda text: escaped(text, "\\%03o")  # type: ignore[attr-defined]
+    python.quoted_string = lambda text: f"'{escaped(text, chr(92) + 'x%02x')}'"  # type: ignore[attr-defined]
+
+
 def share_parsing(job: InterfaceBuildJob) -> None:
     """Parse each .idl, and let the generators take what came of it."""
     parser = import_module("rosidl_parser.parser")
@@ -191,6 +205,7 @@ def main() -> None:
     prefixes = tuple(Path(path) for path in recipe["prefixes"])
     files = adapt(prefix, recipe["package"], recipe["texts"])
     job = InterfaceBuildJob(recipe["package"], prefix, work, files, prefixes, closure(prefixes, recipe["uses"]))
+    escape_texts()
     share_parsing(job)
     generate(job)
     install(job)

@@ -22,8 +22,24 @@ def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
     (definition,) = read(
         "my_msgs", {"msg/A.msg": "# */ evil\n\nstd_msgs/Header header  # \\\nint32 X=3\r\nint32[] y\n"}
     )
-    assert definition.text == "std_msgs/Header header\nint32 X=3\nint32[] y\n"
+    assert definition.text == "int32 X=3\nstd_msgs/Header header\nint32[] y\n"
     assert definition.uses == (("std_msgs", "Header", "std_msgs/Header header"),)
+
+
+def test_the_text_is_written_anew_and_means_the_same() -> None:
+    lines = {
+        "int32   X  =  0x10": "int32 X=16",
+        "bool ON=1": "bool ON=true",
+        "string S='it is'": 'string S="it is"',
+        """string Q=say "it's" twice""": """string Q=say "it's" twice""",
+        "string TRIGRAPH='??/\"; x //'": """string TRIGRAPH='??/"; x //'""",
+        "float64[<=3]   y   [1, 2.50]": "float64[<=3] y [1.0, 2.5]",
+        "string<=4[2] words ['a', \"b'\"]": """string<=4[2] words ["a", "b'"]""",
+        "int8  z  -0": "int8 z 0",
+    }
+    (definition,) = read("my_msgs", {"msg/A.msg": "\n".join(lines)})
+    assert definition.text.splitlines() == list(lines.values())
+    assert read("my_msgs", {"msg/A.msg": definition.text}) == (definition,)
 
 
 def test_services_and_actions_use_the_packages_of_their_generated_messages() -> None:
@@ -121,4 +137,5 @@ LINE = st.lists(st.sampled_from([*WORDS, "---", "#", "\\"]) | st.text(max_size=4
 def test_any_text_is_a_definition_or_refused(path: str, text: str) -> None:
     with contextlib.suppress(DefinitionError):
         (definition,) = read("my_msgs", {path: text})
-        assert read("my_msgs", {path: definition.text}) == (definition,)
+        (again,) = read("my_msgs", {path: definition.text})
+        assert again.sections == definition.sections
