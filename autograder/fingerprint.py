@@ -1,7 +1,11 @@
-"""Digests the files of the course that a grading reads.
+"""The version of a suite, and a digest of all files that a grading reads.
 
-A submission that is graded twice with the same seed and the same digest gets the same result. `autograder grade
---resume` relies on this.
+A submission that is graded twice with the same seed and the same version gets the same mark: `autograder grade
+--resume` relies on this. A version holds the digest of the chapter's files and of what its checks declare to read, and
+`GRADER_VERSION` for everything else.
+
+The digest of all files changes with every comment. It is for those who ask for more than the same mark: the proof of
+the grader, and the machines of a cluster.
 """
 
 from __future__ import annotations
@@ -12,6 +16,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from autograder import layout
+
+# The version of the grader and the simulator, of what the checks of all chapters use. Raise it by one with each change
+# by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
+# another version are graded again by `--resume`.
+GRADER_VERSION = 1
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(
@@ -37,34 +46,46 @@ PROOF = frozenset(
 CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\w+)")
 
 
-def digest(assignment: str, reads: Iterable[str] = ()) -> str:
-    """Return a digest of the files that a grading of the assignment reads, as 12 hexadecimal digits.
+def version(assignment: str, reads: Iterable[str] = ()) -> str:
+    """Return the version of an assignment's suite: `GRADER_VERSION`, a dash and 12 hexadecimal digits.
 
     Args:
         assignment: name of the assignment.
         reads: files and folders that its checks read beside their own, as paths in the course's folder.
     """
-    found = hashlib.sha256()
-    for path in files(assignment, reads):
-        name = path.relative_to(layout.COURSE.root if path.is_relative_to(layout.COURSE.root) else layout.ROOT)
-        found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
-    return found.hexdigest()[:12]
+    return f"{GRADER_VERSION}-{_digest(chapter_files(assignment, reads))}"
+
+
+def digest(assignment: str, reads: Iterable[str] = ()) -> str:
+    """Return a digest of all files that a grading reads, 12 hexadecimal digits; the arguments are as in `version`."""
+    return _digest(files(assignment, reads))
 
 
 def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
-    """Return the sorted paths of the files that a grading of the assignment reads; the arguments are as in `digest`."""
+    """Return the sorted paths of all files that a grading reads; the arguments are as in `version`."""
     course, home = layout.COURSE, layout.ROOT
-    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
+    read = (path for path in shared if _is_read(path.relative_to(home).parts))
+    return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
+
+
+def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
+    """Return the sorted paths of a chapter's files and of what its checks read; the arguments are as in `version`."""
+    course = layout.COURSE
+    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     suites = _below(course.root, (checks / name for name in _chapters(assignment, checks)))
-    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
-    return sorted(
-        {
-            *(path for path in shared if _is_read(path.relative_to(home).parts)),
-            *(path for path in suites if PROOF.isdisjoint(path.relative_to(checks).parts)),
-            *_below(course.root, (*given, *(course.root / name for name in (course.worlds, *reads)))),
-        }
-    )
+    own = (path for path in suites if PROOF.isdisjoint(path.relative_to(checks).parts))
+    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src", *(course.root / name for name in reads))
+    return sorted({*own, *_below(course.root, given)})
+
+
+def _digest(paths: Iterable[Path]) -> str:
+    """Return a digest of the names and contents of files, as 12 hexadecimal digits."""
+    found = hashlib.sha256()
+    for path in paths:
+        name = path.relative_to(layout.COURSE.root if path.is_relative_to(layout.COURSE.root) else layout.ROOT)
+        found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+    return found.hexdigest()[:12]
 
 
 def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:

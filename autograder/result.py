@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from jsonschema.protocols import Validator
 
 SCHEMA = "autograder-result/1"
+UNFINISHED = ".unfinished"  # in the folder of a result: the folder of a grading that is to replace it
 MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that is held up for so long loses no check
 
 
@@ -133,6 +134,7 @@ class Result:
     time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
     time_note: str = ""  # the sentence that names that program and the reason
     held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
+    files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
 
     @property
     def score(self) -> float:

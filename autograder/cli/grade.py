@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -21,10 +21,8 @@ from autograder.cli.options import (
 )
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import UsageError
-from autograder.export import Stored, load
-from autograder.export.changes import changes
+from autograder.export.earlier import EarlierMarks
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
-from autograder.grading.pipeline import RESULT
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
 from autograder.result import Result, Status, write_json
@@ -91,7 +89,7 @@ def grade(
     """
     suites.hidden(assignment)
     with _find_submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
-        before = _stored(entries, out) if resume else {}
+        earlier = EarlierMarks(out, [entry.student for entry in entries])
         try:
             with _cluster_grader(scheduler, jobs, certificates) as grade_each:
                 results = grade_all(
@@ -110,20 +108,11 @@ def grade(
             click.echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
-    again = [Stored(result, out / result.student) for result in results if result.student in before]
-    if changed := changes(list(before.values()), again):
+    if resume and (changed := earlier.changed(results)):
         click.echo("\nWhat a change of the suite or of the submission changed:")
         print_changes(changed)
+    earlier.forget(results)
     sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
-
-
-def _stored(entries: Sequence[Entry], out: Path) -> dict[str, Stored]:
-    """Return the marks that are there before a class is graded again, by student."""
-    found: list[Stored] = []
-    for path in (out / entry.student / RESULT for entry in entries):
-        with suppress(UsageError):  # what cannot be read is graded again
-            found += load(path) if path.is_file() else ()
-    return {item.result.student: item for item in found if item.result.status is Status.GRADED}
 
 
 def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None:

@@ -15,8 +15,9 @@ from autograder.cluster.exceptions import AnswerError
 from autograder.cluster.parcel import Answer
 from autograder.exceptions import UsageError
 from autograder.grading.batch import GradingRequest
-from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, not_graded
-from autograder.result import Result, Status, from_json, write_atomically, write_json
+from autograder.grading.pipeline import not_graded
+from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result
+from autograder.result import Result, Status, from_json, write_json
 
 PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
 RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
@@ -37,10 +38,7 @@ def accept(data: object, request: GradingRequest, sha256: str) -> Result:
     _require_artifacts({name: content for name, content in files.items() if name not in (NOTEBOOK, LOG)}, result)
     if NOTEBOOK in files:
         _require_notebook(files[NOTEBOOK])
-    clear(request.out)
-    for name, content in files.items():
-        write_atomically(request.out / name, content)
-    return write(result, request)
+    return write(result, request, files)
 
 
 def give_up(request: GradingRequest, why: str, log: str) -> Result:
@@ -48,16 +46,17 @@ def give_up(request: GradingRequest, why: str, log: str) -> Result:
 
     `why` is a sentence for the result, `log` what an instructor reads beside it.
     """
-    clear(request.out)
-    write_atomically(request.out / LOG, log.encode("utf-8", "backslashreplace"))
-    suite = suites.hidden(request.assignment)
-    return write(not_graded(suite, request.student, request.seed, request.isolation, why), request)
+    suite, files = suites.hidden(request.assignment), {LOG: log.encode("utf-8", "backslashreplace")}
+    return write(not_graded(suite, request.student, request.seed, request.isolation, why), request, files)
 
 
-def write(result: Result, request: GradingRequest) -> Result:
-    """Write the result with the student's name, which is not sent to workers."""
+def write(result: Result, request: GradingRequest, files: Mapping[str, bytes] = {}) -> Result:
+    """Write files and the result with the student's name, which is not sent to workers."""
     named = replace(result, student=request.student)
-    write_json(request.out / RESULT, named.to_json())
+    with new_result(request.out) as folder:
+        for name, content in files.items():
+            (folder / name).write_bytes(content)
+        write_json(folder / RESULT, named.to_json())
     return named
 
 
@@ -68,8 +67,9 @@ def _result(data: bytes, request: GradingRequest, sha256: str) -> Result:
         raise AnswerError(f"a worker's answer holds no result: {error}") from None
     suite = suites.hidden(request.assignment)
     graded = result.status is Status.GRADED
-    graded_as = (result.assignment, result.suite_version, result.seed, result.isolation, result.max_score)
-    asked = (request.assignment, suite.version, request.seed, request.isolation.value, suite.max_score)
+    versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
+    graded_as = (result.assignment, *theirs, result.seed, result.isolation, result.max_score)
+    asked = (request.assignment, *versions, request.seed, request.isolation.value, suite.max_score)
     if graded_as != asked or (graded and result.submission_sha256 not in (sha256, "0" * 64)):
         raise AnswerError(f"a worker graded {(*graded_as, result.submission_sha256)} instead of {(*asked, sha256)}")
     worth = [(check.id, check.group, check.points) for check in suite.checks]

@@ -1,8 +1,8 @@
 """The versions with which a machine grades. Only machines with the same versions give the same results.
 
-A worker offers a resource of Dask for each pair of assignment and tier. Its name also holds the version of the suite,
-the digest of the pinned packages and the version of Python. A submission asks for one such resource, so the scheduler
-never gives it to a worker that differs.
+A worker offers a resource of Dask for each pair of assignment and tier. Its name also holds the digest of the files
+that the grading reads, that of the pinned packages and the version of Python. A submission asks for one such resource,
+so the scheduler never gives it to a worker that differs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def resource(assignment: str, tier: Tier) -> str:
     """Return the name of the resource by which this machine grades an assignment in a tier."""
     lock = hashlib.sha256((layout.ROOT / LOCK).read_bytes()).hexdigest()[:12]
     python = ".".join(platform.python_version_tuple()[:2])
-    return f"autograder {assignment} {suites.hidden(assignment).version} {lock} {python} {tier.value}"
+    return f"autograder {assignment} {suites.hidden(assignment).files_digest} {lock} {python} {tier.value}"
 
 
 def resources() -> list[str]:

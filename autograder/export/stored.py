@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.result import Result, from_json
+from autograder.result import UNFINISHED, Result, from_json
 
 ONE = "result.json"
 MANY = "results.json"
@@ -37,7 +37,8 @@ def load(path: Path) -> tuple[Stored, ...]:
         raise UsageError(f"{path}: no such file or folder; give the folder that `autograder grade --out` wrote")
     if path.is_file():
         return _read(path)
-    files = sorted(path.rglob(ONE)) or sorted(path.glob(MANY))
+    complete = (file for file in path.rglob(ONE) if file.parent.name != UNFINISHED)  # its grading was interrupted
+    files = sorted(complete) or sorted(path.glob(MANY))
     if not files:
         raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
     return tuple(stored for file in files for stored in _read(file))

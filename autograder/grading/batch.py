@@ -12,7 +12,8 @@ from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
 from autograder.grading.parallel import map_parallel
-from autograder.grading.pipeline import LOG, NOTEBOOK, RESULT, clear, grade_submission
+from autograder.grading.pipeline import grade_submission
+from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result
 from autograder.result import Result, Status, from_json, write_json
 from autograder.sandbox import Tier
 
@@ -76,15 +77,15 @@ class GradingRequest:
 
     def store_copy(self, result: Result, folder: Path) -> Result:
         """Store the result of an equal submission, whose files lie in `folder`, as that of this one."""
-        clear(self.out)
         shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run)}
-        for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
-            if path.is_file():
-                shutil.copy(path, self.out)
         submission = self.submission()
         digest = submission.sha256 if submission and result.status is Status.GRADED else result.submission_sha256
         own = replace(result, student=self.student, submission_sha256=digest)
-        write_json(self.out / RESULT, own.to_json())
+        with new_result(self.out) as new:
+            for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
+                if path.is_file():
+                    shutil.copy(path, new)
+            write_json(new / RESULT, own.to_json())
         return own
 
 

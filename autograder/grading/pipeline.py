@@ -19,14 +19,12 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grading.job import ALL, Job, Scope
 from autograder.grading.machine_lock import MachineLock
+from autograder.grading.store import LOG, RESULT, empty, new_result
 from autograder.result import Build, CheckResult, Result, Status, from_json, write_json
 from autograder.sandbox import Tier, require
 from autograder.sandbox.cell import CellReport, run_in_cell
 from autograder.sandbox.process import Ending
 
-RESULT = "result.json"
-LOG = "grader.log"
-NOTEBOOK = "notebook.ipynb"
 TRIES = 2
 FAILED = f"The grader failed on this submission, {TRIES} times."
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
@@ -60,7 +58,8 @@ def grade_submission(
         assignment: which assignment it answers.
         student: whose it is; stands in the result only.
         seed: every hidden input is drawn from it; the same seed gives the same inputs.
-        out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed.
+        out: the folder that gets `result.json` and the pictures, and `grader.log` when the grader failed. An old result
+            in it stays until the new one is complete.
         isolation: the sandbox's tier.
         scope: how much of the suite is run.
         run_job: runs the job in a cell.
@@ -78,41 +77,36 @@ def grade_submission(
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)
 
-    def job_in(scratch: Path) -> Job:
-        return Job(path.resolve(), assignment, student, seed, out.resolve(), scratch, isolation, scope)
+    with new_result(out) as folder:
 
-    def grade() -> Result | None:
-        return _grade(lambda: run_job(job_in, isolation), out)
+        def job_in(scratch: Path) -> Job:
+            return Job(path.resolve(), assignment, student, seed, folder.resolve(), scratch, isolation, scope)
 
-    with _machine.shared():
-        result = grade()
-    if result is not None and result.in_doubt:
-        with _machine.exclusive():
+        def grade() -> Result | None:
+            return _grade(lambda: run_job(job_in, isolation), folder)
+
+        with _machine.shared():
             result = grade()
-    if result is None:
-        result = not_graded(suite, student, seed, isolation, FAILED)
-        write_json(out / RESULT, result.to_json())
+        if result is not None and result.in_doubt:
+            with _machine.exclusive():
+                result = grade()
+        if result is None:
+            result = not_graded(suite, student, seed, isolation, FAILED)
+            write_json(folder / RESULT, result.to_json())
     return result
 
 
-def _grade(run: Callable[[], CellReport], out: Path) -> Result | None:
-    """Return a worker's result; None if it failed twice, and then `out` has its log."""
-    clear(out)
+def _grade(run: Callable[[], CellReport], folder: Path) -> Result | None:
+    """Return a worker's result; None if it failed twice, and then `folder` has its log."""
     report = CellReport(Ending.EXITED, 0, "")
     for _ in range(TRIES):
+        empty(folder)
         report = run()
-        if report.returncode == 0 and (out / RESULT).is_file():
-            return from_json(json.loads((out / RESULT).read_text()), source=str(out / RESULT))
+        if report.returncode == 0 and (folder / RESULT).is_file():
+            return from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
     # Never part of the result: its traceback may quote a hidden check, and results become feedback.
-    (out / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
+    (folder / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
     return None
-
-
-def clear(out: Path) -> None:
-    """Make the folder of a result ready for another one."""
-    out.mkdir(parents=True, exist_ok=True)
-    for stale in (RESULT, NOTEBOOK, LOG):
-        (out / stale).unlink(missing_ok=True)
 
 
 def _worker(job: Job) -> list[str]:
@@ -136,6 +130,7 @@ def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: D
         student=student,
         submission_sha256="0" * 64,
         suite_version=suite.version,
+        files_digest=suite.files_digest,
         seed=seed,
         isolation=isolation.value,
         checks=tuple(CheckResult.not_checked(check, diagnosis.sentence) for check in suite.checks),

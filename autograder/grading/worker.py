@@ -24,8 +24,8 @@ from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import GraderError, StudentError
 from autograder.gallery import Gallery
 from autograder.grading.job import Job
-from autograder.grading.pipeline import NOTEBOOK, RESULT
 from autograder.grading.plugin import GradingPlugin, run
+from autograder.grading.store import NOTEBOOK, RESULT
 from autograder.intake import write_tree
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
@@ -73,6 +73,7 @@ class Grading:
             student=self._job.student,
             submission_sha256=self._sha256,
             suite_version=self._suite.version,
+            files_digest=self._suite.files_digest,
             seed=self._job.seed,
             isolation=self._job.tier.value,
             checks=tuple(

@@ -23,7 +23,7 @@ from autograder.exceptions import GraderError
 from autograder.feedback.model import page_view
 from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
-from autograder.grading.pipeline import NOTEBOOK
+from autograder.grading.store import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
 from autograder.plain_text import clean

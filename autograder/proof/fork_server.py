@@ -38,7 +38,7 @@ def serve(scratch: Path, client: Connection) -> None:
     while True:
         job = Job.from_json(client.recv_bytes().decode())
         suite = suites.hidden(job.assignment)
-        assert suite.version  # read once for all, too
+        assert suite.version + suite.files_digest  # read once for all, too
         child = os.fork()
         if child == 0:
             _work(job, suite, log_file)

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from autograder.checks import suites
 from autograder.grading.batch import GradingRequest
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
@@ -33,7 +34,7 @@ def prove(
         proof: submissions of one or several assignments, from `cases`.
         seed: seed of every hidden input.
         out: folder of the results; each submission's result goes to `out`/ASSIGNMENT/NAME. A result that lies there
-            counts if the same submission, suite and seed made it, and the whole suite was run.
+            counts if the same submission, files of the grader and seed made it, and the whole suite was run.
         workers: the pool that grades.
         on_claim: function that is called with each claim as soon as it is known, in any order.
 
@@ -46,7 +47,10 @@ def prove(
             path, place = _write(case, Path(name) / case.name), out / case.assignment / case.name
             whole = not case.scope.only
             request = GradingRequest(case.name, path, case.assignment, seed, workers.tier, place, resume=whole)
-            result = request.stored() or grade_submission(
+            stored = request.stored()
+            if stored and stored.files_digest != suites.hidden(case.assignment).files_digest:
+                stored = None  # the proof is of these very files, and not of a version
+            result = stored or grade_submission(
                 path,
                 case.assignment,
                 student=case.name,

@@ -18,7 +18,7 @@ from autograder.checks import suites
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
 from autograder.grading import grade_submission
 from autograder.grading.job import Scope
-from autograder.grading.pipeline import NOTEBOOK
+from autograder.grading.store import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
 from autograder.proof.cases import attacks
 from autograder.proof.claims import Attack, hidden_lines

@@ -150,7 +150,7 @@ def test_a_worker_of_another_suite_is_refused_and_gets_no_submission(
     requests: list[GradingRequest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
-    other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).version, "another")
+    other = resource(ASSIGNMENT, Tier.PROCESS).replace(suites.hidden(ASSIGNMENT).files_digest, "another")
     with connected(LOCAL, 1, tmp_path) as client:
         monkeypatch.setattr(dispatch, "resource", lambda assignment, tier: other)
         monkeypatch.setattr(dispatch, "NO_WORKER_TIMEOUT_SECONDS", 0.0)

@@ -16,7 +16,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 from autograder.checks import suites
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
 from autograder.grading.batch import Entry
-from autograder.grading.pipeline import NOTEBOOK, RESULT
+from autograder.grading.store import NOTEBOOK, RESULT
 from autograder.proof.cases import cases
 from autograder.proof.claims import Attack, CaseKind, first_sentence
 from autograder.result import Result, from_json

@@ -1,12 +1,17 @@
-"""Ctrl-C while a class is graded: what has begun is graded to its end, the rest is left for `--resume`."""
+"""Ctrl-C or a kill while a class is graded: the rest is left for `--resume`, and no mark changes unseen."""
 
 from __future__ import annotations
 
+import json
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 STUDENTS = ("alice", "bob", "carol")
 
@@ -52,3 +57,42 @@ def test_ctrl_c_ends_a_class_and_resume_goes_on(tmp_path: Path) -> None:
     assert "[3/3]" in said
     assert carol.is_file()
     assert (alice.stat().st_mtime_ns, bob.stat().st_mtime_ns) == before
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class that an earlier version of the suite graded, by which everybody has a point more."""
+    folder = tmp_path_factory.mktemp("graded")
+    for student in STUDENTS[:2]:
+        package = folder / "class" / student / "src" / "my_robot_package"
+        package.mkdir(parents=True)
+        (package / "package.xml").write_text(f"<package>{student}</package>")
+    with resume(folder) as process:
+        process.communicate()
+    for path in (folder / "results").glob("*/result.json"):
+        result = json.loads(path.read_text())
+        lost = next(check for check in result["checks"] if not check["points"])
+        lost["points"], result["score"] = 1.0, result["score"] + 1.0
+        path.write_text(json.dumps({**result, "suite_version": "0-0123456789ab"}))
+    return folder
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_grading_that_a_signal_ends_forgets_no_mark_that_it_changed(
+    graded: Path, tmp_path: Path, number: signal.Signals
+) -> None:
+    folder = Path(shutil.copytree(graded, tmp_path / "graded"))
+    before = {path: json.loads(path.read_text())["score"] for path in (folder / "results").glob("*/result.json")}
+    with resume(folder) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("[1/2] alice")
+        process.send_signal(number)
+        process.stdout.read()
+    assert process.returncode == (130 if number is signal.SIGINT else -number)
+    alice = folder / "results" / "alice" / "result.json"
+    marks = {path: json.loads(path.read_text())["score"] for path in before}
+    assert marks[alice] < before[alice]
+
+    with resume(folder) as process:
+        printed = process.communicate()[0]
+    assert re.findall(r"^(\w+) \(01_package_structure\): 1 -> 0$", printed, re.MULTILINE) == ["alice", "bob"]

@@ -37,8 +37,8 @@ def request_(tmp_path: Path) -> GradingRequest:
 def result(make_result: Callable[..., Result]) -> Result:
     suite = suites.hidden(CHAPTER)
     checks = tuple(CheckResult.of(check, Outcome.PASSED) for check in suite.checks)
-    told = {"suite_version": suite.version, "max_score": suite.max_score, "submission_sha256": SHA256}
-    return make_result("", checks=checks, **told)
+    told = {"suite_version": suite.version, "files_digest": suite.files_digest, "submission_sha256": SHA256}
+    return make_result("", checks=checks, max_score=suite.max_score, **told)
 
 
 def png() -> bytes:
@@ -109,6 +109,8 @@ def hostile(result: Result) -> dict[str, tuple[object, str]]:
         "another seed": (answer(replace(result, seed=8)), "a worker graded"),
         "another submission": (answer(replace(result, submission_sha256="b" * 64)), "a worker graded"),
         "another suite": (answer(replace(result, suite_version="0" * 12)), "a worker graded"),
+        "other files": (answer(replace(result, files_digest="0" * 12)), "a worker graded"),
+        "another maximum": (answer(replace(result, max_score=99.0)), "a worker graded"),
         "another tier": (answer(replace(result, isolation="process")), "a worker graded"),
         "a check too few": (answer(replace(result, checks=tuple(rest))), "does not hold the checks"),
         "a check worth more": (

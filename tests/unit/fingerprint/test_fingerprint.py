@@ -1,24 +1,29 @@
-"""The version of a suite: it changes with every file that a grading reads, and with no other."""
+"""The version of a suite changes with the chapter's files and the grader's number, the digest with all that is read."""
 
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from autograder import layout
+from autograder import fingerprint, layout
 from autograder.checks import suites
-from autograder.fingerprint import digest, files
+from autograder.fingerprint import GRADER_VERSION, digest, files, version
 from autograder.layout import Course
 
 CHAPTER = "02_nodes"
-READ = {
+SHARED = {
     "autograder/workspace.py": "",
     "autograder/harness/grader_node.py": "",
     "autograder/checks/suites.py": "",
+    "sim/world.py": "",
+    "assets/worlds/lab.yaml": "",
+}
+OWN = {
     "autograder/checks/ch02_nodes/conftest.py": "",
     "autograder/checks/ch02_nodes/hidden/__init__.py": "",
     "autograder/checks/ch02_nodes/hidden/graph.py": "from autograder.checks.ch03_interfaces.support import reading\n",
@@ -27,8 +32,6 @@ READ = {
     "autograder/checks/ch02_nodes/support/robot.py": "from autograder.checks import ch01_package_structure\n",
     "autograder/checks/ch03_interfaces/support/reading.py": "",
     "autograder/checks/ch01_package_structure/hidden/growth.py": "",
-    "sim/world.py": "",
-    "assets/worlds/lab.yaml": "",
     "chapters/02_nodes/02_nodes.ipynb": "{}",
     "chapters/02_nodes/ws/src/chapter_robot/setup.py": "",
     "solutions/speed_guard/setup.py": "",
@@ -57,19 +60,38 @@ LINES = "name: few\ntitle: A course with few files\nchecks: autograder/checks\nw
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A course with few files."""
-    for name, text in {**READ, layout.COURSE_FILE: LINES}.items():
+    for name, text in {**SHARED, **OWN, layout.COURSE_FILE: LINES}.items():
         _write(tmp_path / name, text)
     monkeypatch.setattr(layout, "ROOT", tmp_path)
     monkeypatch.setattr(layout, "COURSE", Course.read(tmp_path))
     return tmp_path
 
 
-@pytest.mark.parametrize("name", READ)
-def test_a_file_that_a_grading_reads_changes_the_version(name: str, course: Path) -> None:
+@pytest.mark.parametrize("name", [*SHARED, *OWN])
+def test_a_file_that_a_grading_reads_changes_the_digest(name: str, course: Path) -> None:
     before = digest(CHAPTER, READS)
     with (course / name).open("a") as stream:
         stream.write("# more\n")
     assert digest(CHAPTER, READS) != before
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_a_file_of_the_chapter_changes_the_version(name: str, course: Path) -> None:
+    before = version(CHAPTER, READS)
+    with (course / name).open("a") as stream:
+        stream.write("# more\n")
+    assert version(CHAPTER, READS) != before
+
+
+@pytest.mark.parametrize("name", SHARED)
+def test_a_file_of_the_grader_changes_the_version_only_with_the_number(
+    name: str, course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = version(CHAPTER, READS)
+    (course / name).write_text('"""Another docstring."""\n')
+    assert version(CHAPTER, READS) == before
+    monkeypatch.setattr(fingerprint, "GRADER_VERSION", GRADER_VERSION + 1)
+    assert version(CHAPTER, READS) == before.replace(f"{GRADER_VERSION}-", f"{GRADER_VERSION + 1}-")
 
 
 def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
@@ -86,22 +108,24 @@ def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
 
 
 def test_a_new_file_of_the_suite_changes_the_version(course: Path) -> None:
-    before = digest(CHAPTER, READS)
+    before = version(CHAPTER, READS), digest(CHAPTER, READS)
     _write(course / "autograder/checks/ch02_nodes/hidden/more.json", "")
-    assert digest(CHAPTER, READS) != before
+    assert version(CHAPTER, READS) != before[0]
+    assert digest(CHAPTER, READS) != before[1]
 
 
 @pytest.mark.parametrize("name", NOT_READ)
 def test_a_file_that_no_grading_reads_does_not_change_the_version(name: str, course: Path) -> None:
-    before = digest(CHAPTER, READS)
+    before = version(CHAPTER, READS), digest(CHAPTER, READS)
     _write(course / name, "x")
-    assert digest(CHAPTER, READS) == before
+    assert (version(CHAPTER, READS), digest(CHAPTER, READS)) == before
 
 
-def test_the_version_of_a_suite_is_the_digest_of_all_files_that_it_reads() -> None:
-    suite = suites.hidden("06_testing")
-    assert suite.version == digest("06_testing", ["solutions/speed_guard"]) != digest("06_testing")
-    assert len(suite.version) == 12
+def test_a_suite_has_the_version_and_the_digest_of_what_it_declares_to_read() -> None:
+    suite, reads = suites.hidden("06_testing"), ["solutions/speed_guard"]
+    assert suite.version == version("06_testing", reads) != version("06_testing")
+    assert suite.files_digest == digest("06_testing", reads) != digest("06_testing")
+    assert re.fullmatch(r"\d+-[0-9a-f]{12}", suite.version)
 
 
 @pytest.mark.slow

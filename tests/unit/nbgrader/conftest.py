@@ -22,7 +22,7 @@ from traitlets.config import PyFileConfigLoader
 
 import autograder.grading.batch
 from autograder.checks import Check, Outcome
-from autograder.grading.pipeline import NOTEBOOK
+from autograder.grading.store import NOTEBOOK
 from autograder.result import CheckResult, Result
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -11,6 +11,7 @@ from typing import Any, cast
 import pytest
 
 from autograder.checks import suites
+from autograder.checks.suites import Suite
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading.job import Job, Scope
 from autograder.grading.pipeline import refused
@@ -105,7 +106,9 @@ def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None
         run([case(CHAPTERS[0], fails)], tmp_path)
 
 
-def test_a_result_counts_again_only_for_the_same_submission_and_the_whole_suite(tmp_path: Path) -> None:
+def test_a_result_counts_again_only_for_the_same_files_and_submission_and_the_whole_suite(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     worker = Recorder()
 
     def asked(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
@@ -123,3 +126,5 @@ def test_a_result_counts_again_only_for_the_same_submission_and_the_whole_suite(
     assert [asked("one"), asked("one")] == [1, 0]
     assert [asked("one", seed=2), asked("two"), asked("two")] == [1, 1, 0]
     assert [asked("two", part), asked("two", part), asked("two")] == [1, 1, 0]
+    monkeypatch.setattr(Suite, "files_digest", property(lambda suite: "of another comment"))
+    assert [asked("two"), asked("two")] == [1, 0]

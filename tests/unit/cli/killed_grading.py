@@ -1,0 +1,96 @@
+"""A grading of a class that kills itself, as `kill -9` does, before a chosen change of a file of its results.
+
+It is run in a process of its own. The workers are stood in for; all that writes and replaces results is the real code.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from autograder import cli
+from autograder.checks import Outcome, suites
+from autograder.checks.suites import Suite
+from autograder.grading import pipeline
+from autograder.grading.job import Job
+from autograder.intake import read_submission
+from autograder.result import Artifact, CheckResult, Result, write_json
+from autograder.sandbox import Tier
+from autograder.sandbox.cell import CellReport
+from autograder.sandbox.process import Ending
+
+CHAPTER = "02_nodes"
+# The audit events of changes to files, with the places of the paths among their arguments.
+CHANGES = {"os.rename": (0, 1), "os.remove": (0,), "os.mkdir": (0,), "os.rmdir": (0,), "open": (0,)}
+WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT  # flags of a file that is opened to be changed
+
+
+class Worker:
+    """Stands for the workers: grades a submission by the checks that `lost` names for its student."""
+
+    def __init__(self, lost: Mapping[str, tuple[str, ...]]) -> None:
+        self._lost = lost
+
+    def __call__(self, make_command: Callable[[Path], list[str]], tier: Tier) -> CellReport:
+        job = Job.from_json(make_command(Path("scratch"))[-1])
+        suite, lost = suites.hidden(job.assignment), self._lost[job.student]
+        checks = tuple(
+            CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED) for check in suite.checks
+        )
+        for name in ("turns.png", "turns.run.json", "notebook.ipynb"):
+            (job.out / name).write_text(f"{name} of {suite.version}")
+        result = Result(
+            assignment=job.assignment,
+            student=job.student,
+            submission_sha256=read_submission(job.path, job.assignment).sha256,
+            suite_version=suite.version,
+            seed=job.seed,
+            isolation=tier.value,
+            checks=checks,
+            max_score=suite.max_score,
+            started="2026-05-04T09:00:00+00:00",
+            seconds=1.0,
+            artifacts=(Artifact("turns.png", "track", "ab", "turns", run=""),),
+        )
+        write_json(job.out / "result.json", result.to_json())
+        return CellReport(Ending.EXITED, 0, "")
+
+
+def grade(folder: Path, lost: Mapping[str, tuple[str, ...]], version: str, *options: str, kill_at: int = -1) -> None:
+    """Grade the class in `folder`, and append what is printed to the file `printed` in it.
+
+    Args:
+        folder: holds the folder `class`, and gets the folder `results`.
+        lost: the checks that each student loses.
+        version: the version of the suite.
+        options: more words of the command.
+        kill_at: the number of the change to the results before which the process kills itself, from 0; -1 for none.
+            The file `changes` says how many there were if it did not.
+    """
+    results, changes = folder / "results", 0
+    printed = os.open(folder / "printed", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+
+    def hook(event: str, arguments: tuple[Any, ...]) -> None:
+        nonlocal changes
+        if event not in CHANGES or (event == "open" and not arguments[2] & WRITING):
+            return
+        if any(str(arguments[place]).startswith(str(results)) for place in CHANGES[event]):
+            if changes == kill_at:
+                if event == "open" and arguments[2] & os.O_TRUNC and Path(arguments[0]).exists():
+                    os.truncate(arguments[0], 0)  # as if it were killed before it could write
+                os.kill(os.getpid(), signal.SIGKILL)
+            changes += 1
+
+    pipeline.run_in_cell = Worker(lost)  # type: ignore[assignment]
+    Suite.version = property(lambda suite: version)  # type: ignore[assignment, method-assign]
+    os.dup2(printed, 1)
+    words = ("grade", str(folder / "class"), "--assignment", CHAPTER, "--out", str(results), "-j", "1")
+    sys.addaudithook(hook)
+    try:
+        cli.main([*words, "--isolation", "process", *options])
+    finally:
+        (folder / "changes").write_text(str(changes))

@@ -1,0 +1,99 @@
+"""A grading of a class again that is killed at any change of a file, and resumed, lists all whose marks changed."""
+
+from __future__ import annotations
+
+import multiprocessing
+import shutil
+import signal
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from autograder.export import load
+from tests.unit.cli.killed_grading import grade
+
+FORKS = multiprocessing.get_context("forkserver")
+FORKS.set_forkserver_preload(["tests.unit.cli.killed_grading", "autograder.cli.grade", "jsonschema.validators"])
+OLD, NEW = "1-0123456789ab", "2-0123456789ab"
+Lost = Mapping[str, tuple[str, ...]]
+BEFORE: Lost = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
+AFTER: Lost = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
+INSTANTS = 20
+LIST = """
+What a change of the suite or of the submission changed:
+alice (02_nodes): 51 -> 53
+    nan: 0 -> 2
+carol (02_nodes): 52 -> 52
+    starts: 0 -> 1
+    node_name: 1 -> 0
+erin (02_nodes): 51 -> 53
+    nan: 0 -> 2
+"""
+
+
+def run(folder: Path, lost: Lost, version: str, *options: str, kill_at: int = -1) -> int | None:
+    """Grade the class in a process of its own; return its exit status."""
+    process = FORKS.Process(target=grade, args=(folder, lost, version, *options), kwargs={"kill_at": kill_at})
+    process.start()
+    process.join()
+    return process.exitcode
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class that was graded with the old version. What erin handed in is what alice did."""
+    folder = tmp_path_factory.mktemp("graded")
+    for student in (*BEFORE, "erin"):
+        package = folder / "class" / student / "src" / "package"
+        package.mkdir(parents=True)
+        (package / "package.xml").write_text("alice" if student == "erin" else student)
+    assert run(folder, BEFORE, OLD) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def changes(graded: Path, tmp_path_factory: pytest.TempPathFactory) -> int:
+    """The number of changes to files by a grading of the class with the new version."""
+    folder = copy(graded, tmp_path_factory.mktemp("counted"))
+    assert run(folder, AFTER, NEW, "--resume") == 0
+    assert listed(folder) == [LIST]
+    return int((folder / "changes").read_text())
+
+
+def copy(graded: Path, folder: Path) -> Path:
+    shutil.copytree(graded, folder, dirs_exist_ok=True)
+    (folder / "printed").unlink()
+    return folder
+
+
+def listed(folder: Path) -> list[str]:
+    """Return the lists of changes that were printed."""
+    heading = LIST.splitlines(keepends=True)[1]
+    texts = (folder / "printed").read_text().split(heading)[1:]  # the next grading begins with a line in brackets
+    return [f"\n{heading}{text.partition('[')[0]}" for text in texts]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("instant", range(INSTANTS))
+def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
+    graded: Path, changes: int, instant: int, tmp_path: Path
+) -> None:
+    folder, kill_at = copy(graded, tmp_path), instant * changes // INSTANTS
+    first = ("--resume",) if instant % 4 else ()
+    assert run(folder, AFTER, NEW, *first, kill_at=kill_at) == -signal.SIGKILL
+    marks = {item.result.student: item.result.score for item in load(folder / "results")}
+    assert marks.keys() == {*BEFORE, "erin"}
+    run(folder, AFTER, NEW, "--resume", kill_at=kill_at // 2)
+    assert run(folder, AFTER, NEW, "--resume") == 0
+    assert set(listed(folder)) == {LIST}
+    assert {item.result.suite_version for item in load(folder / "results")} == {NEW}
+    left = {path.name for path in (folder / "results").rglob("*")}
+    assert left.isdisjoint({".unfinished", "earlier-marks.json"})
+
+
+def test_changes_that_were_listed_are_not_listed_again(graded: Path, changes: int, tmp_path: Path) -> None:
+    folder = copy(graded, tmp_path)
+    assert [run(folder, AFTER, NEW, "--resume") for _ in range(2)] == [0, 0]
+    assert (folder / "printed").read_text().count("[5/5]") == 2
+    assert "changed:" not in (folder / "printed").read_text().rpartition("[5/5]")[2]
