@@ -5,6 +5,9 @@ AutograderError
 ├── StudentError        the submission is wrong; it gets a diagnosis                            (points are lost)
 └── GraderError         the grader or the machine failed; this is never a zero                  ("not graded")
     └── IsolationError  this machine cannot isolate a submission as asked
+
+A check's verdict, `checks.CheckFailed`, is an AutograderError, too. `reading` turns any other exception into a
+StudentError where data of the student's are read.
 """
 
 from __future__ import annotations

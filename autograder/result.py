@@ -133,6 +133,7 @@ class Result:
     phases: Mapping[str, float] = dataclasses.field(default_factory=dict)  # wall time of each phase, in seconds
     time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
     time_note: str = ""  # the sentence that names that program and the reason
+    unjudged: tuple[str, ...] = ()  # ids of checks that raised an error of their own over data of the student's
     held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
     files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
 

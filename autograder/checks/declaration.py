@@ -32,7 +32,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from autograder.exceptions import GraderError
+from autograder.exceptions import AutograderError, GraderError
 
 F = TypeVar("F", bound=Callable[..., Any])
 PREFIX = "test_"
@@ -91,7 +91,7 @@ class Check:
         return self.needs + self.after
 
 
-class CheckFailed(Exception):
+class CheckFailed(AutograderError):
     """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached."""
 
     def __init__(self, message: str, *, fraction: float = 0.0) -> None:

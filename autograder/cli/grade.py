@@ -23,6 +23,7 @@ from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import UsageError
 from autograder.export.earlier import EarlierMarks
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
+from autograder.grading.store import LOG
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
 from autograder.result import Result, Status, write_json
@@ -124,6 +125,10 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
         "\n" + table([(r.student, score_text(r), failure_summary(r)) for r in results], ("submission", "marks", "why"))
     )
     click.echo(f"\nFeedback: {summary}")
+    for result in results:
+        if result.unjudged:
+            checks, log = ", ".join(result.unjudged), out / result.student / LOG
+            click.echo(f"{result.student}: {checks} failed, because the check raised an error: read {log}.", err=True)
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
 

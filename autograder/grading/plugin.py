@@ -1,15 +1,20 @@
 """The pytest plug-in of a grading: it turns a suite's checks into results, and other errors into failures.
 
+A check that raises any other exception fails if data of the student's are in hand: if a door of `autograder.reading`
+was passed in the check, or when one of its fixtures was made. The instructor is told. It is a failure of the grader if
+nothing is in hand.
+
 The checks of every chapter, visible and hidden, have its fixtures. A chapter's own stand in its conftest.py, or in the
 one module that uses them. A harness for several checks is kept by `autograder.harness.Shared`.
 """
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 import traceback
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,6 +26,7 @@ from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.gallery import Gallery
 from autograder.grading.job import ALL, Scope
+from autograder.reading import in_hand, is_of_data, put_down
 from autograder.result import CheckResult
 from autograder.workspace import Workspace
 
@@ -39,6 +45,7 @@ class GradingPlugin:
         results: by check id, in the order in which they ran.
         diagnosis: the first thing that was wrong with the student's program, or OK.
         failures: tracebacks of the grader's own errors; any of them makes the submission "not graded".
+        unjudged: by check id, the traceback of an error that its code raised over data of the student's.
     """
 
     def __init__(
@@ -57,6 +64,8 @@ class GradingPlugin:
         self.results: dict[str, CheckResult] = {}
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
+        self.unjudged: dict[str, str] = {}
+        self._held_by: dict[str, tuple[str, ...]] = {}  # what was in hand once a fixture was made, by its name
         self._seconds: dict[str, float] = {}
 
     @property
@@ -93,7 +102,7 @@ class GradingPlugin:
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
         check = _declared_by(item)
         if check is not None:
-            self._record(check, call)
+            self._record(check, call, item)
         if self.is_finished:
             item.session.shouldstop = "a check did not pass"
 
@@ -106,16 +115,22 @@ class GradingPlugin:
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         check = _declared_by(item)
+        put_down()
         self._workspace.exchanges.take()  # those before this check are not its own
         for needed in check.needs if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'first "{self.results[needed].title}" has to pass')
 
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[None]:
+        yield
+        self._held_by[fixturedef.argname] = in_hand()
+
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
             self.failures.append(str(report.longrepr))
 
-    def _record(self, check: Check, call: pytest.CallInfo[Any]) -> None:
+    def _record(self, check: Check, call: pytest.CallInfo[Any], item: pytest.Item) -> None:
         error = None if call.excinfo is None else call.excinfo.value
         seconds = self._seconds[check.id] = self._seconds.get(check.id, 0.0) + call.duration
         if error is None:
@@ -130,10 +145,22 @@ class GradingPlugin:
             verdict = CheckResult.of(check, Outcome.FAILED, error.diagnosis.sentence, seconds=seconds)
         elif isinstance(error, pytest.skip.Exception):
             verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
+        elif is_of_data(error) and (data := self._in_hand(item)):
+            self.unjudged[check.id] = "".join(traceback.format_exception(error))
+            sentence = (
+                f"{data} could not be judged, because it is nothing that this check expects "
+                f"({type(error).__name__}). Your instructor can see where."
+            )
+            verdict = CheckResult.of(check, Outcome.FAILED, sentence, seconds=seconds)
         else:
             self.failures.append("".join(traceback.format_exception(error)))
             verdict = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
         self.results[check.id] = replace(verdict, talk=self._workspace.exchanges.take() if self._scope.pictures else ())
+
+    def _in_hand(self, item: pytest.Item) -> str:
+        """Return the name of the data that came last into a check's hands; an empty string if it has none."""
+        fixtures = (self._held_by.get(name, ()) for name in getattr(item, "fixturenames", ()))
+        return next(reversed([*itertools.chain(*fixtures), *in_hand()]), "")
 
 
 def _declared_by(item: pytest.Item) -> Check | None:

@@ -12,7 +12,8 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
+import traceback
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime, timezone
 from pathlib import Path
@@ -25,8 +26,9 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.gallery import Gallery
 from autograder.grading.job import Job
 from autograder.grading.plugin import GradingPlugin, run
-from autograder.grading.store import NOTEBOOK, RESULT
+from autograder.grading.store import LOG, NOTEBOOK, RESULT
 from autograder.intake import write_tree
+from autograder.reading import reading
 from autograder.result import Build, CheckResult, Result, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
@@ -54,6 +56,7 @@ class Grading:
         self._sha256 = _NO_DIGEST
         self._build: Build | None = None
         self._builds: Mapping[str, Diagnosis] = {}
+        self._unjudged: dict[str, str] = {}
 
     def grade(self) -> Result:
         """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
@@ -65,6 +68,8 @@ class Grading:
             diagnosis = checked if observed is OK else observed
         except StudentError as error:
             diagnosis = error.diagnosis
+            if error.__cause__ is not None:  # what no reader of these data is written for
+                self._log(traceback.format_exception(error))
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
         times = self._workspace.time_record
@@ -89,6 +94,7 @@ class Grading:
             phases=self._phases,
             time=times.time,
             time_note=times.explain(),
+            unjudged=tuple(self._unjudged),
             held_up=round(times.longest_wait, 6) if times.time == REAL else 0.0,
         )
 
@@ -98,12 +104,12 @@ class Grading:
         from autograder.building.build import build_workspace
         from autograder.building.prebuilt import copy_prebuilt
 
-        with self._phase("intake"):
+        with self._phase("intake"), reading("Your submission"):
             submission = intake.read_submission(self._job.path, self._job.assignment)
             self._sha256 = submission.sha256
             packages = submission.source
         if submission.notebook is not None:
-            with self._phase("notebook"):
+            with self._phase("notebook"), reading("Your notebook, or what it wrote,"):
                 # Jupyter is slow to import, and not every submission needs it.
                 from autograder.grading import run_notebook
 
@@ -116,8 +122,9 @@ class Grading:
                 packages = intake.read_packages(self._folder / "ws")
                 self._clear()
         source = self._workspace.root / "src"
-        write_tree(packages, source)
-        with self._phase("build"):
+        with reading("Your submission"):
+            write_tree(packages, source)
+        with self._phase("build"), reading("Your packages, or what their build left,"):
             if built := self._job.scope.built:
                 seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
             else:
@@ -151,7 +158,15 @@ class Grading:
         if plugin.failures:
             raise GraderError("\n".join(plugin.failures))
         results.update(plugin.results)
+        self._unjudged = plugin.unjudged
+        if plugin.unjudged:
+            self._log(plugin.unjudged.values())
         return plugin.diagnosis
+
+    def _log(self, tracebacks: Iterable[str]) -> None:
+        """Write tracebacks for the instructor. They are never part of the result: they quote hidden checks."""
+        self._job.out.mkdir(parents=True, exist_ok=True)
+        (self._job.out / LOG).write_text("\n".join(tracebacks), errors="backslashreplace")
 
     @contextmanager
     def _phase(self, name: str) -> Iterator[None]:

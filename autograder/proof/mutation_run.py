@@ -112,7 +112,7 @@ class MutationRun:
 
     def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
         result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))
-        if result.status is not Status.GRADED:
+        if result.status is not Status.GRADED or result.unjudged:
             return FAILED
         lost = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
         return lost[0] if lost else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value

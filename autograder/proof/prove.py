@@ -11,6 +11,7 @@ from autograder.checks import suites
 from autograder.grading.batch import GradingRequest
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
+from autograder.grading.store import LOG
 from autograder.proof.cases import Case
 from autograder.proof.claims import Claim
 from autograder.proof.worker_pool import WorkerPool
@@ -61,6 +62,8 @@ def prove(
                 run_job=workers,
             )
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
+        if result.unjudged:
+            mismatch = f"checks raised errors of their own: {', '.join(result.unjudged)}; {place / LOG} says which"
         return Claim(case.assignment, case.kind, case.name, result, mismatch)
 
     claims = map_parallel(graded, _interleaved(proof), jobs=workers.count, on_done=on_claim)

@@ -193,6 +193,71 @@ def test_any_other_exception_is_the_grader_s_own_failure(grade: Grade, error: st
     assert len(plugin.failures) == 1
 
 
+@pytest.mark.parametrize("where", ["check", "fixture", "module"])
+def test_an_error_over_data_in_hand_fails_that_check_alone_and_is_kept_for_the_instructor(
+    grade: Grade, where: str
+) -> None:
+    plugin = grade(f"""
+        from autograder.reading import hold
+
+        @pytest.fixture(scope="{"module" if where == "module" else "function"}")
+        def answer():
+            if "{where}" != "check": hold("What /add answered")
+
+        @check(points=1, group="g")
+        def test_reads_first(answer):
+            '''It is so.'''
+
+        @check(points=1, group="g")
+        def test_reads(answer):
+            '''It is so.'''
+            if "{where}" == "check": hold("What /add answered")
+            secret = 10**400 * 1.0
+
+        @check(points=1, group="g")
+        def test_other():
+            '''It is so, too.'''
+        """)
+    assert [result.outcome for result in plugin.results.values()] == [Outcome.PASSED, Outcome.FAILED, Outcome.PASSED]
+    message = plugin.results["reads"].message
+    assert message.startswith("What /add answered could not be judged")
+    assert "int too large" not in message
+    assert plugin.failures == []
+    assert "OverflowError" in plugin.unjudged["reads"]
+
+
+def test_an_error_without_data_in_hand_is_the_grader_s_own_failure_after_a_check_that_had_some(grade: Grade) -> None:
+    plugin = grade("""
+        from autograder.reading import hold
+
+        @check(points=1, group="g")
+        def test_reads():
+            '''It is so.'''
+            hold("What /add answered")
+
+        @check(points=1, group="g")
+        def test_other():
+            '''It is so, too.'''
+            1 / 0
+        """)
+    assert plugin.results["other"].outcome is Outcome.NOT_CHECKED
+    assert (len(plugin.failures), plugin.unjudged) == (1, {})
+
+
+@pytest.mark.parametrize("error", ["GraderError('lost')", "OSError(5, 'EIO')", "RuntimeError()", "SystemExit(0)"])
+def test_what_no_data_cause_is_the_grader_s_own_failure_whatever_is_in_hand(grade: Grade, error: str) -> None:
+    plugin = grade(f"""
+        from autograder.reading import hold
+
+        @check(points=1, group="g")
+        def test_reads():
+            '''It is so.'''
+            hold("What /add answered")
+            raise {error}
+        """)
+    assert (len(plugin.failures), plugin.unjudged) == (1, {})
+
+
 def test_a_module_that_cannot_be_imported_is_the_grader_s_own_failure(grade: Grade) -> None:
     plugin = grade("import no_such_module")
     assert plugin.results == {}

@@ -1,0 +1,75 @@
+"""Whose fault an error is."""
+
+from __future__ import annotations
+
+import errno
+
+import pytest
+
+from autograder.checks import CheckFailed
+from autograder.diagnosis import Kind
+from autograder.exceptions import GraderError, StudentError, UsageError
+from autograder.reading import hold, in_hand, put_down, reading
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        LookupError("unknown encoding: foo"),
+        OverflowError("int too large to convert to float"),
+        RecursionError("too deep"),
+        MemoryError(),
+        RuntimeError("damaged"),
+        AssertionError(),
+        FileNotFoundError(errno.ENOENT, "No such file"),
+        OSError(errno.ENAMETOOLONG, "File name too long"),
+        UnicodeEncodeError("utf-8", "\ud800", 0, 1, "surrogates not allowed"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_what_fails_while_data_are_read_is_the_student_s_and_names_them(error: Exception) -> None:
+    with pytest.raises(StudentError) as caught, reading("src/robot/package.xml", advice="Write it anew."):
+        raise error
+    diagnosis = caught.value.diagnosis
+    assert diagnosis.kind is Kind.UNREADABLE
+    assert diagnosis.sentence.startswith("src/robot/package.xml cannot be read: ")
+    assert diagnosis.sentence.endswith(". Write it anew.")
+    assert caught.value.__cause__ is error
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        GraderError("lost"),
+        UsageError("no such file"),
+        CheckFailed("wrong", fraction=0.5),
+        OSError(errno.EMFILE, "Too many open files"),
+        OSError(errno.EIO, "Input/output error"),
+        KeyboardInterrupt(),
+        SystemExit(1),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_errors_that_say_whose_they_are_and_those_of_the_machine_pass_through(error: BaseException) -> None:
+    with pytest.raises(type(error)) as caught, reading("package.xml"):
+        raise error
+    assert caught.value is error
+
+
+def test_the_reason_is_one_short_line_of_harmless_text() -> None:
+    with pytest.raises(StudentError) as caught, reading("config.yaml"):
+        raise ValueError("a\n\x1b]0;title\x07b\u202e" + "x" * 1000)
+    sentence = caught.value.diagnosis.sentence
+    assert len(sentence) < 300
+    assert sentence.startswith("config.yaml cannot be read: a b\ufffdxxx")
+
+
+def test_what_was_read_is_in_hand_until_it_is_put_down_the_latest_last() -> None:
+    put_down()
+    with reading("a.yaml"):
+        pass
+    hold("b.yaml")
+    hold("a.yaml")
+    assert in_hand() == ("b.yaml", "a.yaml")
+    put_down()
+    assert in_hand() == ()
