@@ -13,7 +13,7 @@ MAX_BYTES = 256 * 1024  # no file of an exercise is longer
 
 # What colcon and rosidl read to build a package; a stub in any other file does not keep the package from being built.
 _BUILT_FROM = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
-_DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^>]*>\s*([\w.-]+)")
+_DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^<>]*>\s*(\w[\w-]{0,99})(?![\w.-])", re.ASCII)
 
 
 def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:

@@ -31,6 +31,7 @@ from autograder.sandbox.launcher import restore_sigint
 _PATIENT = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
 hypothesis.settings.register_profile("course", _PATIENT, derandomize=True)
 hypothesis.settings.register_profile("fuzz", _PATIENT, derandomize=False)
+hypothesis.settings.register_profile("thousand", _PATIENT, derandomize=False, max_examples=1000)
 hypothesis.settings.load_profile("course")
 
 # Before any test module imports rclpy. Fixtures that outlive a test meet in the worker's own domain.

@@ -19,6 +19,7 @@ from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
 from autograder.harness.message_text import format_message
 from autograder.harness.steps import TICK_NS
+from autograder.reading import hold
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process
@@ -150,6 +151,7 @@ class Harness(ExitStack, ABC):
         self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
+        hold("What your program showed of itself")
         try:
             self._start()
             self._match()
@@ -161,6 +163,7 @@ class Harness(ExitStack, ABC):
     @property
     def output(self) -> str:
         """What the programs have printed and logged so far."""
+        hold("What your program printed")
         return "".join(process.output for process in self.processes)
 
     def takes(self, topic: str) -> bool:
@@ -188,6 +191,7 @@ class Harness(ExitStack, ABC):
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
         """Return what was published on a topic of `listens` after `since` and up to `until`, in s since the start."""
+        hold(f"What your program sent on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
         return received[first : bisect_right(received, until, first, key=_SECONDS)]
@@ -202,6 +206,7 @@ class Harness(ExitStack, ABC):
         Returns:
             The response; None if there is no such service of that type, or no answer within `seconds` of ROS time.
         """
+        hold(f"What {name} answered")
         answers: list[Any] = []
         began = self.seconds
         client = self._grader_node.client(service_type, name)
@@ -217,6 +222,7 @@ class Harness(ExitStack, ABC):
 
         Its `accepted` stays None if no server comes within `seconds` of ROS time.
         """
+        hold(f"What {name} answered")
         clients = self._actions.prepare(action_type, name)
         if not all(client is not None and self._reach(client, seconds) for client in clients):
             return Goal()

@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from rcl_interfaces.srv import GetParameters
-from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 import autograder
 from autograder.exceptions import StudentError
 from autograder.harness.grader_node import DEPTH, GraderNode, OnMessage
+from autograder.harness.parameter_values import value_of
 from autograder.lockstep.failures import diagnose_ending
+from autograder.reading import hold, reading
 from autograder.ros.domains import Domain
 from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
@@ -34,6 +35,7 @@ HOST = Path(__file__).with_name("launch_host.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
 _POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
+_STATUS = re.compile(rb"-?[0-9]{1,9}\n")
 _NUMBERS = itertools.count()
 
 
@@ -129,6 +131,7 @@ class LaunchHarness(contextlib.ExitStack):
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._listens.items():
             self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
+        hold("What the launch started")
         self._pipe, theirs = os.pipe()
         self.callback(os.close, self._pipe)
         os.set_blocking(self._pipe, False)
@@ -144,14 +147,20 @@ class LaunchHarness(contextlib.ExitStack):
     @property
     def output(self) -> str:
         """What the launch and its processes have printed so far."""
+        hold("What the launch printed")
         return self.process.output
 
     @property
     def status(self) -> int | None:
         """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
         with contextlib.suppress(BlockingIOError):
-            self._status_text += os.read(self._pipe, 64)
-        return int(self._status_text) if self._status_text.endswith(b"\n") else None
+            self._status_text += os.read(self._pipe, 64 - len(self._status_text))
+        if not (self._status_text.endswith(b"\n") or len(self._status_text) == 64):
+            return None
+        with reading("The exit status of the launch", advice="Do not write to descriptors that you did not open."):
+            if not _STATUS.fullmatch(self._status_text):
+                raise ValueError(f"{self._status_text!r} is not a number")
+            return int(self._status_text)
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Take messages until `condition` holds, at most `seconds` of real time; return whether it does.
@@ -183,6 +192,7 @@ class LaunchHarness(contextlib.ExitStack):
 
     def messages(self, topic: str) -> list[Any]:
         """Return the messages that came on a topic of `listens`."""
+        hold(f"What was sent on {topic}")
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:
@@ -200,7 +210,7 @@ class LaunchHarness(contextlib.ExitStack):
             self._grader_node.ask(GetParameters, service, GetParameters.Request(names=[name]), answers.append)
             if not self.wait_for(lambda: len(answers) > len(values), seconds):
                 return None
-            values[name] = next(map(parameter_value_to_python, answers[-1].values), None)
+            values[name] = next((value_of(value, name) for value in answers[-1].values), None)
         return values
 
     def programs(self) -> list[RunningProgram]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from itertools import islice
 from typing import Any
 
-from rcl_interfaces.msg import ParameterType, ParameterValue
+from rcl_interfaces.msg import ParameterValue
 from rclpy.parameter import parameter_value_to_python
 from unique_identifier_msgs.msg import UUID
 
+from autograder.harness.parameter_values import KNOWN
+
 MAX_ITEMS = 6  # of a list
 MAX_CHARACTERS = 200  # of a text
-_KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
 
 
 def format_message(message: Any) -> str:
@@ -23,7 +24,7 @@ def format_message(message: Any) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, ParameterValue):
-        if value.type not in _KNOWN:  # a node may answer anything
+        if value.type not in KNOWN:  # a node may answer anything
             return f"of the unknown type {value.type}"
         value = parameter_value_to_python(value)
     if hasattr(value, "get_fields_and_field_types"):

@@ -30,6 +30,7 @@ from typing import Any
 START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
 MAX_LINE = 64 * 1024
 MAX_TEXT = 8 * 1024
+MAX_COUNT = 2**63 - 1  # of messages, and of nanoseconds of ROS time
 REASONS = ("thread", "clock", "sleep")  # why a program cannot be stepped
 WAITS = ("thread", "group", "spin")  # why a wait never ends
 PHASES = ("import", "start", "spin")
@@ -164,7 +165,7 @@ def _texts(values: Any) -> tuple[str, ...]:
 
 
 def _count(value: Any) -> int:
-    if type(value) is not int or value < 0:  # True is no count
+    if type(value) is not int or not 0 <= value <= MAX_COUNT:  # True is no count
         raise TypeError
     return value
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from autograder.building.build import build
 from autograder.packages import find_packages
 from autograder.probes.installed import Installed, look
+from autograder.reading import reading
 from autograder.workspace import Workspace
 
 
@@ -25,9 +26,11 @@ def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> In
     """
     copy = replace(workspace, root=workspace.root.parent / "grown")
     folder = copy.root / "src" / package
-    shutil.copytree(find_packages(workspace.root / "src")[0][package], folder)
+    with reading(f"The folder of {package}"):
+        shutil.copytree(find_packages(workspace.root / "src")[0][package], folder)
     for file in files:
-        (folder / file).parent.mkdir(parents=True, exist_ok=True)
-        (folder / file).write_text("")
+        with reading(f"{package}/{file}", advice="A file of that name was to be added: rename what has its place."):
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+            (folder / file).write_text("")
     build(copy, (package,))
     return look(copy.install, package)

@@ -25,7 +25,8 @@ from autograder.exceptions import StudentError
 from autograder.lockstep.failures import diagnose_crash, diagnose_ending
 from autograder.lockstep.protocol import Crash
 from autograder.lockstep.tracebacks import own_frames
-from autograder.sandbox import Mount
+from autograder.reading import beyond_bounds, reading
+from autograder.sandbox import Mount, Process
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import CALLS
 from autograder.workspace import Workspace
@@ -109,15 +110,23 @@ def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False
         with launch(command, spec, pass_fds=descriptors, profile="tests") as process:
             process.wait(CALLS.wall_seconds + 10)
             taken.seek(0)
-            answer = _parse(taken.read(MAX_ANSWER + 1))
-            if answer is None:
-                raise StudentError(diagnose_ending(process))
-    if "failed" in answer:
-        raise StudentError(_not_imported(module, answer["failed"]))
-    outcomes = answer.get("outcomes")
-    if not isinstance(outcomes, list) or len(outcomes) != len(steps):
-        raise StudentError(diagnose_ending(process))
-    return [_outcome(outcome) for outcome in outcomes]
+            return parse_answer(taken.read(MAX_ANSWER + 1), module, len(steps), process)
+
+
+def parse_answer(data: bytes, module: str, count: int, process: Process) -> list[StepResult]:
+    """Read the answer of a process that was to carry out `count` steps with a module.
+
+    Raises:
+        StudentError: the module could not be imported, or the answer is cut short, or was not written by our host.
+    """
+    with reading(f"What {module} answered"):
+        answer = _parse(data)
+        if answer is not None and "failed" in answer:
+            raise StudentError(_not_imported(module, answer["failed"]))
+        outcomes = None if answer is None else answer.get("outcomes")
+        if not isinstance(outcomes, list) or len(outcomes) != count:
+            raise StudentError(diagnose_ending(process))
+        return [_outcome(outcome) for outcome in outcomes]
 
 
 def value(outcome: StepResult, shown: str) -> Any:
@@ -167,6 +176,9 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
 def _outcome(data: object) -> StepResult:
     data = data if isinstance(data, dict) else {}
     arguments = data.get("arguments")
+    beyond = beyond_bounds(data.get("value")) or beyond_bounds(arguments)
+    if beyond:
+        return StepResult(type=beyond)
     return StepResult(
         value=data.get("value"),
         type=str(data.get("type", "")),

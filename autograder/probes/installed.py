@@ -14,6 +14,7 @@ from email.parser import HeaderParser
 from pathlib import Path
 
 from autograder.probes.files import plain_files, read_below, read_plain
+from autograder.reading import reading
 
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024
@@ -46,6 +47,11 @@ class Installed:
 
 def look(install: Path, package: str) -> Installed:
     """Return what an install folder holds of a package; a package that was not installed has nothing."""
+    with reading(f"What colcon installed of {package}"):
+        return _look(install, package)
+
+
+def _look(install: Path, package: str) -> Installed:
     prefix = install / package
     # Named for the Python that built it; there is one.
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]

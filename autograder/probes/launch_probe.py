@@ -17,6 +17,7 @@ from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
 from autograder.lockstep.tracebacks import with_source_paths
 from autograder.probes.parameters import Value, same
 from autograder.probes.rclpy_races import lost_a_race
+from autograder.reading import reading
 from autograder.workspace import Workspace
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
@@ -272,15 +273,17 @@ def with_files(
         programs: texts of executables, by name.
     """
     root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
-    shutil.copytree(workspace.install, root / "install", symlinks=True)
+    with reading("What colcon installed"):
+        shutil.copytree(workspace.install, root / "install", symlinks=True)
     prefix = root / "install" / package
     texts = {prefix / "share" / package / path: (text, 0o644) for path, text in files.items()}
     texts |= {prefix / "lib" / package / path: (text, 0o755) for path, text in programs.items()}
     for target, (text, mode) in texts.items():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.unlink(missing_ok=True)
-        target.write_text(text)
-        target.chmod(mode)
+        with reading(f"The installed {target.relative_to(prefix)}", advice="It has to be a file."):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.unlink(missing_ok=True)
+            target.write_text(text)
+            target.chmod(mode)
     return replace(workspace, root=root)
 
 

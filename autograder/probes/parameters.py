@@ -19,11 +19,13 @@ from typing import Any
 import yaml
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically
-from rclpy.parameter import Parameter, parameter_value_to_python
+from rclpy.parameter import Parameter
 
 from autograder.checks import CheckFailed
 from autograder.harness import Harness
+from autograder.harness.parameter_values import value_of
 from autograder.probes.files import read_plain
+from autograder.reading import beyond_bounds, reading, reason
 
 Value = bool | int | float | str | list[object] | None
 
@@ -67,7 +69,7 @@ class NodeParameters:
         answers = {
             name: self._ask(GetParameters, "get_parameters", GetParameters.Request(names=[name])) for name in names
         }
-        return {name: parameter_value_to_python(found.values[0]) for name, found in answers.items() if found.values}
+        return {name: value_of(found.values[0], name) for name, found in answers.items() if found.values}
 
     def descriptors(self, *names: str) -> dict[str, ParameterDescriptor]:
         """Return descriptors by name; an undeclared name is left out."""
@@ -177,13 +179,14 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
         raise CheckFailed(
             f"{path.name} is still to be written: replace the line raise NotImplementedError(...) with your lines."
         )
-    try:
-        file = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
-        raise CheckFailed(f"{path.name} is no YAML: {shortened(str(error))}.") from None
-    if not isinstance(file, dict):
-        raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
-    return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
+    with reading(path.name):
+        try:
+            file = yaml.safe_load(text)
+        except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
+            raise CheckFailed(f"{path.name} is no YAML: {shortened(reason(error))}.") from None
+        if not isinstance(file, dict):
+            raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
+        return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
@@ -203,6 +206,9 @@ def _values(file: str, node: str, below: object) -> dict[str, Value]:
     values = below["ros__parameters"]
     if not isinstance(values, dict) or not values:
         raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")
+    for name, value in values.items():
+        if beyond := beyond_bounds(value):
+            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {beyond}, which ROS cannot hold.")
     return {str(name): value for name, value in values.items()}
 
 

@@ -34,6 +34,7 @@ from autograder.intake import read_packages
 from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
+from autograder.reading import hold, reading
 from autograder.ros.domains import Domain
 from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
 from autograder.sandbox.launcher import current_tier, launch
@@ -73,6 +74,7 @@ def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) ->
         StudentError: there is no room left on the disk.
         GraderError: there is no domain left to listen in.
     """
+    hold("What your tests reported")
     with ThreadPoolExecutor(JOBS) as pool:
         once = partial(_run, workspace, source)
         reports = list(pool.map(once, wanted_runs))
@@ -108,7 +110,8 @@ def _run(workspace: Workspace, source: Source, wanted: TestRun) -> Report:
                 return _run_in(Path(place), replace(workspace, domain=domain.number), source, wanted)
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
-            raise
+            with reading(f"The package {source.package}", advice="A folder has the name of a file, or the reverse."):
+                raise
         sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
         raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
 

@@ -23,10 +23,26 @@ if not SERVICES:
 node.declare_parameter('speed', 0.5)
 rclpy.spin(node)
 """
+FORGED = """#!/usr/bin/env python3
+import rclpy
+from rcl_interfaces.msg import ParameterValue
+from rcl_interfaces.srv import GetParameters
+from rclpy.node import Node
+
+def answer(request, response):
+    response.values = [ParameterValue(type=200)]
+    return response
+
+rclpy.init()
+node = Node('tuned', start_parameter_services=False)
+node.create_service(GetParameters, '~/get_parameters', answer)
+rclpy.spin(node)
+"""
 
 
 def asked(scratch: Path) -> Any:
     from autograder.checks import CheckFailed
+    from autograder.exceptions import StudentError
     from autograder.harness import RealTimeHarness, SteppedHarness, Workspace
     from autograder.probes.parameters import NodeParameters
     from autograder.ros import activate
@@ -36,6 +52,7 @@ def asked(scratch: Path) -> Any:
     (scratch / "home").mkdir()
     for name, services in (("open", "True"), ("closed", "False")):
         (folder / name).write_text(NODE.replace("SERVICES", services))
+    (folder / "forged").write_text(FORGED)
     workspace = Workspace(scratch / "ws", activate(), scratch / "home")
     told: list[Any] = []
     said: list[Any] = []
@@ -55,17 +72,25 @@ def asked(scratch: Path) -> Any:
             except CheckFailed as failed:
                 told.append(str(failed))
     said.append([[row.what, row.text] for row in workspace.exchanges.take()])
+    with SteppedHarness(workspace, "pkg", "forged") as harness:
+        try:
+            told.append(NodeParameters(harness, "/tuned").values("speed"))
+        except StudentError as error:
+            told.append(error.diagnosis.sentence)
     return told, said
 
 
-def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_response_is_reported() -> None:
-    (stepped, real, without, silent), (talk, real_talk, silent_talk) = in_cell(asked)
+def test_parameters_are_read_in_lockstep_and_in_real_time_and_a_missing_or_false_response_is_reported() -> None:
+    (stepped, real, without, silent, forged), (talk, real_talk, silent_talk) = in_cell(asked)
     assert stepped == real
     names, values, accepted, reason = stepped
     assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)
     assert "Wrong parameter type" in reason
     assert without == "The node has no service /tuned/get_parameters: leave its parameter services on."
     assert silent == "The node did not answer a request to /tuned/list_parameters within 5 s."
+    assert forged == (
+        "What your node answered about its parameter speed cannot be read: 200 is not a type of a parameter."
+    )
     assert talk == real_talk
     assert talk[:2] == [
         ["asked", "/tuned/set_parameters_atomically", "parameters: [{name: 'speed', value: 'fast'}]"],

@@ -1,0 +1,299 @@
+"""The doors of the worker: a function for each that reads data as the worker does, and data to try it with."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from types import SimpleNamespace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from autograder import exercise_stubs, intake, packages
+from autograder.building import build_log
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.grading import submitted_notebook
+from autograder.harness.launch import LaunchHarness
+from autograder.harness.matching import connected
+from autograder.harness.stepped import _sum
+from autograder.harness.steps import next_instant, tick_of
+from autograder.interfaces import definitions
+from autograder.lockstep import failures, protocol, tracebacks
+from autograder.probes import (
+    calls,
+    imports,
+    installed,
+    interfaces,
+    launch_probe,
+    manifest,
+    parameters,
+    rclpy_races,
+    student_test_reports,
+)
+from autograder.sandbox import Ending
+from tests.unit.reading.made_up import JSON, altered, altered_json, texts
+from tests.unit.reading.samples import (
+    CALLS,
+    DEFINITION,
+    EVENTS,
+    JUNIT,
+    LAUNCH_OUTPUT,
+    MANIFEST,
+    METADATA,
+    NOTEBOOK,
+    PARAMETERS,
+    PYTHON,
+    SHOWN_ARGUMENTS,
+    TRACEBACK,
+)
+
+
+@dataclass(frozen=True)
+class Door:
+    """A way by which data of a student's enter the worker.
+
+    Attributes:
+        read: reads a value as the worker does, and makes the use of it that every caller makes; gets an empty folder.
+        made_up: values to try it with.
+        known: values that once made a submission "not graded", or are of their kind.
+        refuses: what it may raise besides: its one caller turns these into the student's fault.
+    """
+
+    read: Callable[[Any, Path], object]
+    made_up: st.SearchStrategy[Any]
+    known: tuple[Any, ...] = ()
+    refuses: tuple[type[Exception], ...] = ()
+
+
+def _written(name: str, read: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
+    """Let a value be the content of a file of this name; `read` gets the folder."""
+
+    def with_file(data: bytes, place: Path) -> object:
+        path = place / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+        return read(place)
+
+    return with_file
+
+
+def _parse_notebook(data: bytes, place: Path) -> object:
+    source = submitted_notebook.read(json.dumps(NOTEBOOK).encode(), "source")
+    return submitted_notebook.restore(submitted_notebook.read(data, "02_nodes.ipynb"), source)
+
+
+def _answer_of_calls(answer: Any, place: Path) -> object:
+    process: Any = SimpleNamespace(ending=Ending.EXITED, returncode=0, output="")
+    outcomes = calls.parse_answer(json.dumps(answer).encode(), "wheels.limits", 2, process)
+    for outcome in outcomes:
+        found = calls.value(outcome, "limit(1.0)")
+        return calls.same(found, 1.0), calls.same([found], [[1]]), f"limit(1.0) returned {found}"
+    return None
+
+
+def _use(event: str, record: Any) -> object:
+    """Count, compare and pass on what a program reported, as a harness in lockstep does."""
+    if isinstance(record, protocol.Description):
+        counts = _sum([record.early, record.kept, record.early]) + _sum([record.kept])
+        json.dumps({"kept": dict(counts), "reads": sorted(record.reads)})
+        grader: Any = SimpleNamespace(readers=[], written={}, publishers={}, clients=list)
+        return connected([record, record], grader), tick_of(10**8, record.timers)
+    if isinstance(record, protocol.Reply):
+        counts = _sum([record.sent, record.sent])
+        return json.dumps(dict(counts)), next_instant(100, 10**9, [record.wake]), f"{record.notes} {counts}"
+    return event, record
+
+
+def _diagnose_crash(text: str, place: Path) -> object:
+    process: Any = SimpleNamespace(ending=Ending.EXITED, returncode=1, output=text)
+    lines = text.splitlines() or [""]
+    crash = protocol.Crash("spin", lines[-1], text, text)
+    return failures.diagnose_output(process), failures.diagnose_ending(process), failures.diagnose_crash(crash)
+
+
+def _launch_output(text: str, place: Path) -> object:
+    launch_probe.parse_arguments(text)
+    launch_probe.require_written(text)
+    for program in launch_probe.started(text):
+        launch_probe.node_names(text, program)
+    return launch_probe.ended(text), launch_probe.failure(text), launch_probe.unreadable(text)
+
+
+def _status_of_launch(data: bytes, place: Path) -> object:
+    ours, theirs = os.pipe()
+    os.set_blocking(ours, False)
+    os.write(theirs, data)
+    harness = LaunchHarness.__new__(LaunchHarness)
+    harness._pipe, harness._status_text = ours, b""
+    try:
+        return [harness.status for _ in range(2 + len(data))]
+    finally:
+        os.close(ours)
+        os.close(theirs)
+
+
+def _zip(place: Path, data: bytes) -> object:
+    (place / "alice.zip").write_bytes(data)
+    read = intake.read_submission(place / "alice.zip", "02_nodes")
+    return intake.write_tree(read.source, place / "src")
+
+
+def _archive() -> bytes:
+    whole = io.BytesIO()
+    with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("02_nodes/02_nodes.ipynb", json.dumps(NOTEBOOK))
+        archive.writestr("02_nodes/ws/src/wheels/package.xml", MANIFEST)
+    return whole.getvalue()
+
+
+def _definition(package: str, kind: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, place: Path) -> object:
+        text = data.decode(errors="replace")
+        wanted = interfaces.parse(package, f"{kind}/Status.{kind}", DEFINITION[kind].decode())
+        found = interfaces.parse(package, f"{kind}/Status.{kind}", text)
+        return interfaces.share(wanted, interfaces.compare(wanted, found))
+
+    return read
+
+
+def _parameters_of(place: Path) -> object:
+    file = parameters.read_file(place / "config" / "fleet.yaml")
+    found = parameters.for_node(file, "scout")
+    declared = parameters.as_declared(found, {"speed": 0.5, "count": 3})
+    return parameters.differences(declared, {"speed": 1.0}), parameters.missing_sentence({"speed"}, found)
+
+
+_UNFINISHED = Diagnosis(Kind.BUILD_FAILED, "It does not build.")
+
+DOORS: dict[str, Door] = {
+    "package.xml by its name": Door(
+        _written("wheels/package.xml", lambda place: packages.find_packages(place)),
+        altered(MANIFEST),
+        (
+            MANIFEST.replace(b'encoding="utf-8"', b'encoding="foo"'),
+            MANIFEST.replace(b'encoding="utf-8"', b'encoding="idna"'),
+            MANIFEST.replace(b"<name>wheels", b"<name>../../wheels"),
+        ),
+    ),
+    "package.xml whole": Door(
+        _written("wheels/package.xml", lambda place: manifest.read(place / "wheels")),
+        altered(MANIFEST),
+        (MANIFEST.replace(b'encoding="utf-8"', b'encoding="foo"'),),
+    ),
+    "stubs of a package": Door(
+        _written("wheels/package.xml", lambda place: exercise_stubs.explain(_UNFINISHED, place, "wheels")),
+        altered(MANIFEST),
+        (b"<depend>..</depend><depend>.</depend>", b"<depend>" + b"a" * 300 + b"</depend>"),
+    ),
+    "parameter file": Door(
+        _written("config/fleet.yaml", _parameters_of),
+        altered(*PARAMETERS),
+        (
+            b"scout:\n  ros__parameters: {a: !!bool foo}\n",
+            b"scout:\n  ros__parameters: {a: !!int ''}\n",
+            b"scout:\n  ros__parameters: {a: !!timestamp foo}\n",
+            b"scout:\n  ros__parameters: {a: !!float x}\n",
+            b"!!binary \xff: 1\n",
+            b"scout:\n  ros__parameters: {speed: " + b"9" * 400 + b"}\n",
+            b"scout:\n  ros__parameters: {speed: 0x" + b"9" * 5000 + b"}\n",
+            b"0x" + b"9" * 5000 + b": 1\n",
+            b"? [1, 2]\n: 1\n",
+        ),
+    ),
+    "answer of a function": Door(
+        _answer_of_calls,
+        altered_json(*CALLS) | JSON,
+        (
+            {"outcomes": [{"value": 10**400}, {}]},
+            {"outcomes": [{"value": [10**4000]}, {}]},
+            {"outcomes": [{"value": 1.0, "type": 10**400}, {}]},
+            {"outcomes": [{"raised": "E", "message": {"a": 10**400}}, {}]},
+            {"failed": {"raised": [], "message": 1, "traceback": None}},
+            {"outcomes": [[], {"arguments": {"a": 1}}]},
+        ),
+    ),
+    "event of a stepped program": Door(
+        lambda event, place: _use(*protocol.parse(json.dumps(event).encode() + b"\n")),
+        altered_json(*EVENTS) | JSON,
+        (
+            *({**event, "event": ["done"]} for event in EVENTS),
+            {**EVENTS[1], "sent": {"/cmd_vel T": int("9" * 4300)}},
+            {**EVENTS[1], "wake": int("9" * 4300)},
+            {**EVENTS[-1], "early": {"/add S request": int("9" * 4300)}},
+            {**EVENTS[-1], "kept": {"/said T": int("9" * 4300)}},
+            {**EVENTS[-1], "timers": [int("9" * 4300)]},
+            {**EVENTS[-1], "writers": [["/said T", int("9" * 4300)]]},
+        ),
+        refuses=(protocol.ProtocolError,),
+    ),
+    "line of a stepped program": Door(
+        lambda line, place: protocol.parse(line + b"\n"),
+        altered(*(json.dumps(event).encode() for event in EVENTS)),
+        refuses=(protocol.ProtocolError,),
+    ),
+    "report of pytest": Door(
+        lambda data, place: student_test_reports.parse_claims(data),
+        altered(JUNIT),
+        (JUNIT.replace(b"utf-8", b"foo"), JUNIT.replace(b"utf-8", b"utf-7")),
+    ),
+    "output of a launch": Door(_launch_output, texts(LAUNCH_OUTPUT, SHOWN_ARGUMENTS)),
+    "exit status of a launch": Door(
+        _status_of_launch,
+        altered(b"0\n", b"-15\n"),
+        (b"points\n", b"-\n", b"1\n0\n", b"\xd9\xa3\n", b"9" * 4301 + b"\n", b"x" * 70, b"--1\n", b"1_0\n"),
+    ),
+    "traceback": Door(_diagnose_crash, texts(TRACEBACK)),
+    "traceback of a signal's race": Door(lambda text, place: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
+    "frames of a traceback": Door(lambda text, place: tracebacks.own_frames(text), texts(TRACEBACK)),
+    "log of a build": Door(
+        lambda text, place: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
+    ),
+    "imports of a module": Door(
+        _written("wheels/wheels/limits.py", lambda place: imports.imported(place / "wheels")),
+        altered(PYTHON),
+        (b"(" * 5000, b"\0", b"# coding: foo\n", b"x = " + b"9" * 5000),
+    ),
+    "metadata of an installed package": Door(
+        _written(
+            "install/wheels/lib/python3.12/site-packages/wheels-1.0.egg-info/entry_points.txt",
+            lambda place: installed.look(place / "install", "wheels"),
+        ),
+        altered(METADATA),
+        (b"[console_scripts]\na\n", b"a=b\n[console_scripts]\nc=d\n", b"[console_scripts]\na=b\n c=d\n[a\n"),
+    ),
+    "definition of a message": Door(
+        _definition("wheels_msgs", "msg"), altered(DEFINITION["msg"]), refuses=(interfaces.Unreadable,)
+    ),
+    "definition of an action": Door(
+        _definition("wheels_msgs", "action"), altered(DEFINITION["action"]), refuses=(interfaces.Unreadable,)
+    ),
+    "definition that is built": Door(
+        lambda data, place: definitions.read("wheels_msgs", {"msg/Status.msg": data.decode(errors="replace")}),
+        altered(DEFINITION["msg"]),
+        refuses=(definitions.DefinitionError,),
+    ),
+    "notebook": Door(
+        lambda value, place: _parse_notebook(json.dumps(value).encode(), place),
+        altered_json(NOTEBOOK),
+        ({**NOTEBOOK, "nbformat_minor": 10**400}, {**NOTEBOOK, "metadata": []}, {**NOTEBOOK, "cells": {"a": 1}}),
+    ),
+    "bytes of a notebook": Door(_parse_notebook, altered(json.dumps(NOTEBOOK).encode())),
+    "archive": Door(lambda data, place: _zip(place, data), altered(_archive())),
+    "names in a submission": Door(
+        lambda names, place: intake.detect_layout(
+            [intake.SubmittedFile(PurePosixPath(name), b"") for name in names], "02_nodes"
+        ),
+        st.lists(
+            st.lists(st.sampled_from(("02_nodes.ipynb", "ws", "src", "a", "..", "\udcff", "é")), max_size=5).map(
+                "/".join
+            ),
+            max_size=6,
+        ),
+        (["ws/src/a", "ws/src/a/b"], [""], ["src"], ["/"]),
+    ),
+}
