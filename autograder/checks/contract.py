@@ -1,14 +1,15 @@
 """The contract of a chapter: the sentences of its notebook that oblige a student, each with an id.
 
-A sentence stands where the student reads it. The metadata of its cell name it, word for word; a table's row has its
-bars, and a wrapped line is one line:
+A sentence stands where the student reads it. The metadata of its cell name it, or a part of it, word for word; a
+table's row has its bars, and a wrapped line is one line:
 
     {"course": {"contract": {"stale-scan": "| the newest scan arrived more than 0.5 s ago, in ROS time | 0 | 0 |",
                              "keeps-pace": "always"},
                 "unchecked": {"keeps-pace": "why no check can hold it"},
                 "explains": ["- a row, a bullet or a docstring that obliges to nothing"]}}
 
-An id that stands in two cells, or has a list of texts, is said twice. A check names the ids that it holds.
+An id that stands in two cells is said twice; a list of texts is said in several sentences. A check names the ids that
+it holds. Feedback quotes the whole sentence or row, as it is read (`autograder.checks.quotation`).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from autograder import layout
+from autograder.checks.quotation import quote
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Sentence:
 
     Attributes:
         id: its name in its chapter.
-        text: the sentence, as plain text.
+        text: the whole sentence, or the row of a table, as a student reads it.
         unchecked: why no check holds it. It is empty if checks do.
     """
 
@@ -53,31 +55,13 @@ def counts(assignments: Iterable[str]) -> dict[str, int]:
 
 
 def sentences(cells: Iterable[Mapping[str, Any]]) -> dict[str, Sentence]:
-    """Return the sentences that the metadata of a notebook's cells name. The first place of an id counts."""
+    """Return the sentences that the metadata of a notebook's cells name. The first cell of an id counts."""
     found: dict[str, Sentence] = {}
     for cell in cells:
         course = cell["metadata"].get("course", {})
         for name, texts in course.get("contract", {}).items():
-            text = texts if isinstance(texts, str) else texts[0]
-            plain = _row(text, "".join(cell["source"])) if text.startswith("|") else text.removeprefix("- ")
+            named = [texts] if isinstance(texts, str) else texts
+            whole = dict.fromkeys(quote(cell, text) or text for text in named)
             unchecked = course.get("unchecked", {}).get(name, "")
-            found.setdefault(name, Sentence(name, plain.replace("`", "").replace("**", ""), unchecked))
+            found.setdefault(name, Sentence(name, " ".join(whole), unchecked))
     return found
-
-
-def _row(row: str, source: str) -> str:
-    """Return a table's row as text. The columns after the second are named by the table's head."""
-    head: list[str] = []
-    for line in source.splitlines():
-        head = [] if not line.startswith("|") else head or _columns(line)
-        if line.strip() == row:
-            break
-    first, *others = _columns(row)
-    if len(others) > 1:
-        others = [f"{name} {value}" for name, value in zip(head[1:], others, strict=False)]
-    said = ", ".join(others)
-    return f"{first}: {said}" if first else said
-
-
-def _columns(line: str) -> list[str]:
-    return [column.strip() for column in line.strip().strip("|").split("|")]

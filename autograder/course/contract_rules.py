@@ -13,6 +13,7 @@ from nbformat import NotebookNode
 
 from autograder.checks import Check
 from autograder.checks.contract import sentences
+from autograder.checks.quotation import quote
 from autograder.course.cells import metadata
 from autograder.course.findings import Finding
 from autograder.course.forms import Form, in_form
@@ -54,6 +55,8 @@ def _cell(cell: NotebookNode) -> Iterator[str]:
     ]:
         if _words(text) not in shown:
             yield f"{name!r}: its released text does not hold the sentence {text!r}"
+        elif quote(cell, text) is None:
+            yield f"{name!r}: {text!r} is not a row, a sentence or a part of one in what a student reads"
     for name in course.get("unchecked", {}):
         if name not in named:
             yield f"{name!r} is said to be unchecked, and the cell's contract does not have it"

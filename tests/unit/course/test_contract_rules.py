@@ -67,6 +67,13 @@ def test_a_sentence_that_changed_in_its_cell_is_found() -> None:
     assert "'waits': its released text does not hold the sentence '| no scan yet | 1 | 1 |'" in found
 
 
+def test_a_text_that_a_student_does_not_read_so_is_found() -> None:
+    found = messages(
+        made(contract={"waits": ROW, "ends": ENDS, "name": "called `guard"}), check("s", "waits", "ends", "name")
+    )
+    assert found == ["'name': 'called `guard' is not a row, a sentence or a part of one in what a student reads"]
+
+
 def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> None:
     without = {"contract": {"waits": ROW}}
     wanted = f"neither its contract nor `explains` names a sentence of {ENDS!r}"

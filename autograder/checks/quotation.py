@@ -1,0 +1,149 @@
+"""The sentences of a notebook's cell as a student reads them: rendered, and whole.
+
+Authors name a sentence of the contract by its Markdown, or by a part of it. `quote` returns what stands there on the
+page: the row of the table, or the whole sentence, without markup.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mistune
+
+MARK = "\ue000"  # before code and emphasis, with which a sentence may begin in lower case
+_END = r"[.!?][)\"'”]*(?<!\.\.)"  # of a sentence; three dots are none
+_ENDED = re.compile(rf"{_END}$")
+_NEXT = re.compile(rf"{_END}\s+(?![a-z])")  # between two sentences
+_BAR = re.compile(r"(?<!\\)\|")
+
+Token = Mapping[str, Any]
+_markdown = mistune.create_markdown(renderer=None, plugins=["table", "strikethrough"])
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table.
+
+    Attributes:
+        head: what the head of the table calls the columns.
+        cells: what stands in the columns, with marks.
+        label: the first cell; where it is empty, that of the row above.
+    """
+
+    head: tuple[str, ...]
+    cells: tuple[str, ...]
+    label: str
+
+    @property
+    def text(self) -> str:
+        """The row in words. The head names the columns after the first, unless there is only one."""
+        heads = self.head[1:] if len(self.cells) > 2 else ("",)
+        values = (f"{head} {cell}".strip() for head, cell in zip(heads, self.cells[1:], strict=False) if cell)
+        return _unmarked(": ".join(part for part in (self.label, ", ".join(values)) if part))
+
+
+def quote(cell: Mapping[str, Any], text: str) -> str | None:
+    """Return the row or the sentence of a notebook's cell that holds `text`, as it is read; None if none does.
+
+    Args:
+        cell: the cell. Markdown is rendered, code is read as it stands.
+        text: a part of the cell's source: a row with its bars, a bullet, or a sentence or a part of one.
+    """
+    source = "".join(cell["source"])
+    pieces: Iterable[str | Row]
+    if cell["cell_type"] != "markdown":
+        sought, pieces = " ".join(text.split()), _code_pieces(source)
+    elif text.startswith("|"):
+        columns = [
+            _unmarked(_inline(column)) for column in _BAR.split(text.strip().removeprefix("|").removesuffix("|"))
+        ]
+        rows = (piece for piece in _pieces(source) if isinstance(piece, Row))
+        return next((row.text for row in rows if [_unmarked(each) for each in row.cells] == columns), None)
+    else:
+        sought, pieces = _unmarked(_inline(text.removeprefix("- "))), _pieces(source)
+    return next((found for piece in pieces if (found := _quote_of(piece, sought)) is not None), None)
+
+
+def _quote_of(piece: str | Row, sought: str) -> str | None:
+    """Return a row that holds a text, or the sentences of a paragraph that do; None if the text is not there."""
+    if isinstance(piece, Row):
+        return piece.text if any(sought in _unmarked(cell) for cell in piece.cells) else None
+    plain = _unmarked(piece)
+    start = plain.find(sought)
+    if start < 0:
+        return None
+    end = start + len(sought)
+    borders = [0, *(len(_unmarked(piece[: found.end()])) for found in _NEXT.finditer(piece)), len(plain)]
+    if not _ENDED.search(plain[:start].rstrip()):
+        start = max(border for border in borders if border <= start)
+    if not _ENDED.search(sought):
+        end = min(border for border in borders if border >= end)
+    return plain[start:end].strip()
+
+
+def _pieces(source: str) -> Iterator[str | Row]:
+    """Yield the paragraphs, bullets and rows of Markdown, with marks."""
+    tokens, _ = _markdown.parse(source)
+    yield from _blocks(tokens)  # type: ignore[arg-type]
+
+
+def _blocks(tokens: Iterable[Token]) -> Iterator[str | Row]:
+    for token in tokens:
+        if token["type"] == "table":
+            yield from _rows(token)
+        elif token["type"] in ("paragraph", "block_text", "heading"):
+            yield _text(token["children"])
+        else:
+            yield from _blocks(token.get("children", ()))
+
+
+def _rows(table: Token) -> Iterator[Row]:
+    head, *bodies = table["children"]
+    names, label = tuple(_unmarked(name) for name in _cells(head)), ""
+    for row in (row for body in bodies for row in body["children"]):
+        cells = _cells(row)
+        label = cells[0] or label
+        yield Row(names, cells, label)
+
+
+def _cells(row: Token) -> tuple[str, ...]:
+    # In a table, a bar has its backslash in code, too.
+    return tuple(_text(cell["children"]).replace("\\|", "|") for cell in row["children"])
+
+
+def _inline(source: str) -> str:
+    """Return the text of Markdown that is a part of a paragraph, with marks."""
+    state = _markdown.inline.state_cls({})
+    state.src = source.strip()
+    return _text(_markdown.inline.parse(state)).replace("\\|", "|")
+
+
+def _text(tokens: Sequence[Token]) -> str:
+    """Return the text of the parts of a paragraph, with marks."""
+    return " ".join("".join(_raw(token) for token in tokens).split())
+
+
+def _raw(token: Token) -> str:
+    kind = token["type"]
+    if kind in ("softbreak", "linebreak"):
+        return " "
+    if kind == "codespan":
+        return MARK + str(token["raw"])
+    if "children" in token:
+        mark = MARK if kind in ("strong", "emphasis") else ""
+        return mark + "".join(_raw(child) for child in token["children"])
+    return html.unescape(token["raw"]) if kind == "text" else ""
+
+
+def _code_pieces(source: str) -> list[str]:
+    """Return the paragraphs of a cell's docstrings and comments, and its blocks of code."""
+    blocks = re.split(r'"""|\'\'\'|\n\s*\n', re.sub(r"^\s*# ?", "", source, flags=re.MULTILINE))
+    return [" ".join(block.split()) for block in blocks]
+
+
+def _unmarked(text: str) -> str:
+    return text.replace(MARK, "")
