@@ -103,7 +103,7 @@ class GraderNode:
 
         def take() -> bool:
             taken = subscription.handle.take_message(kind, False)
-            if taken is not None:
+            if taken is not None and taken[0] is not None:  # None is what cannot be read as the student's type
                 receive(taken[0], taken[1]["received_timestamp"])
             return taken is not None
 
@@ -140,7 +140,7 @@ class GraderNode:
                 if taken is None or taken[0] is None:
                     return False
                 then = self._waiting.pop((id(client), taken[0].request_id.sequence_number), None)
-                if then is not None:
+                if then is not None and taken[1] is not None:
                     then(taken[1])
                 return True
 

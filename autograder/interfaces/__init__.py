@@ -1,7 +1,7 @@
-"""Message packages from their texts alone, for the trusted process: no line of CMake or Python of a student's runs.
+"""Message packages: a student's as plain classes for the trusted process, and ROS's tutorials' as real packages.
 
-`load_from` makes a package of a student's workspace importable in this process. `prefix.build` turns the package's
-texts into a prefix, which a content-addressed cache keeps, and `loading.load` imports it.
+`load_from` reads a package of a student's workspace. Nothing of it is compiled or imported, and no line of its CMake or
+Python runs. `prefix.build` turns the texts of a package of ours into a prefix with rosidl's own generators.
 """
 
 from autograder.interfaces.cache import Cache

@@ -99,8 +99,8 @@ class Constant:
 class Section:
     """A message, or one section of a service or an action."""
 
-    fields: tuple[Field, ...]
-    constants: tuple[Constant, ...]
+    fields: tuple[Field, ...] = ()
+    constants: tuple[Constant, ...] = ()
 
     def __str__(self) -> str:
         """Return the lines that define the section."""

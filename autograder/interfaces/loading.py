@@ -1,77 +1,66 @@
-"""Making interface packages importable in this process: a built one, or one of a student's workspace from its texts."""
+"""A student's interface packages as message classes of plain values, made of the texts of their definitions."""
 
 from __future__ import annotations
 
-import importlib
-import json
-import os
-import sys
+from functools import lru_cache
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.exercise_stubs import explain
-from autograder.interfaces.definitions import KINDS, MAX_BYTES, MAX_FILES, DefinitionError, InterfaceError, read
-from autograder.interfaces.prefix import RECIPE, GenerationError, build
+from autograder.interfaces.definitions import (
+    KINDS,
+    MAX_BYTES,
+    MAX_FILES,
+    Definition,
+    DefinitionError,
+    read,
+    require_uses,
+)
 from autograder.packages import find_packages
-from autograder.ros.environment import site_packages
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
     from autograder.workspace import Workspace
 
-_loaded: dict[str, Path] = {}
+Texts = tuple[tuple[str, str], ...]
+"""Definitions by their paths in a package, such as `msg/RobotStatus.msg`, sorted."""
 
 
-def load(prefix: Path) -> ModuleType:
-    """Import the package of a prefix that `build` returned, and those that it uses.
+def load_from(workspace: Workspace, package: str) -> Any:
+    """Return the classes of an interface package of a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
 
-    Raises:
-        InterfaceError: this process has another version of one of them.
-    """
-    recipe = json.loads((prefix / RECIPE).read_text())
-    package = recipe["package"]
-    if _loaded.get(package) == prefix:
-        return sys.modules[package]
-    if package in _loaded or package in sys.modules:
-        there = _loaded.get(package) or sys.modules[package].__file__
-        raise InterfaceError(
-            f"{package} is loaded from {there} already: a process can hold one version of it, start another process"
-        )
-    for underlay in recipe["underlays"]:
-        load(Path(underlay))
-    sys.path.insert(0, str(site_packages(prefix)))
-    found = os.environ.get("AMENT_PREFIX_PATH", "")
-    os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(filter(None, [str(prefix), found]))
-    importlib.invalidate_caches()
-    module = importlib.import_module(package)
-    # The extension module brings the libraries with it; rcl then finds them, loaded, by their names.
-    importlib.import_module(f"{package}.{package}_s__rosidl_typesupport_c")
-    for kind in sorted({path.split("/")[0] for path in recipe["texts"]}):
-        importlib.import_module(f"{package}.{kind}")
-    _loaded[package] = prefix
-    return module
-
-
-def load_from(workspace: Workspace, package: str) -> ModuleType:
-    """Build and load an interface package of a student's workspace, and those of it that it uses.
+    They are the same objects for the same texts.
 
     Raises:
         StudentError: the package or its definitions are missing, or wrong; the sentence says where.
-        InterfaceError: this process has another version of it.
     """
     source = workspace.root / "src"
     packages, broken = find_packages(source)
     try:
         if package not in packages and broken:
             raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
-        return load(_build(packages, package, ()))
+        texts: dict[str, Texts] = {}
+        _gather(packages, package, (), texts, workspace.ros.prefixes)
+        return classes(tuple(texts.items()))
     except StudentError as error:
         raise StudentError(explain(error.diagnosis, source, package)) from None
 
 
-def _build(packages: dict[str, Path], package: str, above: tuple[str, ...]) -> Path:
+@lru_cache(maxsize=8)
+def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
+    """Return the classes of the last of these packages, of which each uses only those before it."""
+    from autograder.interfaces.known_types import KnownTypes
+    from autograder.interfaces.messages import add_package
+
+    known = KnownTypes()
+    return [add_package(name, read(name, dict(texts)), known) for name, texts in packages][-1]
+
+
+def _gather(
+    packages: dict[str, Path], package: str, above: tuple[str, ...], texts: dict[str, Texts], ros: tuple[Path, ...]
+) -> None:
+    """Add the texts of a package to `texts`, after those of the packages that it uses."""
     folder = packages.get(package)
     if folder is None:
         sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
@@ -79,17 +68,36 @@ def _build(packages: dict[str, Path], package: str, above: tuple[str, ...]) -> P
     if package in above:
         sentence = f"The packages {' and '.join(sorted(above))} use each other's messages: let only one use the other."
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
+    if package in texts:
+        return
     try:
-        texts = _texts(folder)
-        used = {name for definition in read(package, texts) for name, _, _ in definition.uses}
-        below = [_build(packages, name, (*above, package)) for name in sorted(used & set(packages))]
-        return build(package, texts, underlays=tuple(below))
+        if _exists(ros, package, None):
+            raise DefinitionError("package.xml", f"ROS has a package {package} of its own: give yours another name")
+        own = _texts(folder)
+        definitions = read(package, own)
+        for name in sorted({name for definition in definitions for name, _, _ in definition.uses} & set(packages)):
+            _gather(packages, name, (*above, package), texts, ros)
+        _require_uses(definitions, texts, ros)
     except DefinitionError as error:
         sentence = f"src/{folder.name}: {error}."
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
-    except GenerationError as error:
-        sentence = f"The interfaces of {package} cannot be built from their definitions."
-        raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence, str(error))) from None
+    texts[package] = tuple(sorted(own.items()))
+
+
+def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
+    """Raise a DefinitionError unless each message of another package is there."""
+
+    def exists(package: str, message: str | None) -> bool:
+        if package in texts:
+            return message is None or f"msg/{message}.msg" in dict(texts[package])
+        return _exists(ros, package, message)
+
+    require_uses(definitions, exists)
+
+
+def _exists(ros: tuple[Path, ...], package: str, message: str | None) -> bool:
+    folders = (prefix / "share" / package / "msg" for prefix in ros)
+    return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
 
 
 def _texts(folder: Path) -> dict[str, str]:

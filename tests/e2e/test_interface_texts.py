@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 from autograder.interfaces import Cache
 from autograder.interfaces.prefix import build
+from autograder.ros.environment import site_packages
+from tests.e2e.trigraph import trigraph_text
 
 # Printed by whoever runs the text of a constant as C, C++ or Python.
 PAYLOAD = '__attribute__((constructor)) static void f(void) {{ FILE * f = fopen("{file}", "w"); fclose(f); }}'
 TEXTS = {
-    "TRIGRAPH": '??/"; {payload} //',
     "QUOTE": '"; {payload} //',
     "PYTHON": "'; open('{file}', 'w'); '",
     "COMMENT": "*/ {payload} /*",
@@ -21,10 +23,9 @@ TEXTS = {
     "PLAIN": "".join(chr(code) for code in range(33, 127) if chr(code) not in "#\\'"),
 }
 READ = """
-import json, sys
-from pathlib import Path
-from autograder.interfaces.loading import load
-message = load(Path(sys.argv[1])).msg.A
+import json
+from texts_msgs import texts_msgs_s__rosidl_typesupport_c
+from texts_msgs.msg import A as message
 constants = {name: getattr(message, name) for name in dir(message) if name.isupper() and name != "SLOT_TYPES"}
 print(json.dumps([constants, message().say, list(message().words)]))
 """
@@ -34,12 +35,15 @@ def test_a_text_is_a_text_in_c_cpp_and_python(tmp_path: Path) -> None:
     file = tmp_path / "ran"
     payload = PAYLOAD.format(file=file)
     texts = {name: text.replace("{payload}", payload).replace("{file}", str(file)) for name, text in TEXTS.items()}
+    texts["TRIGRAPH"] = trigraph_text(file)
     quotes = {name: "'" if '"' in text else '"' for name, text in texts.items()}
     lines = [f"string {name}={quotes[name]}{text}{quotes[name]}" for name, text in texts.items()]
     evil, say, words = texts["TRIGRAPH"], '??/"; @(x) %s //', ['??/"a', "b'"]
     lines += [f"wstring WIDE='{evil}'", f"string say '{say}'", "string[] words ['??/\"a', \"b'\"]"]
     prefix = build("texts_msgs", {"msg/A.msg": "\n".join(lines) + "\n"}, cache=Cache(tmp_path / "cache"))
-    done = subprocess.run([sys.executable, "-c", READ, str(prefix)], capture_output=True, text=True, check=True)
+    environment = {**os.environ, "PYTHONPATH": str(site_packages(prefix))}
+    command = [sys.executable, "-c", READ]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == [
         {**texts, "WIDE": evil, "SAY__DEFAULT": say, "WORDS__DEFAULT": words},
         say,
@@ -48,4 +52,6 @@ def test_a_text_is_a_text_in_c_cpp_and_python(tmp_path: Path) -> None:
     assert not file.exists()
     sources = [path.read_text() for path in prefix.rglob("*") if path.suffix in (".h", ".py")]
     assert sources
-    assert not [text for text in sources if any(word in text for word in ("((constructor", "open(", "??/", "%s %n"))]
+    assert not [
+        text for text in sources if any(word in text for word in ("((constructor", "open(", "??/", "%s %n", "struct Z"))
+    ]

@@ -1,8 +1,7 @@
-"""The student's interfaces in the trusted process, rebuilt from their texts by the grader's own means."""
+"""The student's interfaces as classes of plain values, made of their texts."""
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +12,7 @@ from autograder.interfaces import load_from
 
 @dataclass(frozen=True)
 class Types:
-    """The three generated classes."""
+    """The three classes."""
 
     robot_status: Any
     check_trip: Any
@@ -21,14 +20,10 @@ class Types:
 
 
 def load_types(workspace: Workspace) -> Types:
-    """Build and load the student's interfaces.
+    """Read the student's interfaces.
 
     Raises:
         StudentError: a definition is missing or wrong.
     """
-    load_from(workspace, INTERFACES)
-    return Types(
-        importlib.import_module(f"{INTERFACES}.msg").RobotStatus,
-        importlib.import_module(f"{INTERFACES}.srv").CheckTrip,
-        importlib.import_module(f"{INTERFACES}.action").DriveDistance,
-    )
+    found = load_from(workspace, INTERFACES)
+    return Types(found.msg.RobotStatus, found.srv.CheckTrip, found.action.DriveDistance)

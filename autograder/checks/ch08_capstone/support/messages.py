@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import ModuleType
+from typing import Any
 
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
 from autograder.harness import Workspace
@@ -23,7 +23,7 @@ class Message:
 
 @dataclass(frozen=True)
 class Types:
-    """The student's two messages, as the grader has built them from their text."""
+    """The student's two messages, as classes of plain values."""
 
     clearance: type
     health: type
@@ -40,22 +40,21 @@ HEALTH = Message(
 _WORDS = {"boolean": "bool", "float": "float32", "double": "float64", "sequence<string>": "string[]"}
 
 
-def load_messages(workspace: Workspace) -> ModuleType:
-    """Build and load the student's messages from their text. Raises as `load_from` does."""
+def load_messages(workspace: Workspace) -> Any:
+    """Return the student's messages, read from their text. Raises as `load_from` does."""
     return load_from(workspace, INTERFACES)
 
 
-def types(module: ModuleType) -> Types:
+def types(package: Any) -> Types:
     """Return the two messages of a package in which both are as they must be."""
-    return Types(module.msg.Clearance, module.msg.Health)
+    return Types(package.msg.Clearance, package.msg.Health)
 
 
-def differences(module: ModuleType, wanted: Message) -> list[str]:
+def differences(package: Any, wanted: Message) -> list[str]:
     """Say where a message of the student's differs from what it must hold, near misses named."""
-    messages = getattr(module, "msg", None)
-    found = getattr(messages, wanted.name, None)
+    found = getattr(package.msg, wanted.name, None)
     if found is None:
-        there = sorted(name for name in vars(messages) if name[:1].isupper()) if messages else []
+        there = sorted(name for name in vars(package.msg) if name[:1].isupper())
         return [f"There is no msg/{wanted.name}.msg; there is {', '.join(there) or 'no message'}."]
     fields = found.get_fields_and_field_types()
     said = [_field(wanted.name, name, kind, fields) for name, kind in wanted.fields.items()]

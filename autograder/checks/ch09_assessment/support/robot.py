@@ -41,16 +41,16 @@ _TOPICS = {
 
 @dataclass(frozen=True)
 class Types:
-    """The student's messages, built by the grader from their text."""
+    """The student's messages, as classes of plain values."""
 
     temperature: Any
     decision: Any
 
     @classmethod
     def of(cls, workspace: Workspace) -> Types:
-        """Load them. Raises as `load_from` does."""
-        module = load_from(workspace, INTERFACES)
-        return cls(module.msg.Temperature, module.msg.Decision)
+        """Read them. Raises as `load_from` does."""
+        package = load_from(workspace, INTERFACES)
+        return cls(package.msg.Temperature, package.msg.Decision)
 
 
 class NodeHarness(AutoHarness):

@@ -1,0 +1,146 @@
+"""The CDR of DDS, in which messages travel: plain values to bytes and back, by rosidl's model of their types.
+
+The bytes may come from anybody. What is read is bounded, and whatever does not fit the type is a ValueError.
+"""
+
+from __future__ import annotations
+
+import array
+import struct
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from rosidl_parser import definition as rosidl
+
+MAX_BYTES = 256 * 1024  # of a message
+MAX_OBJECTS = 10_000  # texts and messages in it
+CODES = {  # of `struct`; those of numbers are the codes of `array`, too
+    **{"boolean": "?", "octet": "c", "float": "f", "double": "d"},
+    **{
+        "int8": "b",
+        "uint8": "B",
+        "int16": "h",
+        "uint16": "H",
+        "int32": "i",
+        "uint32": "I",
+        "int64": "q",
+        "uint64": "Q",
+    },
+}
+NUMBERS = frozenset(CODES) - {"boolean", "octet"}
+
+Members = Callable[[rosidl.NamespacedType], Sequence[tuple[str, rosidl.AbstractType]]]
+"""Returns the names and types of a message's members."""
+
+Make = Callable[[rosidl.NamespacedType, dict[str, Any]], Any]
+"""Makes a message of the values of its members."""
+
+
+class Writer:
+    """Writes values to `data`, little-endian; `members` looks into nested messages.
+
+    Raises:
+        ValueError: a value does not fit its type.
+    """
+
+    def __init__(self, members: Members) -> None:
+        self.data = bytearray()
+        self._members = members
+
+    def write(self, kind: rosidl.AbstractType, value: Any) -> None:
+        """Write a value of a type."""
+        try:
+            self._write(kind, value)
+        except (struct.error, TypeError, OverflowError, AttributeError, UnicodeError) as error:
+            raise ValueError(str(error)) from None
+
+    def _write(self, kind: rosidl.AbstractType, value: Any) -> None:
+        if isinstance(kind, rosidl.AbstractNestedType):
+            self._write_all(kind, value)
+        elif isinstance(kind, rosidl.NamespacedType):
+            for name, inner in self._members(kind):
+                self._write(inner, getattr(value, name, 0))  # the member of an empty structure is 0
+        elif isinstance(kind, rosidl.AbstractGenericString):
+            if kind.has_maximum_size() and len(value) > kind.maximum_size:
+                raise ValueError(f"more than {kind.maximum_size} characters")
+            if isinstance(kind, rosidl.AbstractWString):
+                text = _wide(value.encode("utf-16-le"), "H", "I")
+                self._pack("I", len(text) // 4)
+            else:
+                text = value.encode() + b"\0"
+                self._pack("I", len(text))
+            self.data += text
+        else:
+            self._pack(CODES[kind.typename], value)
+
+    def _write_all(self, kind: Any, values: Any) -> None:
+        if isinstance(kind, rosidl.Array):
+            if len(values) != kind.size:
+                raise ValueError(f"{len(values)} elements instead of {kind.size}")
+        else:
+            if kind.has_maximum_size() and len(values) > kind.maximum_size:
+                raise ValueError(f"more than {kind.maximum_size} elements")
+            self._pack("I", len(values))
+        for value in values:
+            self._write(kind.value_type, value)
+
+    def _pack(self, code: str, value: Any) -> None:
+        self.data += bytes(-len(self.data) % struct.calcsize(code)) + struct.pack(f"<{code}", value)
+
+
+class Reader:
+    """Reads values from bytes; `members` looks into nested messages, and `make` makes them.
+
+    Raises:
+        ValueError: the bytes are too many, or do not fit the type.
+    """
+
+    def __init__(self, data: bytes, members: Members, make: Make) -> None:
+        if len(data) > MAX_BYTES:
+            raise ValueError(f"more than {MAX_BYTES // 1024} KiB")
+        self._data, self._at, self._objects = data, 0, 0
+        self._members, self._make = members, make
+
+    def read(self, kind: rosidl.AbstractType) -> Any:
+        """Read a value of a type."""
+        if isinstance(kind, rosidl.AbstractNestedType):
+            return self._read_all(kind)
+        if isinstance(kind, rosidl.BasicType):
+            return struct.unpack(f"<{CODES[kind.typename]}", self._take(1, struct.calcsize(CODES[kind.typename])))[0]
+        self._objects += 1
+        if self._objects > MAX_OBJECTS:
+            raise ValueError(f"more than {MAX_OBJECTS} texts and messages")
+        if isinstance(kind, rosidl.NamespacedType):
+            return self._make(kind, {name: self.read(inner) for name, inner in self._members(kind)})
+        count = self._count()
+        if isinstance(kind, rosidl.AbstractWString):
+            return _wide(self._take(count, 4), "I", "H").decode("utf-16-le", "replace")
+        return self._take(count, 1)[:-1].decode("utf-8", "replace")  # of any length, as rosidl reads it
+
+    def _read_all(self, kind: Any) -> Any:
+        inner, is_array = kind.value_type, isinstance(kind, rosidl.Array)
+        count = kind.size if is_array else self._count()
+        if isinstance(kind, rosidl.BoundedSequence) and count > kind.maximum_size:
+            raise ValueError("the sequence is too long")
+        if not isinstance(inner, rosidl.BasicType) or inner.typename not in NUMBERS:
+            return [self.read(inner) for _ in range(min(count, MAX_BYTES + 1))]
+        code = CODES[inner.typename]
+        data = self._take(count, struct.calcsize(code)) if count else b""
+        return np.frombuffer(data, np.dtype(code).str).copy() if is_array else array.array(code, data)
+
+    def _count(self) -> int:
+        return int(struct.unpack("<I", self._take(1, 4))[0])
+
+    def _take(self, count: int, size: int) -> bytes:
+        start = self._at + -self._at % size
+        self._at = start + count * size
+        if self._at > len(self._data):
+            raise ValueError("the bytes end too early")
+        return self._data[start : self._at]
+
+
+def _wide(text: bytes, code: str, other: str) -> bytes:
+    """Return the units of a wide text, of another size each: Fast CDR writes the 16 bits of a unit as 32."""
+    units = struct.unpack(f"<{len(text) // struct.calcsize(code)}{code}", text)
+    return struct.pack(f"<{len(units)}{other}", *(unit & 0xFFFF for unit in units))

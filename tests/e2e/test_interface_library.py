@@ -1,0 +1,64 @@
+"""Code in the library of a student's messages runs in sandboxes alone, however it got there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from tests.e2e.cell_support import in_cell
+from tests.e2e.trigraph import trigraph_text
+
+PACKAGES = ("my_robot_interfaces", "my_robot_package")
+# Each process that loads the library says what of the grader's it can read and write.
+PAYLOAD = """
+#include <stdio.h>
+__attribute__((constructor)) static void run(void) {
+    FILE * file = fopen("%s", "r");
+    printf("PAYLOAD ran%%s", file ? ", and can read a hidden CHECK" : "");
+    file = fopen("%s", "r+");  // one that is there: a new one would be in the sandbox's own /tmp
+    printf("%%s\\n", file ? ", and can write a RESULT" : "");
+    fflush(stdout);
+}
+"""
+LINK = "target_sources(${PROJECT_NAME}__rosidl_generator_c PRIVATE payload.c)\n"
+
+
+def talk(scratch: Path) -> dict[str, Any]:
+    """Build messages with code in their library, and talk to a node that uses them; return what ran where."""
+    from autograder import layout
+    from autograder.building.build import build
+    from autograder.checks.ch03_interfaces.support.reporter import Reporter
+    from autograder.checks.ch03_interfaces.support.types import load_types
+    from autograder.harness import Workspace
+    from autograder.proof.mutants import write_reference
+    from autograder.ros import activate
+
+    (scratch / "home").mkdir()
+    (scratch / "result.json").touch()
+    workspace = Workspace(scratch / "ws", activate(), scratch / "home")
+    write_reference(PACKAGES, workspace.root)
+    folder = workspace.root / "src" / PACKAGES[0]
+    hidden = layout.CHECKS / "ch03_interfaces" / "hidden" / "status.py"
+    (folder / "payload.c").write_text(PAYLOAD % (hidden, scratch / "result.json"))
+    cmake, message = folder / "CMakeLists.txt", folder / "msg" / "RobotStatus.msg"
+    cmake.write_text(cmake.read_text().replace("ament_export", f"{LINK}ament_export", 1))
+    message.write_text(f"string EVIL='{trigraph_text(scratch / 'outside')}'\n{message.read_text()}")
+    build(workspace, PACKAGES)
+    with Reporter(workspace, load_types(workspace)) as reporter:
+        reporter.publish_battery(0.5)
+        level = reporter.status().battery_level
+        trip = reporter.ask([1.0])
+        output = reporter.output
+    maps = Path("/proc/self/maps").read_text()
+    return {
+        "level": level,
+        "trip": trip.possible,
+        "said": sorted({line for line in output.splitlines() if "PAYLOAD" in line}),
+        "outside": (scratch / "outside").exists(),
+        "loaded": [line for line in maps.splitlines() if PACKAGES[0] in line or "payload" in line],
+    }
+
+
+def test_code_in_a_library_of_messages_runs_in_the_sandbox_alone() -> None:
+    answer = in_cell(talk, own_cell=True)
+    assert answer == {"level": 50, "trip": True, "said": ["PAYLOAD ran"], "outside": False, "loaded": []}

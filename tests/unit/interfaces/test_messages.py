@@ -1,0 +1,99 @@
+"""Classes of plain values: what they hold, what they refuse, and what is read of bytes that anybody may have sent."""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autograder.exceptions import StudentError
+from autograder.interfaces.cdr import MAX_BYTES, MAX_OBJECTS
+from autograder.interfaces.loading import classes
+from autograder.interfaces.messages import from_bytes, to_bytes
+
+TEXTS = {
+    "msg/Inner.msg": "uint8 OK=0\nstring WHO='me'\nbool flag true\nfloat32[2] pair [1, 2]\nstring<=3 word\n",
+    "msg/Outer.msg": "std_msgs/Header header\nInner[] many\nfloat64[<=2] few\nEmpty nothing\n",
+    "msg/Empty.msg": "",
+    "srv/Ask.srv": "int64 question 42\n---\nbool answer\n",
+    "action/Go.action": "float64 distance\n---\nfloat64 driven\n---\nfloat64 left\n",
+}
+
+
+def package(texts: dict[str, str] = TEXTS) -> Any:
+    return classes((("plain_msgs", tuple(texts.items())),))
+
+
+def test_a_message_has_its_defaults_and_constants() -> None:
+    inner, outer = package().msg.Inner, package().msg.Outer()
+    assert (inner.OK, inner.WHO, inner().flag, list(inner().pair), inner().word) == (0, "me", True, [1.0, 2.0], "")
+    assert outer.header.stamp.sec == 0
+    assert (outer.many, list(outer.few)) == ([], [])
+    assert inner().pair is not inner().pair
+    assert package().srv.Ask.Request().question == 42
+    assert package().action.Go.Goal(distance=2.0).distance == 2.0
+
+
+def test_the_types_of_fields_have_the_names_of_rosidl() -> None:
+    assert package().msg.Outer.get_fields_and_field_types() == {
+        "header": "std_msgs/Header",
+        "many": "sequence<plain_msgs/Inner>",
+        "few": "sequence<double, 2>",
+        "nothing": "plain_msgs/Empty",
+    }
+
+
+def test_the_same_texts_give_the_same_classes_and_others_do_not_get_in_their_way() -> None:
+    other = package({**TEXTS, "msg/Inner.msg": "int8 flag\n"})
+    assert package().msg.Inner is package().msg.Inner
+    assert other.msg.Inner is not package().msg.Inner
+    assert other.msg.Inner(flag=3) != package().msg.Inner()
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: package().msg.Inner(speed=1.0), "Inner has no field speed"),
+        (lambda: package().msg.Inner().speed, "Inner has no field speed"),
+        (lambda: package().srv.Ask.Request(question=0.5), "Ask_Request.question is of the type int64, and cannot be"),
+        (lambda: package().msg.Inner(word="four"), "Inner.word is of the type string<3>"),
+        (lambda: package().msg.Outer(few=[1.0] * 3), "Outer.few is of the type sequence<double, 2>"),
+        (lambda: package().msg.Statsu, "plain_msgs/msg has no Statsu"),
+    ],
+)
+def test_what_a_definition_lacks_is_the_students_error(make: Any, sentence: str) -> None:
+    with pytest.raises(StudentError) as caught:
+        make()
+    assert sentence in caught.value.diagnosis.sentence
+    assert not hasattr(package().msg.Inner(), "header")
+
+
+def test_bytes_that_do_not_fit_the_type_are_refused() -> None:
+    kinds = package().msg
+    right = to_bytes(kinds.Outer(many=[kinds.Inner(word="abc")] * 3, few=[0.5]))
+    assert from_bytes(kinds.Outer, right).many[2].word == "abc"
+    for wrong in (right[:-1], b"", struct.pack("<iI", 0, 0) + b"\xff" * 4, bytes(MAX_BYTES + 1)):
+        with pytest.raises(ValueError, match=r"too early|KiB"):
+            from_bytes(kinds.Outer, wrong)
+    unbounded = package({**TEXTS, "msg/Outer.msg": TEXTS["msg/Outer.msg"].replace("<=2", "")}).msg.Outer
+    with pytest.raises(ValueError, match="too long"):
+        from_bytes(kinds.Outer, to_bytes(unbounded(few=[1.0] * 3)))
+
+
+def test_a_message_of_many_messages_is_refused_before_they_are_made() -> None:
+    kind = package({"msg/Empty.msg": "", "msg/Crowd.msg": "Empty[] all\n"}).msg.Crowd
+    assert len(from_bytes(kind, struct.pack("<I", MAX_OBJECTS - 2) + bytes(MAX_OBJECTS)).all) == MAX_OBJECTS - 2
+    with pytest.raises(ValueError, match="texts and messages"):
+        from_bytes(kind, struct.pack("<I", 200_000) + bytes(200_000))
+
+
+@given(st.sampled_from(["Inner", "Outer", "Empty"]), st.binary(max_size=200))
+def test_any_bytes_are_a_message_or_refused(name: str, data: bytes) -> None:
+    kind = getattr(package().msg, name)
+    with contextlib.suppress(ValueError):
+        message = from_bytes(kind, data)
+        assert from_bytes(kind, to_bytes(message)) is not message
