@@ -12,6 +12,7 @@ class Kind(str, Enum):
     OK = "ok"
     UNSAFE_ARCHIVE = "unsafe_archive"
     UNREADABLE = "unreadable"
+    UNCLEAR = "unclear"
     NOTHING_SUBMITTED = "nothing_submitted"
     NOTEBOOK_FAILED = "notebook_failed"
     MISSING_PACKAGE = "missing_package"

@@ -9,6 +9,10 @@ from pathlib import Path
 from autograder.diagnosis import Diagnosis, Kind
 
 STILL_TO_BE_WRITTEN = "this part of the exercise is still to be written"
+# What a release holds in the place of an answer. It is valid Python in any function. A node that runs it ends with this
+# sentence, which tells the student what to do.
+CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
+TEXT_STUB = "YOUR ANSWER HERE"
 MAX_BYTES = 256 * 1024  # no file of an exercise is longer
 
 # What colcon and rosidl read to build a package; a stub in any other file does not keep the package from being built.

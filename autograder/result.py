@@ -32,10 +32,16 @@ MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a program that is held up fo
 
 
 class Status(str, Enum):
-    """Whether the grader reached a result."""
+    """Whether the grader reached a result. What cannot be read, or holds two answers, is unclear."""
 
     GRADED = "graded"
     NOT_GRADED = "not_graded"
+    UNCLEAR = "unclear"
+
+    @property
+    def words(self) -> str:
+        """The status as people read it."""
+        return self.value.replace("_", " ")
 
 
 @dataclass(frozen=True)
@@ -134,6 +140,8 @@ class Result:
     time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
     time_note: str = ""  # the sentence that names that program and the reason
     unjudged: tuple[str, ...] = ()  # ids of checks that raised an error of their own over data of the student's
+    notices: tuple[str, ...] = ()  # sentences about what was graded, for the student
+    unused: tuple[str, ...] = ()  # what was handed in and plays no part, by its path
     held_up: float = 0.0  # the longest time, in seconds, for which a busy machine held up that program or the grader
     files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
 

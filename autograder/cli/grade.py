@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
@@ -20,12 +21,14 @@ from autograder.cli.options import (
     seed_option,
 )
 from autograder.cli.text_tables import failure_summary, score_text, table
-from autograder.exceptions import UsageError
+from autograder.exceptions import StudentError, UsageError
 from autograder.export.earlier import EarlierMarks
 from autograder.grading.batch import Entry, GradeEach, discover, grade_all
 from autograder.grading.store import LOG
+from autograder.intake import read_submission
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
+from autograder.plain_text import clean
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
@@ -64,6 +67,11 @@ INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
     show_default=True,
     help="The folder with the certificate and the key of a cluster.",
 )
+@click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Grade nothing: list what counts of each submission, and each file that was found and is not used.",
+)
 @jobs_option
 @seed_option
 @isolation_option
@@ -76,6 +84,7 @@ def grade(
     roster: Path | None,
     scheduler: str | None,
     certificates: Path,
+    dry_run: bool,
     jobs: int,
     seed: int,
     isolation: str,
@@ -83,12 +92,15 @@ def grade(
 ) -> None:
     """Grade the submissions at PATHS.
 
-    A path is a submission (a folder, a zip or a notebook), or a folder with a submission for each student.
+    A path is a submission (a folder, a zip, a tar or a notebook), or a folder with a submission for each student.
 
-    The exit status is 0 when every submission was graded, 1 when one was not graded or fits no student of --roster, 2
-    for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
+    The exit status is 0 when every submission was graded, 1 when one was not graded, is unclear or fits no student of
+    --roster, 2 for a wrong call, and 130 after Ctrl-C. After Ctrl-C, the gradings that have begun come to their end.
     """
     suites.hidden(assignment)
+    if dry_run:
+        with _find_submissions(paths, assignment, roster, out, write=False) as (entries, all_fit):
+            sys.exit(0 if _preview(entries, assignment) and all_fit else 1)
     with _find_submissions(paths, assignment, roster, out) as (entries, all_fit), Progress(len(entries)) as progress:
         earlier = EarlierMarks(out, [entry.student for entry in entries])
         try:
@@ -124,6 +136,12 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
     click.echo(
         "\n" + table([(r.student, score_text(r), failure_summary(r)) for r in results], ("submission", "marks", "why"))
     )
+    for result in results:
+        for note in filter(None, (*result.notices, _not_used(result.unused))):
+            click.echo(f"{clean(result.student)}: {clean(note)}")
+    for result in results:
+        if result.status is Status.UNCLEAR:
+            click.echo(f"Unclear: {clean(result.student)}: {clean(result.diagnosis.sentence)}", err=True)
     click.echo(f"\nFeedback: {summary}")
     for result in results:
         if result.unjudged:
@@ -135,25 +153,51 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
 
 @contextmanager
 def _find_submissions(
-    paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path
+    paths: tuple[Path, ...], assignment: str, roster: Path | None, out: Path, *, write: bool = True
 ) -> Iterator[tuple[tuple[Entry, ...], bool]]:
     """Yield the submissions, and whether each item of the download belongs to a student."""
     if roster is None:
-        yield discover(paths, assignment), True
+        discovered = discover(paths, assignment)
+        _print_others(discovered.others)
+        yield discovered.entries, not discovered.others
         return
     if len(paths) != 1:
         raise UsageError("--roster goes with one download: give one zip or folder")
-    with unpacked(paths[0]) as folder:
-        found = collect(folder, read_roster(roster), assignment)
-        for name, why in found.unmatched:
-            click.echo(f"Not graded: {name}: {why}.", err=True)
+    with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
+        found = collect(folder, read_roster(roster), assignment, Path(scratch))
+        _print_others(found.unmatched)
         for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
             if names:
                 click.echo(f"{title}: {', '.join(names)}")
-        write_json(
-            out / COLLECTION_REPORT, {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
-        )
+        if write:
+            lists = {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
+            write_json(out / COLLECTION_REPORT, lists)
         yield found.entries, not found.unmatched
+
+
+def _print_others(others: Sequence[tuple[str, str]]) -> None:
+    for name, why in others:
+        click.echo(f"Not graded: {clean(name)}: {clean(why)}.", err=True)
+
+
+def _preview(entries: Sequence[Entry], assignment: str) -> bool:
+    """Print what counts of each submission; return whether each is clear."""
+    rows, all_clear = [], True
+    for entry in entries:
+        try:
+            submission = read_submission(entry.path, assignment)
+        except StudentError as error:
+            rows.append((entry.student, "unclear", clean(str(error))))
+            all_clear = False
+            continue
+        runs = "the notebook has to run" if submission.packages is None else f"{len(submission.packages)} files count"
+        rows.append((entry.student, runs, clean(" ".join((*submission.notices, _not_used(submission.unused))))))
+    click.echo(table(rows, ("submission", "what counts", "notes")))
+    return all_clear
+
+
+def _not_used(names: Sequence[str]) -> str:
+    return f"Not used: {', '.join(names)}." if names else ""
 
 
 @contextmanager

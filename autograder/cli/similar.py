@@ -44,7 +44,7 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     with tempfile.TemporaryDirectory() as name:
         write_bundle(Path(name) / "given", (assignment,))
         given = code(read_submission(Path(name) / "given" / COURSE.chapters / assignment, assignment))
-    for entry in discover(paths, assignment):
+    for entry in discover(paths, assignment).entries:
         try:
             codes[entry.student] = code(read_submission(entry.path, assignment))
         except StudentError as error:

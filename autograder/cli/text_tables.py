@@ -12,7 +12,7 @@ from autograder.result import Result, Status
 
 def failure_summary(result: Result) -> str:
     """Return one sentence that says why points are missing. A failed check with a picture comes first."""
-    if result.status is Status.NOT_GRADED or result.build is None or not result.build.ok:
+    if result.status is not Status.GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
     failed = [check for check in result.checks if check.outcome is Outcome.FAILED]
     pictured = {artifact.check for artifact in result.artifacts}
@@ -37,7 +37,7 @@ def table(rows: list[tuple[str, str, str]], headings: tuple[str, str, str]) -> s
 
 
 def score_text(result: Result) -> str:
-    """Return the score of a result as text, or "not graded"."""
-    if result.status is Status.NOT_GRADED:
-        return "not graded"
+    """Return the score of a result as text, or why there is none."""
+    if result.status is not Status.GRADED:
+        return result.status.words
     return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to all

@@ -9,11 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from autograder.course.solution_markers import strip_markers
-from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
-
-# What nbgrader puts in a solution's place. It is valid Python in any function. A node that runs it ends with this
-# sentence, which tells the student what to do.
-CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
+from autograder.exercise_stubs import CODE_STUB
 
 # The settings of nbgrader for each form that it makes.
 SETTINGS = {

@@ -22,7 +22,7 @@ from autograder.checks.contract import contract
 from autograder.feedback.model import page_view
 from autograder.feedback.pictures import Picture
 from autograder.feedback.statistics import class_statistics
-from autograder.feedback.text import NOT_GRADED, number
+from autograder.feedback.text import no_mark, number
 from autograder.plain_text import clean
 from autograder.result import Result, Status, write_atomically
 
@@ -49,7 +49,7 @@ def environment() -> jinja2.Environment:
     found.filters["number"] = number
     found.filters["player"] = _player
     found.filters["web_address"] = _web_address
-    found.globals["not_graded"] = NOT_GRADED
+    found.globals["no_mark"] = no_mark
     found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return found
 
@@ -127,10 +127,10 @@ def _link(result: Result, folder: Path) -> str | None:
 def _reason(result: Result) -> str:
     """Return a sentence that says why points are missing."""
     page = page_view(result, None)
+    if not page.graded:
+        return no_mark(result)
     if not page.started:
         return result.diagnosis.sentence
-    if not page.graded:
-        return NOT_GRADED
     return (page.first.message or page.first.title) if page.first else ""
 
 

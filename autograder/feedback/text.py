@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from autograder.plain_text import clean
+from autograder.result import Result, Status
 
 NOT_GRADED = "The grader itself failed. This is not a zero."
+
+
+def no_mark(result: Result) -> str:
+    """Return why a result has no mark: the grader failed, or what was handed in is unclear."""
+    return clean(result.diagnosis.sentence) if result.status is Status.UNCLEAR else NOT_GRADED
 
 
 def one_line(text: str) -> str:

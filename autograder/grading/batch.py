@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,10 +14,14 @@ from autograder.exceptions import AutograderError, UsageError
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result
+from autograder.intake.exercises import exercises_of
+from autograder.intake.ignored import is_ignored
+from autograder.intake.names import is_archive, is_notebook, stem
 from autograder.result import Result, Status, from_json, write_json
 from autograder.sandbox import Tier
 
-ARCHIVES = (".zip", ".ipynb")
+TIMESTAMP = "timestamp.txt"  # of nbgrader, beside what was handed in
+NO_SUBMISSION = "it is not a folder, an archive or a notebook"
 
 OnResult = Callable[[Result], None]
 
@@ -28,6 +32,14 @@ class Entry:
 
     student: str
     path: Path
+
+
+@dataclass(frozen=True)
+class Discovered:
+    """The submissions in some folders, and what else lies there, as pairs of a name and the reason."""
+
+    entries: tuple[Entry, ...]
+    others: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -81,6 +93,9 @@ class GradingRequest:
         submission = self.submission()
         digest = submission.sha256 if submission and result.status is Status.GRADED else result.submission_sha256
         own = replace(result, student=self.student, submission_sha256=digest)
+        if submission is not None:  # what counts is equal; what lies around it may differ
+            notices = result.notices if submission.packages is None else submission.notices
+            own = replace(own, notices=notices, unused=submission.unused)
         with new_result(self.out) as new:
             for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
                 if path.is_file():
@@ -92,7 +107,7 @@ class GradingRequest:
 GradeEach = Callable[[Sequence[GradingRequest], OnResult], None]
 
 
-def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
+def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
     """Find the submissions at `paths`: each is one, or a folder of them.
 
     A folder of submissions has one file or folder for each student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
@@ -101,20 +116,41 @@ def discover(paths: tuple[Path, ...], assignment: str) -> tuple[Entry, ...]:
         UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.
     """
     found: list[Entry] = []
+    others: list[tuple[str, str]] = []
     for path in paths:
         if not path.exists():
             raise UsageError(f"{path}: there is no such file or folder")
-        if path.is_file() or _is_submission(path, assignment):
-            found.append(Entry(path.stem if path.is_file() else path.resolve().name, path))
+        if path.is_file():
+            found.append(Entry(student_of(path), path))
+        elif _is_submission(path, assignment):
+            found.append(Entry(path.resolve().name, path))
         else:
-            found += _of_folder(path, assignment)
+            entries, beside = _of_folder(path, assignment)
+            found += entries
+            others += beside
     names = [entry.student for entry in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise UsageError(
             f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
         )
-    return tuple(found)
+    return Discovered(tuple(found), tuple(others))
+
+
+def student_of(path: Path) -> str:
+    """Return the name that a submitted file or folder gives its student: `ada` for `ada.tar.gz`."""
+    if path.is_dir():
+        return path.name
+    return stem(path.name) if stem(path.name) != path.name else path.stem
+
+
+def submission_in(folder: Path, assignment: str) -> Path:
+    """Return what a student's folder means: in nbgrader's layout, the folder of the assignment in it."""
+    inner = folder / assignment
+    if not inner.is_dir():
+        return folder
+    beside = (child for child in folder.iterdir() if not is_ignored(child.name))
+    return inner if all(child.is_dir() or child.name == TIMESTAMP for child in beside) else folder
 
 
 def grade_all(
@@ -173,14 +209,19 @@ def grade_all(
 
 
 def _is_submission(folder: Path, assignment: str) -> bool:
-    return any((folder / name).exists() for name in (f"{assignment}.ipynb", "ws", "src"))
+    if any((folder / name).exists() for name in (f"{assignment}.ipynb", "ws", "src")):
+        return True
+    exercises = exercises_of(assignment)
+    own = {path.parts[0] for path in exercises.beside if len(path.parts) > 1} if exercises is not None else ()
+    return any((folder / name).is_dir() for name in own)  # figures, which each release of the chapter has
 
 
-def _of_folder(folder: Path, assignment: str) -> Iterator[Entry]:
-    children = sorted(child for child in folder.iterdir() if not child.name.startswith("."))
-    students = [child for child in children if child.is_dir() or child.suffix in ARCHIVES]
+def _of_folder(folder: Path, assignment: str) -> tuple[list[Entry], list[tuple[str, str]]]:
+    children = sorted(child for child in folder.iterdir() if not (child.name.startswith(".") or is_ignored(child.name)))
+    students = [child for child in children if child.is_dir() or is_archive(child.name) or is_notebook(child.name)]
     if not students:
         raise UsageError(f"{folder}: neither a submission of {assignment} nor a folder of submissions")
-    for child in students:
-        inner = child / assignment
-        yield Entry(child.stem if child.is_file() else child.name, inner if inner.is_dir() else child)
+    entries = [
+        Entry(student_of(child), submission_in(child, assignment) if child.is_dir() else child) for child in students
+    ]
+    return entries, [(child.name, NO_SUBMISSION) for child in children if child not in students]

@@ -124,7 +124,7 @@ def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str)
 
 
 def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: Diagnosis) -> Result:
-    """Return the result of a submission that intake refused, with the reason, as a worker would record it."""
+    """Return the result of a submission that is unclear: intake refused it, for this reason."""
     return Result(
         assignment=suite.assignment,
         student=student,
@@ -137,6 +137,7 @@ def refused(suite: Suite, student: str, seed: int, isolation: Tier, diagnosis: D
         max_score=suite.max_score,
         started=datetime.now(timezone.utc).isoformat(timespec="seconds"),
         seconds=0.0,
+        status=Status.UNCLEAR,
         diagnosis=diagnosis,
         build=Build(False, 0.0, log=diagnosis.detail),
         phases={"intake": 0.0},

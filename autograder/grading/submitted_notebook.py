@@ -13,6 +13,7 @@ from nbformat import NotebookNode
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.intake.notebooks import Cell, read_cells
 
 MAX_CELLS = 500
 DELETED = "# This cell was deleted."
@@ -20,23 +21,30 @@ STUB = "YOUR CODE HERE"
 
 
 def read(data: bytes, name: str) -> NotebookNode:
-    """Read a submitted notebook; `name` is the file's, for the error.
+    """Read a submitted notebook, without its outputs; `name` is the file's, for the error.
 
     Raises:
         StudentError: the file is not JSON, not a notebook or one of another format, or it has too many cells.
     """
     try:
-        notebook = nbformat.reads(data.decode("utf-8"), as_version=4)
-        nbformat.validate(notebook)
-    except Exception as error:  # nbformat raises any exception for a malformed structure
-        reason = str(error).strip().splitlines()[0][:200] if str(error).strip() else type(error).__name__
+        notebook = _notebook(read_cells(data))
+    except ValueError as error:
         sentence = (
-            f"{name} cannot be read as a notebook ({reason}): open it in JupyterLab, save it and hand it in again."
+            f"{name} cannot be read as a notebook ({str(error)[:200]}): open it in JupyterLab, save it and hand it in "
+            "again."
         )
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
     if len(notebook.cells) > MAX_CELLS:
         sentence = f"{name} has {len(notebook.cells)} cells: at most {MAX_CELLS} are allowed."
         raise StudentError(Diagnosis(Kind.UNREADABLE, sentence))
+    return notebook
+
+
+def _notebook(cells: list[Cell]) -> NotebookNode:
+    """Return a notebook of format 4.5 with these cells."""
+    no_outputs: dict[str, object] = {"outputs": [], "execution_count": None}
+    full = [{**cell, **(no_outputs if cell["cell_type"] == "code" else {})} for cell in cells]
+    notebook: NotebookNode = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": full})
     return notebook
 
 
@@ -47,10 +55,14 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     comment that says so.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
+    ids = {cell.get("id"): name for name, cell in originals.items()}  # which tools keep that drop metadata
     notebook = copy.deepcopy(submitted)
+    claimed = {grade_id(cell) for cell in notebook.cells}
     seen: set[str] = set()
     for cell in notebook.cells:
         name = grade_id(cell)
+        if not name and ids.get(cell.get("id")) not in claimed:
+            name = ids.get(cell.get("id"), "")
         cell.metadata.pop("nbgrader", None)
         if name in originals and name not in seen:
             seen.add(name)

@@ -8,7 +8,6 @@ a failure of the grader.
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 import time
@@ -29,7 +28,7 @@ from autograder.grading.plugin import GradingPlugin, run
 from autograder.grading.store import LOG, NOTEBOOK, RESULT
 from autograder.intake import write_tree
 from autograder.reading import reading
-from autograder.result import Build, CheckResult, Result, write_json
+from autograder.result import Build, CheckResult, Result, Status, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.sandbox.launcher import restore_sigint
@@ -54,6 +53,9 @@ class Grading:
         self._gallery = Gallery(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
         self._phases: dict[str, float] = {}
         self._sha256 = _NO_DIGEST
+        self._status = Status.UNCLEAR  # until what was handed in has been read
+        self._notices: tuple[str, ...] = ()
+        self._unused: tuple[str, ...] = ()
         self._build: Build | None = None
         self._builds: Mapping[str, Diagnosis] = {}
         self._unjudged: dict[str, str] = {}
@@ -91,7 +93,10 @@ class Grading:
             diagnosis=diagnosis,
             build=self._build,
             artifacts=tuple(self._gallery.artifacts),
+            status=self._status,
             phases=self._phases,
+            notices=self._notices,
+            unused=self._unused,
             time=times.time,
             time_note=times.explain(),
             unjudged=tuple(self._unjudged),
@@ -106,21 +111,25 @@ class Grading:
 
         with self._phase("intake"), reading("Your submission"):
             submission = intake.read_submission(self._job.path, self._job.assignment)
-            self._sha256 = submission.sha256
-            packages = submission.source
-        if submission.notebook is not None:
+            self._sha256, self._notices, self._unused = submission.sha256, submission.notices, submission.unused
+            packages = submission.packages
+            self._status = Status.GRADED
+        if packages is None and submission.notebook is not None:
             with self._phase("notebook"), reading("Your notebook, or what it wrote,"):
                 # Jupyter is slow to import, and not every submission needs it.
                 from autograder.grading import run_notebook
 
                 write_tree(submission.extra, self._folder)
-                write_tree(packages, self._folder / "ws" / "src")
-                self._add_given(self._folder / "ws" / "src")
+                start = intake.with_given_packages(submission, self._job.assignment)
+                write_tree(start, self._folder / "ws" / "src")
                 original = layout.source_notebook(self._job.assignment)
                 run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
                 # The notebook could write links and devices to all of this. Only plain files of it are taken.
-                packages = intake.read_packages(self._folder / "ws")
+                written = intake.read_packages(self._folder / "ws")
                 self._clear()
+                counted = intake.what_counts(submission, written, self._job.assignment)
+                packages, self._notices = counted.packages, counted.notices
+        assert packages is not None, "only a notebook makes packages that were not handed in"
         source = self._workspace.root / "src"
         with reading("Your submission"):
             write_tree(packages, source)
@@ -139,13 +148,6 @@ class Grading:
         """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""
         subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
         self._workspace.scratch.mkdir()
-
-    def _add_given(self, source: Path) -> None:
-        """Copy the packages that the chapter gives and the submission lacks."""
-        given = layout.chapter(self._job.assignment) / "ws" / "src"
-        for package in sorted(given.iterdir()) if given.is_dir() else ():
-            if not (source / package.name).exists():
-                shutil.copytree(package, source / package.name)
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
         plugin = GradingPlugin(self._workspace, self._job.seed, self._gallery, self._builds, self._job.scope)

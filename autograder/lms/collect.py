@@ -1,21 +1,26 @@
-"""Finds each student's submission in a download. The newest counts; what fits no student is listed, not dropped."""
+"""Finds each student's submission in a download. The newest attempt counts, with all of its files.
+
+What fits no student is listed, not dropped.
+"""
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.grading.batch import ARCHIVES, Entry
+from autograder.grading.batch import Entry, submission_in
+from autograder.intake.ignored import is_ignored
+from autograder.intake.names import is_archive, is_notebook
 from autograder.lms.roster import Roster
-from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name
+from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name, resubmitted
 
 COLLECTION_REPORT = "handed_in.json"  # beside the results: the late students, and what fits no student
-NOT_SUBMISSIONS = frozenset({"__MACOSX", ".DS_Store", METADATA})
 
 
 @dataclass(frozen=True)
@@ -23,7 +28,7 @@ class CollectedSubmissions:
     """The submissions in a download, in the order of the roster.
 
     Attributes:
-        entries: the newest submission of each student.
+        entries: the newest submission of each student; the members of a group have one path.
         late: the students whom the system calls late.
         older: the names of the submissions that a newer one of the same student replaces.
         unmatched: what fits no student or is no submission, as pairs of a name and the reason.
@@ -58,53 +63,69 @@ def unpacked(download: Path) -> Iterator[Path]:
         yield Path(folder)
 
 
-def collect(folder: Path, roster: Roster, assignment: str) -> CollectedSubmissions:
+def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> CollectedSubmissions:
     """Find each student's submission in an unpacked download.
 
-    In nbgrader's layout, the folder of a student holds one with the name of the assignment.
+    In nbgrader's layout, the folder of a student holds one with the name of the assignment. The files of an attempt
+    that has several are copied to a folder in `scratch`.
     """
-    newest: dict[str, DownloadedItem] = {}
-    older: list[str] = []
-    unmatched: list[tuple[str, str]] = []
-    for item in _items(folder, roster):
+    items, unmatched = _items(folder, roster)
+    handed_in: dict[str, list[DownloadedItem]] = {}
+    for item in items:
         student = roster.find(item.keys)
         if student is None:
             unmatched.append((item.path.name, f"no student of {roster.path.name} fits"))
         elif not item.is_submission:
             unmatched.append((item.path.name, "it is no file that was handed in"))
-        elif student.id not in newest:
-            newest[student.id] = item
-        elif item.order == newest[student.id].order:
-            unmatched.append((item.path.name, f"{student.id} handed in several, and none is the newest"))
         else:
-            older.append(min(item, newest[student.id], key=lambda item: item.order).path.name)
-            newest[student.id] = max(item, newest[student.id], key=lambda item: item.order)
+            handed_in.setdefault(student.id, []).append(item)
+    newest = {name: _newest(attempts) for name, attempts in handed_in.items()}
     students = [student.id for student in roster.students]
     late = {student.id for student in roster.students if student.late}
     return CollectedSubmissions(
-        tuple(Entry(name, _submission(newest[name].path, assignment)) for name in students if name in newest),
-        tuple(name for name in students if name in newest and (newest[name].late or name in late)),
-        tuple(older),
+        tuple(Entry(name, _together(newest[name], assignment, scratch)) for name in students if name in newest),
+        tuple(name for name in students if name in newest and (name in late or any(i.late for i in newest[name]))),
+        tuple(item.path.name for name, there in handed_in.items() for item in there if item not in newest[name]),
         tuple(unmatched),
         tuple(name for name in students if name not in newest),
     )
 
 
-def _items(folder: Path, roster: Roster) -> list[DownloadedItem]:
+def _items(folder: Path, roster: Roster) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
     if (folder / METADATA).is_file():
         return read_metadata(folder)
-    items = [read_name(child) for child in sorted(folder.iterdir()) if child.name not in NOT_SUBMISSIONS]
+    items = [read_name(child) for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
     # A zip often holds one folder that holds all.
     if len(items) == 1 and items[0].path.is_dir() and roster.find(items[0].keys) is None:
         return _items(items[0].path, roster)
-    return items
+    return items, []
 
 
-def _submission(path: Path, assignment: str) -> Path:
-    """Return the submission in what a student handed in: a folder that holds one archive alone means the archive."""
+def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
+    """Return the files and folders of a student's newest attempt."""
+    latest = max(item.order for item in items)
+    attempt = [item for item in items if item.order == latest]
+    replaced = resubmitted(attempt)
+    return [item for item in attempt if item not in replaced]
+
+
+def _together(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:
+    """Return the path of an attempt: a folder that holds one archive alone means the archive."""
+    if len(attempt) > 1:
+        folder = Path(tempfile.mkdtemp(dir=scratch))
+        for number, item in enumerate(attempt):
+            target = folder / item.own_name
+            if target.exists():
+                target = folder / f"{number} {item.own_name}"
+            if item.path.is_dir():
+                shutil.copytree(item.path, target, symlinks=True)
+            else:
+                shutil.copy2(item.path, target, follow_symlinks=False)
+        return folder
+    path = attempt[0].path
     if path.is_file():
         return path
-    if (path / assignment).is_dir():
-        return path / assignment
-    inside = [child for child in path.iterdir() if child.name not in NOT_SUBMISSIONS]
-    return inside[0] if len(inside) == 1 and inside[0].suffix in ARCHIVES else path
+    inside = [child for child in path.iterdir() if not is_ignored(child.name)]
+    if len(inside) == 1 and (is_archive(inside[0].name) or is_notebook(inside[0].name)):
+        return inside[0]
+    return submission_in(path, assignment)

@@ -17,13 +17,13 @@ class SubmissionExporter(NotebookExporter):
     """Reads a file that is not a notebook as one without cells. The grader reports what is wrong with it."""
 
     def from_file(self, file_stream: Any, *args: Any, **kwargs: Any) -> Any:
-        data = file_stream.buffer.read(intake.MAX_FILE_BYTES + 1)
+        data = file_stream.buffer.read(intake.MAX_WRAPPED_BYTES + 1)
         convert: Any = self.from_notebook_node
         return convert(self._read(data, file_stream.name), *args, **kwargs)
 
     def _read(self, data: bytes, name: str) -> NotebookNode:
-        if len(data) > intake.MAX_FILE_BYTES:
-            self.log.warning("%s is larger than %d MiB", name, intake.MAX_FILE_BYTES // 2**20)
+        if len(data) > intake.MAX_WRAPPED_BYTES:
+            self.log.warning("%s is larger than %d MiB", name, intake.MAX_WRAPPED_BYTES // 2**20)
             return new_notebook()
         try:
             return submitted_notebook.read(data, name)

@@ -68,7 +68,7 @@ class SandboxedGrade(NbGraderPreprocessor):
                 isolation=Tier(self.isolation),
                 resume=True,
             )
-            if result.status is Status.NOT_GRADED:
+            if result.status is not Status.GRADED:
                 raise GraderError(f"{student}: not graded, no score is recorded. {result.diagnosis.sentence}")
             self._copy_outputs(nb, results / student / NOTEBOOK)
             self._write_scores(nb, result, results / student)

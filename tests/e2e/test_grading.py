@@ -127,15 +127,11 @@ def _no_script(source: Path) -> None:
 @pytest.mark.parametrize(
     ("spoil", "kind", "words"),
     [
-        pytest.param(shutil.rmtree, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
         pytest.param(_remove("setup.py"), Kind.HALF_WRITTEN_PACKAGE, "has no setup.py", id="no setup.py"),
         pytest.param(
             _replace("setup.py", "setup(\n"), Kind.BUILD_FAILED, "The first error: setup.py, line ", id="setup.py"
         ),
         pytest.param(_no_script, Kind.MISSING_EXECUTABLE, "it installs", id="no such script"),
-        pytest.param(
-            lambda source: (source / "link").symlink_to("/etc"), Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"
-        ),
     ],
 )
 def test_a_package_that_cannot_be_checked_gets_a_diagnosis_with_the_remedy(
@@ -149,11 +145,36 @@ def test_a_package_that_cannot_be_checked_gets_a_diagnosis_with_the_remedy(
     assert all(check.outcome is not Outcome.PASSED for check in result.checks)
 
 
-def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
-    (tmp_path / "alice.ipynb").write_text('{"cells": [')
-    result = _grade(tmp_path / "alice.ipynb", tmp_path / "out")
-    assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.UNREADABLE)
-    assert "hand" in result.diagnosis.sentence
+def _nothing(folder: Path) -> None:
+    (folder / "src").mkdir()
+
+
+def _link(folder: Path) -> None:
+    (folder / "src").mkdir()
+    (folder / "src" / "link").symlink_to("/etc")
+
+
+@pytest.mark.parametrize(
+    ("write", "kind", "words"),
+    [
+        pytest.param(_nothing, Kind.NOTHING_SUBMITTED, "Hand in the assignment's whole folder", id="nothing"),
+        pytest.param(_link, Kind.UNSAFE_ARCHIVE, "is a symbolic link", id="link"),
+        pytest.param(
+            lambda folder: (folder / f"{ASSIGNMENT}.ipynb").write_text('{"cells": ['),
+            Kind.UNREADABLE,
+            "save it and hand it in again",
+            id="cut notebook",
+        ),
+    ],
+)
+def test_a_submission_that_cannot_be_read_is_unclear_and_no_zero(
+    write: Callable[[Path], object], kind: Kind, words: str, tmp_path: Path
+) -> None:
+    (tmp_path / "alice").mkdir()
+    write(tmp_path / "alice")
+    result = _grade(tmp_path / "alice", tmp_path / "out")
+    assert (result.status, result.diagnosis.kind) == (Status.UNCLEAR, kind)
+    assert words in result.diagnosis.sentence
 
 
 def test_a_submitted_file_that_stops_the_kernel_from_starting_is_named(tmp_path: Path) -> None:

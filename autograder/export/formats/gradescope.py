@@ -12,7 +12,7 @@ from typing import Any
 from autograder.checks import Outcome, Visibility
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored, per_student
-from autograder.feedback.text import NOT_GRADED
+from autograder.feedback.text import no_mark
 from autograder.plain_text import clean
 from autograder.result import CheckResult, Result, Status, write_json
 
@@ -34,8 +34,8 @@ def report(result: Result) -> dict[str, Any]:
 
     A submission that was not graded has neither score nor tests. Gradescope then reports a failed autograder.
     """
-    if result.status is Status.NOT_GRADED:
-        return {"output": f"Not graded. {NOT_GRADED}"}
+    if result.status is not Status.GRADED:
+        return {"output": f"Not graded. {no_mark(result)}"}
     return {
         "score": result.score,
         "execution_time": round(result.seconds),

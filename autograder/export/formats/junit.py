@@ -8,7 +8,7 @@ from pathlib import Path
 
 from autograder.checks import Outcome
 from autograder.export.stored import Stored
-from autograder.feedback.text import NOT_GRADED, number, one_line
+from autograder.feedback.text import no_mark, number, one_line
 from autograder.plain_text import clean
 from autograder.result import CheckResult, Result, Status
 
@@ -16,7 +16,7 @@ FOLDER = False
 
 
 def write(stored: Sequence[Stored], out: Path) -> Path:
-    """Write the report. `failed` is a failure, `not_checked` is skipped, and `not_graded` is an error."""
+    """Write the report. `failed` is a failure, `not_checked` is skipped, and a missing mark is an error."""
     suites = [_suite(item.result) for item in stored]
     root = ET.Element("testsuites", _totals(suites))
     root.extend(suites)
@@ -27,9 +27,9 @@ def write(stored: Sequence[Stored], out: Path) -> Path:
 
 def _suite(result: Result) -> ET.Element:
     cases = [_case(check, result) for check in result.checks]
-    if result.status is Status.NOT_GRADED:
+    if result.status is not Status.GRADED:
         case = ET.Element("testcase", {"classname": one_line(result.assignment), "name": "graded", "time": "0"})
-        ET.SubElement(case, "error", {"message": f"Not graded. {NOT_GRADED}"})
+        ET.SubElement(case, "error", {"message": f"Not graded. {one_line(no_mark(result))}"})
         cases = [case]
     suite = ET.Element("testsuite", {"name": one_line(f"{result.assignment}: {result.student}")})
     suite.attrib |= {

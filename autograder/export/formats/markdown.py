@@ -9,7 +9,7 @@ from pathlib import Path
 from autograder.checks import Outcome
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored
-from autograder.feedback.text import NOT_GRADED, number, one_line
+from autograder.feedback.text import no_mark, number, one_line
 from autograder.result import CheckResult, Result, Status
 
 FOLDER = False
@@ -46,14 +46,14 @@ def _row(check: CheckResult) -> str:
 
 
 def _score(result: Result) -> str:
-    if result.status is Status.NOT_GRADED:
-        return "not graded"
+    if result.status is not Status.GRADED:
+        return result.status.words
     return f"{number(result.score)} / {number(result.max_score)}"
 
 
 def _diagnosis(result: Result) -> str:
-    if result.status is Status.NOT_GRADED:
-        return NOT_GRADED
+    if result.status is not Status.GRADED:
+        return no_mark(result)
     return "" if result.diagnosis.kind is Kind.OK else result.diagnosis.sentence
 
 

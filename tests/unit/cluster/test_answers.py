@@ -161,12 +161,12 @@ def test_a_submission_that_is_given_up_is_not_graded_and_has_no_zero(request_: G
     assert (request_.out / "grader.log").read_text() == "KilledWorker\n"
 
 
-def test_a_submission_that_intake_refuses_gets_its_result_without_a_worker(tmp_path: Path) -> None:
+def test_a_submission_that_intake_refuses_is_unclear_and_needs_no_worker(tmp_path: Path) -> None:
     (tmp_path / "bob.zip").write_bytes(b"none")
     with pytest.raises(StudentError) as caught:
         read_submission(tmp_path / "bob.zip", CHAPTER)
     result = refused(suites.hidden(CHAPTER), "bob", 7, Tier.BUBBLEWRAP, caught.value.diagnosis)
-    assert (result.status, result.score, result.diagnosis) == (Status.GRADED, 0.0, caught.value.diagnosis)
+    assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, caught.value.diagnosis)
 
 
 def test_an_answer_that_would_be_too_large_is_a_failure() -> None:

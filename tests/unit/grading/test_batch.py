@@ -29,7 +29,7 @@ def _submission(folder: Path) -> Path:
 
 
 def _found(*paths: Path) -> list[tuple[str, str]]:
-    return [(entry.student, entry.path.name) for entry in discover(paths, CHAPTER)]
+    return [(entry.student, entry.path.name) for entry in discover(paths, CHAPTER).entries]
 
 
 def test_a_single_submission_has_the_name_of_its_folder_or_file(tmp_path: Path) -> None:
@@ -43,7 +43,24 @@ def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: P
     (tmp_path / "class" / "carol.ipynb").write_bytes(b"{}")
     (tmp_path / "class" / "notes.txt").write_bytes(b"")
     (tmp_path / "class" / ".hidden").mkdir()
-    assert [name for name, _ in _found(tmp_path / "class")] == ["alice", "bob", "carol"]
+    found = discover((tmp_path / "class",), CHAPTER)
+    assert [entry.student for entry in found.entries] == ["alice", "bob", "carol"]
+    assert [name for name, _ in found.others] == ["notes.txt"]
+
+
+def test_an_archive_is_a_submission_whatever_its_ending(tmp_path: Path) -> None:
+    names = ["ada.tar.gz", "bob.ZIP", "cyd.7z", "dan.Ipynb", "eve.tgz", "fay.rar", "gus.ipynb.txt"]
+    for name in names:
+        (tmp_path / name).write_bytes(b"")
+    assert _found(tmp_path) == [(name.partition(".")[0], name) for name in names]
+
+
+def test_files_beside_a_students_folder_of_the_assignment_belong_to_the_submission(tmp_path: Path) -> None:
+    for student in ("alice", "bob"):
+        _submission(tmp_path / "submitted" / student / CHAPTER)
+    (tmp_path / "submitted" / "alice" / "timestamp.txt").write_text("")
+    (tmp_path / "submitted" / "bob" / "better.zip").write_bytes(b"")
+    assert _found(tmp_path / "submitted") == [("alice", CHAPTER), ("bob", "bob")]
 
 
 def test_nbgrader_s_submitted_layout_is_understood(tmp_path: Path) -> None:

@@ -19,8 +19,9 @@ from autograder.exceptions import StudentError, UsageError
 from autograder.intake import SubmittedFile, detect_layout, read_packages, read_submission, write_tree
 
 CHAPTER = "02_nodes"
+NOTEBOOK = b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": []}'
 TREE = {
-    f"{CHAPTER}.ipynb": b"{}",
+    f"{CHAPTER}.ipynb": NOTEBOOK,
     "notes.txt": b"mine",
     "ws/src/my_robot_package/package.xml": b"<package/>",
     "ws/src/my_robot_package/setup.py": b"setup()\r\n",
@@ -64,15 +65,15 @@ def test_a_whole_folder_is_recognised_however_it_is_packed(tmp_path: Path, layou
     else:
         prefix = {"zip": "", "zip with a top folder": f"{CHAPTER}/", "zip by two": f"alice/{CHAPTER}/"}[layout]
         taken = read_submission(_zip(tmp_path / "alice.zip", TREE, prefix), CHAPTER)
-    assert taken.notebook == b"{}"
+    assert taken.notebook == NOTEBOOK
     assert _names(taken.source) == SOURCE
     assert _names(taken.extra) == {"notes.txt"}
 
 
 def test_a_lone_notebook_may_have_any_name(tmp_path: Path) -> None:
-    (tmp_path / "my answer.ipynb").write_bytes(b"{}")
+    (tmp_path / "my answer.ipynb").write_bytes(NOTEBOOK)
     taken = read_submission(tmp_path / "my answer.ipynb", CHAPTER)
-    assert (taken.notebook, taken.source, taken.extra) == (b"{}", (), ())
+    assert (taken.notebook, taken.source, taken.extra) == (NOTEBOOK, (), ())
 
 
 def test_a_bare_source_tree_has_no_notebook(tmp_path: Path) -> None:
@@ -242,7 +243,7 @@ def test_damaged_bytes_are_unreadable_and_named(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(data)
         kind, sentence = _refused(tmp_path / name)
         assert kind is Kind.UNREADABLE
-        assert f"{name} is not a folder, a notebook or a readable zip archive" in sentence
+        assert f"{name} is not a folder, a notebook or a readable zip or tar archive" in sentence
 
 
 def test_an_encrypted_archive_is_unreadable(tmp_path: Path) -> None:
@@ -288,12 +289,22 @@ def test_files_of_any_names_are_written_below_the_folder_or_the_archive_is_refus
     assert {path.name for path in (root / "out").iterdir()} == {"source"}
 
 
-def test_the_shallowest_notebook_is_the_submission() -> None:
+def test_an_answer_counts_and_not_one_in_a_folder_below_it() -> None:
+    old, new = (
+        NOTEBOOK.replace(
+            b"[]",
+            b'[{"cell_type": "code", "source": "%%writefile ws/src/my_robot_package/my_robot_package/nodes/'
+            b"robot_controller.py\\n" + text + b'"}]',
+        )
+        for text in (b"old", b"new")
+    )
     entries = [
-        SubmittedFile(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), b"old"),
-        SubmittedFile(PurePosixPath(f"a/{CHAPTER}.ipynb"), b"new"),
+        SubmittedFile(PurePosixPath(f"a/old/{CHAPTER}.ipynb"), old),
+        SubmittedFile(PurePosixPath(f"a/{CHAPTER}.ipynb"), new),
     ]
-    assert detect_layout(entries, CHAPTER).notebook == b"new"
+    found = detect_layout(entries, CHAPTER)
+    assert found.notebook == new
+    assert found.unused == (f"a/old/{CHAPTER}.ipynb",)
 
 
 # What a notebook leaves behind.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -40,8 +41,15 @@ def download(folder: Path, *names: str) -> Path:
 def found(folder: Path, table: str) -> tuple[CollectedSubmissions, dict[str, str]]:
     roster = folder.parent / "roster.csv"
     roster.write_text(table, encoding="utf-8-sig")
-    collected = collect(folder, read_roster(roster), CHAPTER)
-    return collected, {entry.student: str(entry.path.relative_to(folder)) for entry in collected.entries}
+    collected = collect(folder, read_roster(roster), CHAPTER, Path(tempfile.mkdtemp(dir=folder.parent)))
+    return collected, {entry.student: located(entry.path, folder) for entry in collected.entries}
+
+
+def located(path: Path, folder: Path) -> str:
+    """Return where a submission lies in a download; the names of its files, where they were brought together."""
+    if path.is_relative_to(folder):
+        return str(path.relative_to(folder))
+    return " + ".join(sorted(child.name for child in path.iterdir()))
 
 
 def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) -> None:
@@ -66,17 +74,18 @@ def test_a_moodle_download_with_folders_is_assigned_to_students(tmp_path: Path) 
     )
 
 
-def test_a_moodle_download_without_folders_takes_the_first_of_two_equally_new_files(tmp_path: Path) -> None:
+def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "moodle",
         "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip",
         "jane doe_102_assignsubmission_file_1.zip",
-        "jane doe_102_assignsubmission_file_2.zip",
+        "jane doe_102_assignsubmission_file_report-1.pdf",
+        "jane doe_102_assignsubmission_file_report.pdf",
     )
     collected, entries = found(folder, MOODLE)
     assert entries["zoe@example.edu"] == "Zoë Müller-Żak_101_assignsubmission_file_a_b.zip"
-    why = "jane@example.edu handed in several, and none is the newest"
-    assert collected.unmatched == (("jane doe_102_assignsubmission_file_2.zip", why),)
+    assert entries["jane@example.edu"] == "1.zip + report-1.pdf + report.pdf"
+    assert (collected.older, collected.unmatched) == ((), ())
 
 
 def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
@@ -91,6 +100,50 @@ def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -
     assert entries == {"jdoe": "doejane_LATE_7001_9005_answer-1.zip", "zoe": "mllerzo_7002_9002_02_nodes.ipynb"}
     assert (collected.late, collected.older) == (("jdoe",), ("doejane_7001_9001_answer.zip",))
     assert [name for name, _ in collected.unmatched] == ["testsome_7003_9003_x.zip"]
+
+
+def test_the_files_of_a_canvas_attempt_come_together_whatever_their_numbers(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "canvas",
+        "doejane_7001_9001_work.zip",
+        "doejane_7001_9002_screenshot.png",
+        "mllerzo_7002_9003_part-1.zip",
+        "mllerzo_7002_9004_part-2.zip",
+    )
+    collected, entries = found(folder, CANVAS)
+    assert entries == {"jdoe": "screenshot.png + work.zip", "zoe": "part-1.zip + part-2.zip"}
+    assert (collected.older, collected.unmatched) == ((), ())
+
+
+def test_the_files_of_a_late_canvas_attempt_replace_those_of_one_in_time(tmp_path: Path) -> None:
+    folder = download(
+        tmp_path / "canvas",
+        "doejane_7001_9001_draft.zip",
+        "doejane_7001_9002_notes.pdf",
+        "doejane_LATE_7001_9005_final.zip",
+        "doejane_LATE_7001_9006_notes-1.pdf",
+    )
+    collected, entries = found(folder, CANVAS)
+    assert entries == {"jdoe": "final.zip + notes-1.pdf"}
+    assert collected.older == ("doejane_7001_9001_draft.zip", "doejane_7001_9002_notes.pdf")
+
+
+def test_each_member_of_a_gradescope_group_has_the_submission(tmp_path: Path) -> None:
+    folder = download(tmp_path / "export", "submission_1/ws/src/p/package.xml", "submission_2/x", "notes.pdf")
+    (folder / "submission_metadata.yml").write_text(
+        "---\nsubmission_1:\n  :submitters:\n  - :name: Pair One\n    :sid: '200'\n  - :name: Pair Two\n"
+        "    :sid: '201'\n  - :name: Guest\n    :sid: '9'\n  :created_at: 2026-01-03 09:00:00 Z\n"
+        "submission_3:\n  :submitters:\n  - :name: Pair Two\n    :sid: '201'\n"
+    )
+    collected, entries = found(folder, "Name,SID,Email\nPair One,200,one@x.edu\nPair Two,201,two@x.edu\n")
+    assert entries == {"200": "submission_1", "201": "submission_1"}
+    assert collected.missing == ()
+    assert collected.unmatched == (
+        ("notes.pdf", "submission_metadata.yml does not list it"),
+        ("submission_2", "submission_metadata.yml does not list it"),
+        ("submission_3", "submission_metadata.yml lists it, and it is not there"),
+        ("submission_1", "no student of roster.csv fits"),
+    )
 
 
 def test_the_list_of_a_gradescope_download_names_student_and_time_of_each_folder(tmp_path: Path) -> None:

@@ -1,0 +1,100 @@
+"""Reads the cells of a notebook, as any tool may have saved it.
+
+JupyterLab opens more than nbformat's schema allows: cell ids before 4.5, outputs without a name, code cells without
+outputs, unknown keys. Of a cell, its kind, its text, its metadata and its id count here.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+CELL_TYPES = ("code", "markdown", "raw")
+# Of a notebook whose outputs are dropped: they say how many values a parser makes.
+MAX_STRINGS = 1_000_000
+MAX_STRUCTURE = 8 * 1024 * 1024  # bytes outside of strings
+_ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")
+
+Cell = dict[str, Any]
+
+
+def read_cells(data: bytes) -> list[Cell]:
+    """Return the cells of a notebook, each with `cell_type`, `source`, `metadata` and a unique `id`.
+
+    Raises:
+        ValueError: the bytes are not a notebook of a known format.
+    """
+    notebook = _parsed(data)
+    version = notebook.get("nbformat")
+    if version == 3:
+        notebook = _converted(notebook)
+    elif version != 4:
+        raise ValueError(f"its nbformat is {str(version)[:20]}, and this tool reads 4")
+    cells = notebook.get("cells")
+    if not isinstance(cells, list):
+        raise ValueError("it has no list of cells")
+    ids: set[str] = set()
+    return [_cell(cell, number, ids) for number, cell in enumerate(cells)]
+
+
+def without_outputs(data: bytes) -> bytes:
+    """Return a notebook's bytes without its outputs; the same bytes if they cannot be read as one."""
+    if not _is_simple(data):
+        return data
+    try:
+        notebook = _parsed(data)
+        for cell in notebook["cells"]:
+            cell.pop("outputs", None)
+        return json.dumps(notebook, ensure_ascii=True).encode()
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return data
+
+
+def _is_simple(data: bytes) -> bool:
+    """Return whether parsing JSON text makes few values, whatever it is."""
+    plain = data.replace(rb"\\", b"").replace(rb"\"", b"")
+    if plain.count(b'"') > 2 * MAX_STRINGS:
+        return False
+    return sum(map(len, plain.split(b'"')[::2])) <= MAX_STRUCTURE
+
+
+def _parsed(data: bytes) -> Cell:
+    try:
+        text = data.decode(json.detect_encoding(data)).removeprefix("\ufeff")
+        notebook = json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deep") from None
+    if not isinstance(notebook, dict):
+        raise ValueError("it is not a JSON object")
+    return notebook
+
+
+def _converted(notebook: Cell) -> Cell:
+    import nbformat  # slow to import; notebooks of 2014 and before are rare
+
+    try:
+        return dict(nbformat.convert(nbformat.from_dict(notebook), 4))
+    except Exception as error:  # nbformat raises any exception for a malformed structure
+        raise ValueError(f"its nbformat is 3, and it cannot be converted: {error}") from None
+
+
+def _cell(cell: object, number: int, ids: set[str]) -> Cell:
+    if not isinstance(cell, dict) or cell.get("cell_type") not in CELL_TYPES:
+        raise ValueError(f"cell {number} is not a code, Markdown or raw cell")
+    source = cell.get("source", "")
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):
+        source = "".join(source)
+    if not isinstance(source, str):
+        raise ValueError(f"the source of cell {number} is not text")
+    metadata = cell.get("metadata")
+    id = cell.get("id")
+    if not isinstance(id, str) or not _ID.fullmatch(id) or id in ids:
+        id = next(name for n in range(number, number + len(ids) + 2) if (name := f"cell-{n}") not in ids)
+    ids.add(id)
+    return {
+        "cell_type": cell["cell_type"],
+        "id": id,
+        "metadata": metadata if isinstance(metadata, dict) else {},
+        "source": source.replace("\r\n", "\n"),
+    }
