@@ -1,18 +1,22 @@
-"""Runs a submitted notebook in a sandboxed kernel. Its cells write files into a fresh workspace."""
+"""Runs a submitted notebook in the sandbox, client and kernel. Its cells write files into a fresh workspace.
+
+No message of the kernel reaches this process: a program in the sandbox takes them, and answers with the outputs of each
+cell in bounded JSON (`notebook_host`). The cells' own text is the grader's, never the answer's.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
-from dataclasses import replace
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import nbformat
-from jupyter_client.manager import AsyncKernelManager
-from nbclient import NotebookClient
-from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook
 
 import autograder
 import sim
@@ -22,14 +26,18 @@ from autograder.exceptions import GraderError, StudentError
 from autograder.grading import submitted_notebook
 from autograder.grading.submitted_notebook import STUB
 from autograder.lockstep.failures import tail
+from autograder.reading import reading
 from autograder.sandbox import Mount, Process, Sandbox
 from autograder.sandbox.launcher import launch
 from autograder.sandbox.limits import KERNEL
 from autograder.workspace import Workspace
 from sim.grading import GRADING_VARIABLE
 
+HOST = Path(__file__).with_name("notebook_host.py")
 CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
 MAX_OUTPUT = 4 * 1024 * 1024  # characters
+MAX_WHY = 2000  # characters
+MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; what comes after them is left out
 WRITEFILE = "%%writefile "
 
 
@@ -57,75 +65,65 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 
     Raises:
         StudentError: a file of the submission keeps the kernel from starting.
-        GraderError: the kernel does not answer for another reason.
+        GraderError: the sandbox does not answer before the student's code is started.
     """
-    connections = workspace.scratch / "jupyter"
-    connections.mkdir(exist_ok=True)
-    kernel = _SandboxedKernel(_sandbox(folder, workspace), connections)
-    skipped = {index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)}
-    client = _Client(notebook, km=kernel, timeout=CELL_SECONDS, allow_errors=True, skipped=skipped)
-    with kernel.process as process:
-        try:
-            client.execute()
-        except (DeadKernelError, CellTimeoutError):
-            return notebook
-        except RuntimeError as error:  # nbclient raises it if the kernel does not start
-            raise _no_kernel(process, error) from error
+    (workspace.scratch / "jupyter").mkdir(exist_ok=True)
+    skipped = [index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)]
+    order = {"notebook": notebook, "skipped": skipped, "cell_seconds": CELL_SECONDS, "max_output": MAX_OUTPUT}
+    with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
+        given.write(json.dumps(order).encode())
+        given.seek(0)
+        descriptors = given.fileno(), taken.fileno()
+        command = [sys.executable, str(HOST), *map(str, descriptors)]
+        with launch(command, _sandbox(folder, workspace), pass_fds=descriptors) as process:
+            process.wait(KERNEL.wall_seconds + 10)
+        taken.seek(0)
+        answer = read_answer(taken.read(MAX_ANSWER))
+    if not answer.begun:
+        raise GraderError(f"the notebook's sandbox did not answer: {tail(process.output)}")
+    if answer.why and not answer.cells:
+        raise _no_kernel(process, answer.why)
+    for index, cell in enumerate(notebook.cells):
+        if index in answer.cells and cell.cell_type == "code":
+            cell.outputs, cell.execution_count = answer.cells[index].outputs, answer.cells[index].execution_count
     return notebook
 
 
-class _SandboxedKernel(AsyncKernelManager):
-    """A kernel of the grader's own Python in a sandbox; Jupyter connects to it by Unix sockets in a folder."""
+@dataclass(frozen=True)
+class Answer:
+    """What the sandbox says of a run."""
 
-    def __init__(self, sandbox: Sandbox, connections: Path) -> None:
-        super().__init__(transport="ipc", connection_file=str(connections / "k.json"), ip=str(connections / "k"))
-        self.write_connection_file()
-        self.process = launch([sys.executable, "-m", "ipykernel_launcher", "-f", self.connection_file], sandbox)
-
-    @property
-    def has_kernel(self) -> bool:
-        return True
-
-    async def _async_is_alive(self) -> bool:  # which clients ask
-        return self.process.ending is None
-
-    is_alive = _async_is_alive
-
-    async def shutdown_kernel(self, now: bool = False, restart: bool = False) -> None:  # type: ignore[override]
-        self.process.kill()
+    begun: bool = False  # whether it came as far as starting a kernel
+    why: str = ""  # what ended the run early; empty if it came to its end, or did not say
+    cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their places
 
 
-class _Client(NotebookClient):
-    """Runs a notebook without the cells in `skipped`, and kills a kernel that sends more than `MAX_OUTPUT`."""
-
-    def __init__(self, notebook: NotebookNode, *, skipped: set[int], **options: Any) -> None:
-        super().__init__(notebook, **options)
-        self._skipped = skipped
-        self._received = 0
-
-    async def async_execute_cell(self, cell: NotebookNode, cell_index: int, *args: Any, **kwargs: Any) -> NotebookNode:
-        if cell_index in self._skipped:
-            return cell
-        return await super().async_execute_cell(cell, cell_index, *args, **kwargs)
-
-    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
-        self._received += len(repr(msg.get("content", "")))
-        if self._received > MAX_OUTPUT:
-            kernel: Any = self.km
-            kernel.process.kill()
-            return None
-        return super().process_message(msg, cell, cell_index)
+def read_answer(data: bytes) -> Answer:
+    """Read the lines of `notebook_host`, which the student's code may have forged; what is not valid is left out."""
+    begun, why, cells = False, "", dict[int, NotebookNode]()
+    for line in data.split(b"\n"):
+        with suppress(StudentError), reading("An output of your notebook"):
+            said = json.loads(line, parse_constant=lambda _: None)
+            if said["event"] == "begin":
+                begun = True
+            elif said["event"] == "end":
+                why = str(said["why"])[:MAX_WHY]
+            elif said["event"] == "cell" and type(said["index"]) is int:
+                cell = new_code_cell(
+                    outputs=nbformat.from_dict(said["outputs"]), execution_count=said["execution_count"]
+                )
+                nbformat.validate(new_notebook(cells=[cell]))
+                nbformat.writes(new_notebook(cells=[cell]))
+                cells[said["index"]] = cell
+    return Answer(begun, why, cells)
 
 
-def _no_kernel(process: Process, error: RuntimeError) -> Exception:
-    """Return a StudentError if the kernel died, which a submitted file can cause, and a GraderError otherwise."""
-    if process.ending is None:
-        return GraderError(f"the sandboxed kernel did not answer: {error}")
+def _no_kernel(process: Process, why: str) -> StudentError:
     sentence = (
         "The notebook's kernel could not start: a file beside the notebook, such as ipykernel_launcher.py, "
         "hides a module of the same name. Rename or remove it."
     )
-    return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output)))
+    return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output) or tail(why)))
 
 
 def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
@@ -133,8 +131,11 @@ def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
     if cell.cell_type != "code" or STUB not in cell.source or not cell.source.startswith(WRITEFILE):
         return False
     target = cell.source.splitlines()[0].removeprefix(WRITEFILE).strip()
-    path = (folder / target).resolve()
-    return bool(path.is_relative_to(folder.resolve()) and path.is_file())
+    try:
+        path = (folder / target).resolve()
+        return bool(path.is_relative_to(folder.resolve()) and path.is_file())
+    except (OSError, ValueError, RuntimeError):  # a name that is no file's: the cell itself will say so
+        return False
 
 
 def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
@@ -152,6 +153,6 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     environment["PYTHONPATH"] = os.pathsep.join([*filter(None, [environment["PYTHONPATH"]]), str(layout.ROOT)])
     code = (Path(autograder.__file__).parent, Path(sim.__file__).parent)
     worlds = filter(Path.is_dir, {layout.SHARED_WORLDS, layout.WORLDS})
-    readable = (*code, *worlds, layout.COURSE.root / layout.COURSE_FILE)
+    readable = (HOST, *code, *worlds, layout.COURSE.root / layout.COURSE_FILE)
     mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
     return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)

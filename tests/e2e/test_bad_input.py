@@ -58,6 +58,26 @@ def test_a_cell_over_a_limit_ends_the_run_and_files_written_before_count(cell: s
     assert answer["left"] == []
 
 
+FORGED = "import os\nkernel = get_ipython().kernel\nsession, io = kernel.session, kernel.iopub_socket\n"
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        pytest.param("session.send(io, 'status', content={}, parent=kernel.get_parent())", id="status without a state"),
+        pytest.param("session.key = b'mine'", id="signed with another key"),
+        pytest.param("io.send_multipart([b'', b'<IDS|MSG>'])", id="cut short"),
+        pytest.param("io.send_multipart([b'x' * 1000] * 100_000)", id="of a hundred thousand parts"),
+        pytest.param("session.send(io, 'stream', content=[], parent=kernel.get_parent())", id="content is a list"),
+        pytest.param("io.send(memoryview(__import__('mmap').mmap(-1, 3 << 30)), copy=False)", id="of 3 GB"),
+    ],
+)
+def test_a_message_that_no_kernel_sends_ends_the_run_at_most_and_files_written_before_count(message: str) -> None:
+    answer = in_cell(executed, ["%%writefile before.txt\nkept", f"{FORGED}{message}\nprint('sent')", "1 + 1"])
+    assert answer["files"] == ["before.txt"]
+    assert answer["left"] == []
+
+
 def test_a_cell_that_asks_for_input_raises_or_exits_does_not_stop_the_next_cell() -> None:
     cells = [
         "input('how many points? ')",

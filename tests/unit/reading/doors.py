@@ -12,12 +12,14 @@ from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 from typing import Any
 
+import nbformat
 from hypothesis import strategies as st
 
 from autograder import exercise_stubs, intake, packages
 from autograder.building import build_log
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grading import submitted_notebook
+from autograder.grading.run_notebook import _would_overwrite, read_answer
 from autograder.harness.launch import LaunchHarness
 from autograder.harness.matching import connected
 from autograder.harness.stepped import _sum
@@ -46,6 +48,7 @@ from tests.unit.reading.samples import (
     MANIFEST,
     METADATA,
     NOTEBOOK,
+    OUTPUTS,
     PARAMETERS,
     PYTHON,
     SHOWN_ARGUMENTS,
@@ -135,6 +138,10 @@ def _status_of_launch(data: bytes, place: Path) -> object:
     finally:
         os.close(ours)
         os.close(theirs)
+
+
+def _cell(source: str) -> nbformat.NotebookNode:
+    return nbformat.v4.new_code_cell(source)
 
 
 def _zip(place: Path, data: bytes) -> object:
@@ -283,6 +290,18 @@ DOORS: dict[str, Door] = {
         ({**NOTEBOOK, "nbformat_minor": 10**400}, {**NOTEBOOK, "metadata": []}, {**NOTEBOOK, "cells": {"a": 1}}),
     ),
     "bytes of a notebook": Door(_parse_notebook, altered(json.dumps(NOTEBOOK).encode())),
+    "outputs of a notebook": Door(
+        lambda lines, place: read_answer(b"\n".join(json.dumps(line).encode() for line in lines)),
+        st.lists(altered_json(*OUTPUTS), max_size=3),
+    ),
+    "bytes of outputs of a notebook": Door(
+        lambda data, place: read_answer(data), altered(b"\n".join(json.dumps(line).encode() for line in OUTPUTS))
+    ),
+    "file that a cell writes": Door(
+        lambda name, place: _would_overwrite(_cell(f"%%writefile {name}\n# YOUR CODE HERE"), place),
+        st.text(st.sampled_from("ab/.~\0\ud800 é*\n-"), max_size=40) | st.sampled_from(("a" * 300, "/" * 5000)),
+        ("a\0b", "a" * 300, "ws/src/" + "b" * 256 + "/c", "\ud800", "~", "/etc/passwd", ".", "..", "-a", ""),
+    ),
     "archive": Door(lambda data, place: _zip(place, data), altered(_archive())),
     "names in a submission": Door(
         lambda names, place: intake.detect_layout(

@@ -113,3 +113,15 @@ NOTEBOOK: dict[str, Any] = {
         },
     ],
 }
+OUTPUTS: tuple[dict[str, Any], ...] = (
+    {"event": "begin"},
+    {
+        **{"event": "cell", "index": 1, "execution_count": 3},
+        "outputs": [
+            {"output_type": "stream", "name": "stdout", "text": "1"},
+            {"output_type": "error", "ename": "E", "evalue": "v", "traceback": ["line"]},
+            {"output_type": "display_data", "data": {"text/plain": "p", "application/json": [1]}, "metadata": {}},
+        ],
+    },
+    {"event": "end", "why": ""},
+)

@@ -1,0 +1,76 @@
+"""Runs inside the sandbox: executes a notebook's cells in a kernel, and says cell by cell what came of them.
+
+    python notebook_host.py ORDER_FD ANSWER_FD
+
+The order, `{"notebook": ..., "skipped": [INDEX, ...], "cell_seconds": ..., "max_output": ...}`, comes on one
+descriptor. The answer goes to another, a line of JSON each: `{"event": "begin"}` before there is a kernel, `{"event":
+"cell", "index": ..., "outputs": [...], "execution_count": ...}` after each cell, and `{"event": "end", "why": ...}`. It
+is a claim of a sandbox in which the student's code runs. A kernel's messages come no further than here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+from typing import Any
+
+
+def main() -> None:
+    """Carry out the order."""
+    with os.fdopen(int(sys.argv[1]), encoding="utf-8") as stream:
+        order = json.load(stream)
+    answer = os.fdopen(int(sys.argv[2]), "w", encoding="utf-8")
+    sys.path.pop(0)  # the folder of this file is none of the notebook's business
+
+    def tell(event: str, **fields: Any) -> None:
+        answer.write(json.dumps({"event": event, **fields}) + "\n")
+        answer.flush()
+
+    tell("begin")
+    try:
+        _execute(order, tell)
+        tell("end", why="")
+    except Exception as error:
+        tell("end", why=f"{type(error).__name__}: {error}"[:2000])
+    answer.flush()
+    os._exit(0)  # the kernel ends with the sandbox
+
+
+def _execute(order: dict[str, Any], tell: Any) -> None:
+    import nbformat
+    from jupyter_client.manager import AsyncKernelManager
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellTimeoutError, DeadKernelError
+
+    received = 0
+
+    class Client(NotebookClient):
+        """Tells what came of each cell, and ends a kernel that sends too much."""
+
+        async def async_execute_cell(self, cell: Any, cell_index: int, *args: Any, **kwargs: Any) -> Any:
+            if cell_index in order["skipped"] or cell.cell_type != "code":
+                return cell
+            try:
+                return await super().async_execute_cell(cell, cell_index, *args, **kwargs)
+            finally:
+                tell("cell", index=cell_index, outputs=cell.outputs, execution_count=cell.execution_count)
+
+        def process_message(self, msg: dict[str, Any], cell: Any, cell_index: int) -> Any:
+            nonlocal received
+            received += len(repr(msg.get("content", "")))
+            if received > order["max_output"]:
+                raise DeadKernelError("it prints without end")
+            return super().process_message(msg, cell, cell_index)
+
+    notebook = nbformat.from_dict(order["notebook"])
+    sockets = f"{os.environ['JUPYTER_RUNTIME_DIR']}/k"
+    kernel = AsyncKernelManager(kernel_name="python3", transport="ipc", ip=sockets)
+    client = Client(notebook, km=kernel, timeout=order["cell_seconds"], allow_errors=True, shutdown_kernel="immediate")
+    with contextlib.suppress(DeadKernelError, CellTimeoutError):  # what the cells before it have done counts
+        client.execute()
+
+
+if __name__ == "__main__":
+    main()
