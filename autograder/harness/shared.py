@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, Generic, Protocol, TypeVar
 
+from autograder.exceptions import StudentError
 from autograder.sandbox import Process
 
 
@@ -23,7 +24,8 @@ P = TypeVar("P", bound=Programs)
 class Shared(ExitStack, Generic[P]):
     """Keeps one harness for several checks, and replaces it once one of its programs has ended.
 
-    It is a context manager: the end of the block ends the programs.
+    Programs that did not start are not started again: each further check gets the same error at once. It is a context
+    manager: the end of the block ends the programs.
 
     Args:
         make: makes a harness, not yet entered.
@@ -34,14 +36,20 @@ class Shared(ExitStack, Generic[P]):
         super().__init__()
         self._make, self._usable = make, usable
         self._present: P | None = None
+        self._error: StudentError | None = None  # why the programs did not start
 
     def get(self) -> P:
         """Return a harness whose programs run. Raises what making and entering one raises."""
+        if self._error is not None:
+            raise self._error
         present = self._present
         if present is None or any(process.ending for process in present.processes) or not self._usable(present):
             self.close()
-            present = self._make()
-            self.enter_context(present)
+            try:
+                present = self.enter_context(self._make())
+            except StudentError as error:
+                self._error = error
+                raise
             self._present = present
         return present
 

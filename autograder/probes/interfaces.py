@@ -116,6 +116,17 @@ def compare(wanted: Interface, found: Interface) -> tuple[Difference, ...]:
     return tuple(difference for index in parts for difference in _Comparison(wanted, found, index).differences())
 
 
+def elements(wanted: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
+    """Yield what a contract's constants, defaults or bounds are those of; the array without a bound has one, too."""
+    for part in wanted.parts:
+        if aspect is Aspect.CONSTANTS:
+            yield from part.constants
+        elif aspect is Aspect.DEFAULTS:
+            yield from (field for field in part.fields if field.default is not None)
+        elif aspect is Aspect.BOUNDS:
+            yield from (field for field in part.fields if {"<", "["} & set(field.type))
+
+
 def share(wanted: Interface, differences: Sequence[Difference]) -> float:
     """Return which share of a contract's elements is right, in [0, 1]."""
     elements = sum(len(part.fields) + len(part.constants) for part in wanted.parts)

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from autograder.harness import ReceivedMessage
 from autograder.time_record import LOCKSTEP, REAL
 
-# Of the period. In lockstep an error of a tenth is seen; in real time a busy machine holds messages up.
-TOLERANCES = {LOCKSTEP: 0.08, REAL: 0.25}
+TOLERANCE = 0.08  # of the period: an error of a tenth is seen
+JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s by which a pause may be wrong besides
+# Which share of the pauses between messages has to be right. In real time, a busy machine holds some messages up, and
+# the pauses before and after each of these are wrong.
+RIGHT = {LOCKSTEP: 0.9, REAL: 0.5}
+MOST = 2.0  # mean pauses may be so many times as long as they should be, where time is real and messages get lost
 
 
 def mean_period(messages: Sequence[ReceivedMessage]) -> float:
@@ -17,6 +22,30 @@ def mean_period(messages: Sequence[ReceivedMessage]) -> float:
     return (messages[-1].seconds - messages[0].seconds) / (len(messages) - 1) if len(messages) > 1 else math.inf
 
 
-def is_paced(seen: float, wanted: float, time: str) -> bool:
-    """Return whether a mean period in s is the wanted one; `time` is the harness's, "lockstep" or "real"."""
-    return abs(seen - wanted) <= TOLERANCES[time] * wanted
+def is_paced(messages: Sequence[ReceivedMessage], wanted: float, time: str) -> bool:
+    """Return whether messages come one by one, with a pause of `wanted` s between them.
+
+    Two at once, and then a pause that is twice as long, are not right, although their number is. Pauses are judged in
+    real time almost as strictly as in lockstep: a program can choose to run in real time.
+
+    Args:
+        messages: in the order in which they came; two or more.
+        wanted: the period in s.
+        time: the harness's, "lockstep" or "real".
+    """
+    off = TOLERANCE * wanted + JITTER[time]
+    right = [abs(after.seconds - before.seconds - wanted) <= off for before, after in pairwise(messages)]
+    mean = mean_period(messages)
+    longest = MOST * wanted if time == REAL else wanted + off
+    return bool(right) and sum(right) >= RIGHT[time] * len(right) and wanted - off <= mean <= longest
+
+
+def describe_pace(messages: Sequence[ReceivedMessage]) -> str:
+    """Say how often messages came: "every 0.20 s", or "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"."""
+    pauses = [after.seconds - before.seconds for before, after in pairwise(messages)]
+    if not pauses:
+        return "once" if messages else "not at all"
+    mean = f"every {mean_period(messages):.2f} s"
+    if max(pauses) - min(pauses) <= TOLERANCE * max(pauses):
+        return mean
+    return f"{mean} in the mean, with pauses of {min(pauses):.2f} s to {max(pauses):.2f} s"

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from sensor_msgs.msg import LaserScan
 
-from autograder.checks.ch02_nodes.support.robot import Robot
-from autograder.harness import Shared, Workspace
+from autograder.checks.ch02_nodes.support.robot import Reactions, Robot, own_reactions
+from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, scan
+from autograder.exceptions import StudentError
+from autograder.harness import ReceivedMessage, Shared, Workspace
 
 
 @pytest.fixture(scope="session")
@@ -23,8 +26,21 @@ def robot(shared_robot: Shared[Robot]) -> Robot:
     return shared_robot.get()
 
 
+@pytest.fixture(scope="session")
+def own(shared_robot: Shared[Robot]) -> Reactions:
+    """What this robot does where the way is clear, and where it is not."""
+    return own_reactions(_seen(shared_robot, scan(fill=2.0)), _seen(shared_robot, scan(JUST_AHEAD)))
+
+
 @pytest.fixture
 def fresh_robot(workspace: Workspace) -> Iterator[Robot]:
     """A robot that was started for this check."""
     with Robot(workspace) as robot:
         yield robot
+
+
+def _seen(shared: Shared[Robot], shown: LaserScan) -> list[ReceivedMessage]:
+    try:
+        return shared.get().see(shown)
+    except StudentError:  # it is for the checks that show such a scan
+        return []

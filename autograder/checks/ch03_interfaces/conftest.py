@@ -60,6 +60,14 @@ def driver(shared_driver: Shared[Driver]) -> Driver:
 
 
 @pytest.fixture
+def free_driver(placed_driver: Driver) -> Driver:
+    """A distance driver that has never been sent a goal, and has heard where it is."""
+    if placed_driver.used:
+        placed_driver.restart()
+    return placed_driver
+
+
+@pytest.fixture
 def placed_driver(driver: Driver, draw: random.Random) -> Driver:
     """The distance driver somewhere on the plane, askew to both axes, and it has heard where."""
     heading = draw.choice((0.0, math.pi / 2.0, math.pi, -math.pi / 2.0)) + draw.uniform(0.65, 0.9)

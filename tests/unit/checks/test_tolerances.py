@@ -56,15 +56,8 @@ def _passes(check: Callable[..., None], *arguments: Any) -> bool:
 COMPARISONS = {
     "00 speed": Comparison(square._near, lambda _: square.TOLERANCE, -1.0, 1.0),
     "01 speed": Comparison(lambda x, w: robots._is(_command(x), w, 0.0), lambda _: robots.TOLERANCE, -1.0, 1.0),
-    "02 forward": Comparison(
-        lambda x, w: _passes(controller._expect, [_command(x)], w, 0.0, "", ""), lambda _: nodes.TOLERANCE, 0.0, 1.0
-    ),
-    "02 turn": Comparison(
-        lambda x, w: _passes(controller._expect, [_command(0.0, x)], 0.0, w, "", ""),
-        lambda _: nodes.TOLERANCE,
-        0.0,
-        1.0,
-    ),
+    "02 forward": Comparison(lambda x, w: controller._is((x, 0.0), (w, 0.0)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
+    "02 turn": Comparison(lambda x, w: controller._is((0.0, x), (0.0, w)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
     "03 speed": Comparison(lambda x, w: action.straight(_command(x).message, w), lambda _: action.SLACK, 0.0, 0.5),
     "05 speed": Comparison(
         lambda x, w: _passes(configured.expect_speed, x, w, ""), lambda _: configured.TOLERANCE, 0.0, 1.0

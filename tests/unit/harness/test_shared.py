@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
 from autograder.harness import Shared
 from autograder.sandbox import Ending
 
@@ -72,3 +74,17 @@ def test_after_a_harness_that_does_not_start_the_next_check_tries_again() -> Non
         with pytest.raises(ValueError, match="does not start"):
             shared.get()
         assert shared.get().inside
+
+
+def test_programs_that_do_not_start_are_started_once_and_each_check_gets_the_error() -> None:
+    starts: list[None] = []
+
+    def make() -> Fake:
+        starts.append(None)
+        raise StudentError(Diagnosis(Kind.NEVER_STARTED, "It does not start."))
+
+    with Shared(make) as shared:
+        for _ in range(3):
+            with pytest.raises(StudentError, match="does not start"):
+                shared.get()
+    assert len(starts) == 1

@@ -7,13 +7,17 @@ import random
 
 from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.robot import SETTLED, Robot, expect_forward, expect_turn
+from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, expect_forward, expect_turn
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.time_record import LOCKSTEP
 
 check = group("reaction")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
+REACTS = ("forward_when_clear", "turns_when_blocked")
+NEAR = 0.13, 0.18  # m, which is near for whatever limit a robot has, and can be measured
 EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
+WIDE = 4.0  # degrees of what stands there
+BEAM = 0.1  # degrees, so that the beams at both ends belong to it
 JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
@@ -30,76 +34,94 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
 @hint(contract.RULE_TURN, "Look at the middle branch of control_loop.")
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
-    distance, bearing = draw.uniform(0.3, 0.8), draw.uniform(-20.0, 15.0)
-    blocked = scan(Part(bearing, bearing + 5.0, distance))
-    expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead, at {bearing:.0f}°")
+    distance = draw.uniform(0.3, 0.8)
+    blocked = scan(Part(-5.0, 5.0, distance))
+    expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead")
+    lone = scan(Part(0.0, 0.0, distance))
+    expect_turn(robot.see(lone), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75)
 
 
-@check(points=2, holds=("near", "clear"), needs=("forward_when_clear", "turns_when_blocked"))
+@check(points=2, holds=("near", "clear"), needs=TALKS, after=REACTS)
 @hint("The limit is 1.0 m: nearer blocks, farther does not.", "Compare metres with metres, and with < rather than <=.")
-def test_threshold(robot: Robot, draw: random.Random) -> None:
+def test_threshold(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
     margin = draw.uniform(0.02, 0.06)
     limit = contract.SAFETY_DISTANCE
     near, far = limit - margin, limit + margin
     for distance, expect_reaction, fraction in (
-        (near, expect_turn, 0.0),
-        (far, expect_forward, 0.0),
-        (limit, expect_forward, 0.0),  # not nearer than that, and exact in a message's float32
-        (limit - JUST_BELOW, expect_turn, 0.75),
+        (near, own.expect_turn, 0.0),
+        (far, own.expect_forward, 0.0),
+        (limit, own.expect_forward, 0.0),  # not nearer than that, and exact in a message's float32
+        (limit - JUST_BELOW, own.expect_turn, 0.75),
     ):
         seen = robot.see(scan(Part(-3.0, 3.0, distance)))
         expect_reaction(seen, f"With something {distance:.3f} m ahead", fraction=fraction)
     if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
-        for distance, expect_reaction in ((far, expect_forward), (near, expect_turn)):  # each unlike the scans before
+        for distance, expect_reaction in (
+            (far, own.expect_forward),
+            (near, own.expect_turn),
+        ):  # each unlike the scans before
             began = robot.seconds
             robot.show(scan(Part(-3.0, 3.0, distance)), SHOWN_SECONDS)
             seen = robot.messages("/cmd_vel", since=began + SETTLED)
             expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 
 
-@check(points=3, holds=("sector", "minus-inf"), needs=("forward_when_clear",), doc=contract.LASER_SCAN)
+@check(points=3, holds=("sector", "minus-inf"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
-def test_only_forward_counts(robot: Robot, draw: random.Random) -> None:
-    """It ignores what stands beside and behind it."""
-    near = draw.uniform(0.3, 0.7)
+def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) -> None:
+    """It looks 30° to each side, and ignores what stands beside and behind it."""
+    near = draw.uniform(*NEAR)
     for name, first, last in (("behind", 150.0, 180.0), ("to the left", 45.0, 110.0), ("to the right", -110.0, -45.0)):
-        expect_forward(robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead")
+        own.expect_forward(
+            robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead"
+        )
     for side in (-1.0, 1.0):
-        inside, outside = (side * (contract.HALF_SECTOR + off) for off in (-EDGE, EDGE))
-        edge = scan(Part(inside - 0.6, inside + 0.6, near))
-        expect_turn(robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, inside the forward sector")
-        edge = scan(Part(outside - 0.6, outside + 0.6, near))
-        expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
+        (inside, right, left), (outside, first, last) = (_at_edge(side, off) for off in (-EDGE, EDGE))
+        edge = robot.see(scan(Part(right, left, near)))
+        own.expect_turn(edge, f"With something {near:.2f} m away, up to {inside:.0f}°, inside the forward sector")
+        edge = robot.see(scan(Part(first, last, near)))
+        own.expect_forward(edge, f"With something {near:.2f} m away, from {outside:.0f}° on, outside of it")
     around = (Part(first, last, -math.inf) for first, last in ((150.0, 180.0), (45.0, 110.0), (-110.0, -45.0)))
-    expect_forward(robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85)
+    own.expect_forward(robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85)
 
 
 @check(
     points=2,
     holds=("bearings", "sector"),
-    needs=("forward_when_clear", "turns_when_blocked"),
+    needs=TALKS,
+    after=(*REACTS, "only_forward_counts"),
     doc=contract.LASER_SCAN,
 )
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")
 @hint("Use angle_min and angle_increment of the message, never a fixed index or a fixed number of beams.")
-def test_other_lidars(robot: Robot, draw: random.Random) -> None:
+def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """It reads bearings from the message: any number of beams, any first bearing."""
-    near = draw.uniform(0.4, 0.8)
+    near = draw.uniform(*NEAR)
     many = draw.randrange(500, 800)
     for beams, first, last in ((many, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
         name = f"from a lidar of {beams} beams that starts at {first:.0f}°"
         ahead = scan(Part(-5.0, 5.0, near), beams=beams, first_bearing=first, last_bearing=last)
         aside = scan(Part(60.0, 85.0, near), beams=beams, first_bearing=first, last_bearing=last)
-        expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
-        expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}")
+        own.expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
+        own.expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}", fraction=0.5)
     # Who wraps no bearing errs at the right, who counts beams errs far from the middle.
     for right, left, expect_reaction in (
-        (-85.0, -60.0, expect_forward),
-        (-28.0, -22.0, expect_turn),
-        (22.0, 28.0, expect_turn),
+        (-85.0, -60.0, own.expect_forward),
+        (-28.0, -22.0, own.expect_turn),
+        (22.0, 28.0, own.expect_turn),
     ):
         shown = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
         where = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
         expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)
+
+
+def _at_edge(side: float, off: float) -> tuple[float, float, float]:
+    """Return a bearing beside the sector's edge at a side, and the bearings of `WIDE` beams that end there; in degrees.
+
+    Several: whether one alone counts is for another check.
+    """
+    bearing = side * (contract.HALF_SECTOR + off)
+    other = bearing + math.copysign(WIDE, side * off)
+    return bearing, min(bearing, other) - BEAM, max(bearing, other) + BEAM

@@ -10,8 +10,8 @@ from autograder.checks import group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import (
     SETTLED,
+    Reactions,
     Robot,
-    expect_forward,
     expect_stop,
 )
 from autograder.checks.ch02_nodes.support.scans import Part, scan
@@ -20,6 +20,7 @@ from autograder.harness.drive import SCAN_SECONDS
 from autograder.time_record import LOCKSTEP
 
 check = group("safety")
+TALKS = ("subscribes_scan", "publishes_cmd_vel")
 MARGIN = 0.02  # s around the time-out, two of the shortest steps: a tenth too much is seen
 REAL_MARGIN = 0.15  # s, where time is real and messages are late
 LATE = 2.0  # s: how old a stamp is, of a scan of which only the arrival counts
@@ -35,19 +36,19 @@ def test_stops_before_first_scan(fresh_robot: Robot) -> None:
     expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
 
 
-@check(points=3, holds=("stale", "ros-time"), needs=("forward_when_clear",))
+@check(points=3, holds=("stale", "ros-time"), needs=TALKS, after=("forward_when_clear",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
-def test_stops_when_stale(workspace: Workspace, robot: Robot, draw: random.Random) -> None:
+def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, draw: random.Random) -> None:
     """It stands still when the newest scan is older than 0.5 s of ROS time: the lidar has died."""
     distance = draw.uniform(1.5, 3.0)
-    expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
+    own.expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
     margin = MARGIN if robot.time == LOCKSTEP else REAL_MARGIN
     last, first = contract.STALE_AFTER - margin, contract.STALE_AFTER + margin
     came = _show_before_command(robot, scan(fill=distance), last - 0.01)
     _run_finely(robot, last)
     fresh = robot.messages("/cmd_vel", since=came + SETTLED, until=came + last)
-    expect_forward(fresh, f"{last:.2f} s after the last scan and earlier")
+    own.expect_forward(fresh, f"{last:.2f} s after the last scan and earlier")
     robot.see(scan(fill=distance), 0.5)
     came = _show_before_command(robot, scan(fill=distance), first + 0.01)
     _run_finely(robot, 2.0)
@@ -56,18 +57,18 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, draw: random.Rando
         _expect_ros_time(workspace, scan(fill=distance))
 
 
-@check(points=1, holds=("stale", "clear", "ros-time"), needs=("stops_when_stale",))
+@check(points=1, holds=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
 @hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
-def test_recovers(robot: Robot, draw: random.Random) -> None:
+def test_recovers(robot: Robot, own: Reactions, draw: random.Random) -> None:
     """It drives again when scans come again."""
     distance = draw.uniform(1.5, 3.0)
     robot.see(scan(Part(-10.0, 10.0, 0.5)), 0.5)
     robot.left_alone(1.0)
     blind = robot.left_alone(1.0)
-    expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
+    own.expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
     expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
     late = robot.see(scan(fill=distance), late=LATE)
-    expect_forward(late, f"With scans that arrive now, and whose stamps are {LATE:g} s old", fraction=0.5)
+    own.expect_forward(late, f"With scans that arrive now, and whose stamps are {LATE:g} s old", fraction=0.5)
 
 
 def _expect_ros_time(workspace: Workspace, shown: LaserScan) -> None:

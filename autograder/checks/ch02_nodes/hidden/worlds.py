@@ -19,28 +19,29 @@ SECONDS = 60.0
 RADIUS = 0.18  # m
 MIN_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
-DRIVES = ("forward_when_clear",)  # not on turning: a collision shows more than a failed reaction, and earns its share
+TALKS = ("subscribes_scan", "publishes_cmd_vel")
+REACTS = ("forward_when_clear", "turns_when_blocked")
 HINTS = (
     "Look at the picture: what did the lidar see at the marked instant, and at which bearing?",
     "Drive the same kind of world in the notebook, with drive(...), and print what control_loop decides.",
 )
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=DRIVES)
+@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_room(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a furnished room and touches nothing."""
     _expect_safe_drive(workspace, world_generation.furnished_room(draw), draw, gallery)
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=DRIVES)
+@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_pillars(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a hall of pillars and touches nothing."""
     _expect_safe_drive(workspace, world_generation.hall_of_pillars(draw), draw, gallery)
 
 
-@check(points=3, holds=("near", "clear", "sector"), needs=DRIVES)
+@check(points=3, holds=("near", "clear", "sector"), needs=TALKS, after=REACTS)
 @hint(*HINTS)
 def test_corridor(workspace: Workspace, draw: random.Random, gallery: Gallery) -> None:
     """It drives for a minute in a bent corridor and touches nothing."""

@@ -8,6 +8,7 @@ NODE = "/robot_controller"
 
 FORWARD = 0.3  # m/s
 TURN = 0.5  # rad/s, to the left
+PERIOD = 0.1  # s between two commands
 SAFETY_DISTANCE = 1.0  # m
 HALF_SECTOR = 30.0  # degrees
 STALE_AFTER = 0.5  # s

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from geometry_msgs.msg import Twist
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
@@ -60,19 +62,68 @@ def qos_mismatch(robot: Robot) -> str:
     return ""
 
 
-def expect_forward(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
-    """Fail the check unless every command drives straight on."""
-    _expect(commands, FORWARD, 0.0, situation, "drive straight on at 0.3 m/s", fraction)
+class Velocity(NamedTuple):
+    """A command: `linear` in m/s, `angular` in rad/s."""
+
+    linear: float
+    angular: float
 
 
-def expect_turn(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
-    """Fail the check unless every command turns left on the spot."""
-    _expect(commands, 0.0, TURN, situation, "turn left on the spot at 0.5 rad/s", fraction)
+STOP, DRIVE, SPIN = Velocity(0.0, 0.0), Velocity(FORWARD, 0.0), Velocity(0.0, TURN)
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """The commands by which a robot drives on, and by which it turns: the contract's, or those of one robot.
+
+    Whether the velocities are right is for two checks alone. The others ask which of its reactions a robot shows, so
+    that a wrong velocity costs its own sentence and no more.
+    """
+
+    forward: Velocity = DRIVE
+    turn: Velocity = SPIN
+
+    def expect_forward(self, commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
+        """Fail the check unless every command drives on."""
+        _expect(commands, self.forward, situation, "drive straight on at 0.3 m/s", fraction)
+
+    def turns(self, commands: Sequence[ReceivedMessage]) -> bool:
+        """Return whether every command turns."""
+        return all(_is(_velocity(received), self.turn) for received in commands)
+
+    def expect_turn(self, commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
+        """Fail the check unless every command turns."""
+        _expect(commands, self.turn, situation, "turn left on the spot at 0.5 rad/s", fraction)
+
+
+CONTRACT = Reactions()
+expect_forward, expect_turn = CONTRACT.expect_forward, CONTRACT.expect_turn
 
 
 def expect_stop(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
-    _expect(commands, 0.0, 0.0, situation, "publish zero velocity", fraction)
+    _expect(commands, STOP, situation, "publish zero velocity", fraction)
+
+
+def own_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[ReceivedMessage]) -> Reactions:
+    """Return the reactions of a robot that was shown a clear way, and something just in front of it.
+
+    They are the contract's where the robot has none: it must drive on where the way is clear, always by the same
+    command, and do something else where it is not.
+    """
+    forward, turn = _steady(clear), _steady(blocked)
+    if forward is None or _is(forward, STOP):
+        forward = CONTRACT.forward
+    if turn is None or _is(turn, forward):
+        turn = CONTRACT.turn
+    return Reactions(forward, turn)
+
+
+def _steady(commands: Sequence[ReceivedMessage]) -> Velocity | None:
+    """Return the one velocity of all commands; None if there are several, or none."""
+    told = [_velocity(received) for received in commands]
+    finite = bool(told) and all(map(math.isfinite, told[0]))
+    return told[0] if finite and all(_is(other, told[0]) for other in told) else None
 
 
 def describe_command(command: Twist) -> str:
@@ -85,23 +136,16 @@ def describe_command(command: Twist) -> str:
     return " and ".join(part for part in (drive, turn) if part) or "stood still"
 
 
-def _expect(
-    commands: Sequence[ReceivedMessage],
-    linear: float,
-    angular: float,
-    situation: str,
-    wanted: str,
-    fraction: float = 0.0,
-) -> None:
+def _expect(commands: Sequence[ReceivedMessage], right: Velocity, situation: str, wanted: str, fraction: float) -> None:
     expect(bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {wanted}.", fraction=fraction)
-    wrong = [
-        received.message
-        for received in commands
-        if not (_near(received.message.linear.x, linear) and _near(received.message.angular.z, angular))
-    ]
+    wrong = [received.message for received in commands if not _is(_velocity(received), right)]
     did = describe_command(wrong[0]) if wrong else ""
     expect(not wrong, f"{situation}, the robot {did}: it should {wanted}.", fraction=fraction)
 
 
-def _near(value: float, wanted: float) -> bool:
-    return abs(value - wanted) <= TOLERANCE  # false for nan
+def _velocity(received: ReceivedMessage) -> Velocity:
+    return Velocity(received.message.linear.x, received.message.angular.z)
+
+
+def _is(velocity: tuple[float, float], wanted: tuple[float, float]) -> bool:
+    return all(abs(value - right) <= TOLERANCE for value, right in zip(velocity, wanted, strict=True))  # false for nan

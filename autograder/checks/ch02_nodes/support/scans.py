@@ -20,6 +20,10 @@ class Part:
     value: float
 
 
+# Just beyond range_min, which is near for whatever limit a robot has.
+JUST_AHEAD = Part(-10.0, 10.0, 0.15)
+
+
 def scan(
     *parts: Part,
     fill: float = 3.0,

@@ -7,6 +7,7 @@ import signal
 import time
 
 from geometry_msgs.msg import Twist
+from rcl_interfaces.srv import GetParameters
 
 from autograder.checks import expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
@@ -15,6 +16,8 @@ from autograder.lockstep.failures import tail
 from autograder.probes.rclpy_races import lost_a_race
 
 START_SECONDS = 30.0  # of real time
+COMMAND = "geometry_msgs/msg/Twist"
+ANSWER_SECONDS = 10.0  # of real time
 COMPUTING = 10.0  # s of processor time; a node that is to publish needs one of them
 QUIET = 0.05  # s after a command: half a period later, a node at 10 Hz waits for work, as it does most of the time
 TRIALS = 3
@@ -38,6 +41,17 @@ def expect_clean_end(workspace: Workspace, number: signal.Signals) -> None:
     expect(not late, said, fraction=0.5)
 
 
+def _commands(harness: RealTimeHarness) -> bool:
+    """Return whether the program publishes commands; whether it should is for other checks."""
+    return any(peer.topic_type == COMMAND for peer in harness.node.get_publishers_info_by_topic("/cmd_vel"))
+
+
+def _answers(harness: RealTimeHarness) -> bool:
+    """Return whether a node of the program answers when it is asked for its parameters, as each one does that spins."""
+    asked = GetParameters.Request(names=["use_sim_time"])
+    return any(harness.call(GetParameters, f"{node}/get_parameters", asked, ANSWER_SECONDS) for node in harness.nodes())
+
+
 def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str, list[str]]:
     """Start the program, and send it a signal while it spins.
 
@@ -45,12 +59,13 @@ def _end(workspace: Workspace, number: signal.Signals) -> tuple[int | None, str,
         Its exit status, None if it stays; its output; the lines that it logged after the signal.
     """
     with RealTimeHarness(workspace, PACKAGE, EXECUTABLE, listens={"/cmd_vel": Twist}) as harness:
-        # A node may be seen while its __init__ still runs; a command shows that it spins.
+        # A node may be seen while its __init__ still runs; a command shows that it spins, or an answer.
         harness.until(
-            lambda: bool(harness.messages("/cmd_vel")) or harness.processes[0].cpu_seconds() > COMPUTING, START_SECONDS
+            lambda: bool(harness.messages("/cmd_vel")) or harness.processes[0].cpu_seconds() > COMPUTING,
+            START_SECONDS if _commands(harness) else 0.0,
         )
-        spoke = bool(harness.messages("/cmd_vel"))
-        expect(spoke, "Started as ros2 run does, it published no command: without a scan, it has to publish zeros.")
+        spins = bool(harness.messages("/cmd_vel")) or _answers(harness)
+        expect(spins, "Started as ros2 run does, it published no command, and did not answer: it does not spin.")
         harness.run(QUIET)
         signalled = time.time()
         status = harness.stop(number, STOP_SECONDS)

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 import pytest
 
+from autograder.checks.ch03_interfaces.hidden.status import TUNED_PERIOD
 from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 from autograder.harness import Shared, Workspace
 from autograder.probes.parameters import override_arguments
 
-TUNED_PERIOD = 0.25  # s
 ODD_PERIOD = 0.7  # s; most statuses come between two whole seconds
 FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
 

@@ -6,10 +6,10 @@ from autograder.checks import CheckFailed, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like, read
 from autograder.harness import Workspace
-from autograder.probes.interfaces import Aspect, compare
+from autograder.probes.interfaces import Aspect, compare, elements
 
 check = group("definitions")
-READABLE = ("readable",)
+AFTER = ("readable",)
 FIELDS = (Aspect.FIELDS, Aspect.TYPES)
 TABLES = (
     "Compare your file with the exercise's table, line by line: name, type, order.",
@@ -37,7 +37,7 @@ def test_readable(workspace: Workspace) -> None:
         "status-charging",
         "status-joints",
     ),
-    needs=READABLE,
+    after=AFTER,
     doc=contract.DEFINE,
 )
 @hint(*TABLES)
@@ -57,7 +57,7 @@ def test_robot_status(workspace: Workspace) -> None:
         "trip-at-end",
         "trip-reason-field",
     ),
-    needs=READABLE,
+    after=AFTER,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLES)
@@ -77,7 +77,7 @@ def test_check_trip(workspace: Workspace) -> None:
         "result-reason",
         "feedback-fields",
     ),
-    needs=READABLE,
+    after=AFTER,
     doc=contract.LANGUAGE,
 )
 @hint(*TABLES)
@@ -86,9 +86,7 @@ def test_drive_distance(workspace: Workspace) -> None:
     expect_like(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
-@check(
-    points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), needs=READABLE, doc=contract.LANGUAGE
-)
+@check(points=1, holds=("battery-unknown", "metres-per-percent", "goal-constants"), after=AFTER, doc=contract.LANGUAGE)
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
@@ -98,7 +96,7 @@ def test_constants(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
-    needs=READABLE,
+    after=AFTER,
     doc=contract.LANGUAGE,
 )
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
@@ -110,7 +108,7 @@ def test_defaults(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
-    needs=READABLE,
+    after=AFTER,
     doc=contract.LANGUAGE,
 )
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
@@ -121,11 +119,13 @@ def test_bounds(workspace: Workspace) -> None:
 
 def _expect_all(workspace: Workspace, aspect: Aspect, count: int) -> None:
     """Fail the check unless every definition is right in one aspect, which `count` elements have."""
-    wrong = [
-        difference.sentence
-        for wanted in contract.DEFINITIONS
-        for difference in compare(wanted, read(workspace, wanted))
-        if difference.aspect is aspect
-    ]
+    wrong = []
+    for wanted in contract.DEFINITIONS:
+        try:
+            found = read(workspace, wanted)
+        except CheckFailed as unreadable:  # it has none of them; the others count
+            wrong += [unreadable.message] * sum(1 for _ in elements(wanted, aspect))
+        else:
+            wrong += [found.sentence for found in compare(wanted, found) if found.aspect is aspect]
     if wrong:
-        raise CheckFailed(" ".join(wrong[:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))
+        raise CheckFailed(" ".join([*dict.fromkeys(wrong)][:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))

@@ -33,7 +33,7 @@ def test_manifest(workspace: Workspace) -> None:
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
-@check(points=2, holds="interfaces-manifest", needs=("readable",))
+@check(points=2, holds="interfaces-manifest", after=("readable",))
 @hint("Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.")
 @hint("Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:

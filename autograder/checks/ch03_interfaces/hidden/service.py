@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import random
 from typing import Any
 
 from autograder.checks import expect, group, hint
+from autograder.checks.ch03_interfaces.hidden.trips import draw_bad_legs, draw_reserves, draw_too_far, draw_trips
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, METRES_PER_PERCENT, UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, Reporter
@@ -15,12 +15,14 @@ from autograder.time_record import LOCKSTEP, REAL
 check = group("service", doc=contract.SERVICE)
 MIN_REASON = 3  # characters: less gives no reason
 ANSWERS = ("trip_answers",)
+LEAST = 50  # percent, from which trips are judged by the level that the status shows
+CASE = 0.8  # of the points for a case in which the reason alone is missing
 SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
 HEARD = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # s for a battery to be heard; in lockstep, long before the next status
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
-@check(points=1, holds="trip-service", needs=("status_starts",))
+@check(points=1, holds="trip-service", needs=("status_starts", "check_trip"))
 @hint("self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.")
 @hint("check_trip(self, request, response) returns the response.")
 def test_trip_answers(reporter: Reporter) -> None:
@@ -41,7 +43,7 @@ def test_trip_answers(reporter: Reporter) -> None:
     reporter.ask([])
 
 
-@check(points=2, holds=("trip-unknown", "trip-reason", "newest"), needs=ANSWERS)
+@check(points=2, holds=("trip-unknown", "trip-reason", "newest"), needs=ANSWERS, after=("status_unknown",))
 @hint("An unknown battery makes no trip possible; start with possible = False.")
 def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
@@ -53,53 +55,50 @@ def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> 
     _expect(reporter.ask([10.0], 0), UNKNOWN, situation, fraction=0.75)
 
 
-@check(points=2, holds="trip-rule", needs=ANSWERS)
+@check(points=2, holds="trip-rule", needs=ANSWERS, after=("status_battery",))
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
-    # Percent that the charge has more than its whole level, and part of a percent that the legs take: whoever reckons
-    # with the charge itself comes to another whole number.
-    for charge, share in ((0.4, 0.2), (-0.4, 0.8)) * 2:
-        level = draw.randrange(50, 101)
-        legs = [draw.uniform(1.0, 20.0) for _ in range(draw.randrange(1, 7))]
-        legs += [draw.uniform(0.1, 0.9), 0.0]  # a leg may be short, and it may be none
-        legs.append((share - sum(legs) / METRES_PER_PERCENT) % 1.0 * METRES_PER_PERCENT)
-        used = sum(legs) / METRES_PER_PERCENT
-        reporter.set_battery(level, charge)
-        answer = reporter.ask(legs, 0)
-        left = math.floor(level - used)
-        situation = f"At {level} % and {len(legs)} legs of {sum(legs):.1f} m in all"
-        expect(answer.battery_at_end == left, f"{situation}, battery_at_end is {answer.battery_at_end}, not {left}.")
+    for trip in draw_trips(draw):
+        level = _charge(reporter, trip.level, trip.over)
+        said, left = reporter.ask(trip.legs, 0).battery_at_end, trip.left(level)
+        situation = f"At {level} % and {len(trip.legs)} legs of {sum(trip.legs):.1f} m in all"
+        expect(said == left, f"{situation}, battery_at_end is {said}, not {left}.")
 
 
-@check(points=2, holds=("trip-rule", "trip-enough"), needs=("trip_level",))
+@check(points=2, holds=("trip-rule", "trip-enough"), needs=ANSWERS, after=("trip_level",))
 @hint(RULE, "Exactly the reserve left is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
-    for _ in range(2):
-        level, reserve = draw.randrange(60, 101), draw.randrange(10, 40)
-        longest = (level - reserve) * METRES_PER_PERCENT
-        reporter.set_battery(level)
-        for legs, left in (([longest], reserve), ([longest / 2, longest / 2 + 2.5], reserve - 1), ([], level)):
-            answer = reporter.ask(legs, reserve)
-            situation = f"At {level} %, with {left} % left of a reserve of {reserve} %"
-            says = "possible" if answer.possible else "not possible"
-            expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
+    for drawn in draw_reserves(draw):
+        level = _charge(reporter, drawn.level)
+        for legs in drawn.trips:
+            left = reporter.ask(legs, drawn.reserve).battery_at_end  # whether that is right, `trip_level` asks
+            expect(left > 0, f"At {level} %, legs of {sum(legs):.1f} m are said to leave {left} %.")
+            for reserve in (left, left + 1, drawn.reserve):
+                answer = reporter.ask(legs, reserve)
+                says = "possible" if answer.possible else "not possible"
+                situation = f"At {level} %, with {left} % left, of which {reserve} % is the reserve"
+                expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
         answer = reporter.ask([level * METRES_PER_PERCENT], 0)
-        expect(answer.possible, f"With a reserve of 0, a trip that takes all {level} % is said to be not possible.")
+        said = f"With a reserve of 0, a trip that takes all {level} % is said to be not possible."
+        expect(answer.possible, said, fraction=0.75)
 
 
-@check(points=1, holds=("trip-far", "trip-reason"), needs=("trip_level",))
+@check(points=1, holds=("trip-far", "trip-reason"), needs=ANSWERS, after=("trip_level",))
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
-    level = draw.randrange(10, 40)
-    reporter.set_battery(level)
+    level = _charge(reporter, draw.randrange(10, 40))
     for reserve in (5, 0, -200):
-        answer = reporter.ask([draw.uniform(300.0, 900.0), 50.0], reserve)
+        far, little = draw_too_far(draw, level)
+        answer = reporter.ask(far, reserve)
         _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
-    answer = reporter.ask([level * METRES_PER_PERCENT, draw.uniform(1.0, 4.0)], 0)
-    _expect(answer, 0, "After a trip that takes less than one percent more than there is, with a reserve of 0 %")
+    _expect(
+        reporter.ask(little, 0),
+        0,
+        "After a trip that takes less than one percent more than there is, with a reserve of 0 %",
+    )
     reporter.set_battery(0)
     left = reporter.ask([], 0).battery_at_end
     expect(left == 0, f"At 0 %, which is known, and without legs, battery_at_end is {left}, not 0.", fraction=0.5)
@@ -111,13 +110,11 @@ def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
     reporter.set_battery(draw.randrange(60, 101))
-    for bad in (-draw.uniform(0.1, 0.9), -draw.uniform(1.5, 5.0), math.nan, math.inf):
-        legs = [draw.uniform(1.0, 9.0), bad]
-        draw.shuffle(legs)
+    for bad, legs in draw_bad_legs(draw):
         _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
 
 
-@check(points=1, holds="trip-reason", needs=("trip_possible",))
+@check(points=1, holds="trip-reason", needs=ANSWERS, after=("trip_possible",))
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
@@ -140,4 +137,14 @@ def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> No
     expect(not answer.possible, f"{situation}, the trip is said to be possible.", fraction=fraction)
     expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.", fraction=fraction)
     said = f"{situation}, the reason is {answer.reason!r}."
-    expect(len(answer.reason.strip()) >= MIN_REASON, said, fraction=max(0.5, fraction))
+    expect(len(answer.reason.strip()) >= MIN_REASON, said, fraction=max(CASE, fraction))
+
+
+def _charge(reporter: Reporter, percent: int, over: float = 0.25) -> int:
+    """Charge the battery; return the level by which trips are judged, in percent.
+
+    It is what the status shows, so that a level that is cut off costs no point here; where far less is shown, it is the
+    contract's.
+    """
+    shown = reporter.set_battery(percent, over)
+    return shown if min(percent, LEAST) <= shown <= 100 else percent

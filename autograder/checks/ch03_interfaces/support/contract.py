@@ -8,6 +8,7 @@ INTERFACES = "my_robot_interfaces"
 PACKAGE = "my_robot_package"
 STATUS = "status_publisher"
 DRIVER = "distance_driver"
+MAX_LEGS = 8  # of a trip
 
 ROBOT_STATUS = Interface(
     "msg/RobotStatus.msg",
@@ -28,7 +29,7 @@ CHECK_TRIP = Interface(
     "srv/CheckTrip.srv",
     (
         Part(
-            (Field("float64[<=8]", "legs"), Field("int32", "reserve", 20)),
+            (Field(f"float64[<={MAX_LEGS}]", "legs"), Field("int32", "reserve", 20)),
             (Constant("float64", "METRES_PER_PERCENT", 5.0),),
         ),
         Part((Field("bool", "possible"), Field("int32", "battery_at_end", -1), Field("string<=80", "reason"))),

@@ -12,7 +12,7 @@ from nav_msgs.msg import Odometry
 from autograder.checks import expect
 from autograder.checks.ch03_interfaces.support.contract import DRIVER, PACKAGE, PERIOD
 from autograder.checks.ch03_interfaces.support.types import Types
-from autograder.harness import AutoHarness, Goal, Workspace
+from autograder.harness import AutoHarness, Goal, ReceivedMessage, Workspace
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
 _RAISED = re.compile(r"Error raised in execute callback: (.{1,200})")  # of rclpy, in its log
@@ -24,11 +24,15 @@ ANSWER_SECONDS = 10.0  # for a server to answer: no time at all in lockstep, gen
 class Driver(AutoHarness):
     """A harness in which goals are sent, and a robot rolls.
 
+    A program that rejects a goal although nothing stands against it, once it has been sent others, is started again:
+    what it kept of those is for another check.
+
     Attributes:
         x, y, heading: where the robot is, in m and rad.
         height: of where it is, in m, which counts for no distance.
         stuck: whether the wheels are held.
         deaf: whether the odometry is silent.
+        used: whether the program has been sent a goal.
     """
 
     def __init__(self, workspace: Workspace, types: Types, clock_rate: float = 1.0) -> None:
@@ -36,7 +40,17 @@ class Driver(AutoHarness):
         super().__init__(workspace, PACKAGE, DRIVER, offers=offers, listens=listens, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
-        self.stuck = self.deaf = False
+        self.stuck = self.deaf = self.used = False
+        self._began = 0  # how many commands had come when the last goal was sent
+
+    def restart(self) -> None:
+        """Start the program anew, and let it hear where the robot is."""
+        stuck, deaf = self.stuck, self.deaf
+        self.__exit__(None, None, None)
+        self.__enter__()
+        self.used = False
+        self.place(self.x, self.y, self.heading)
+        self.stuck, self.deaf = stuck, deaf
 
     def place(self, x: float, y: float, heading: float) -> None:
         """Put the robot somewhere else, and let the driver hear of it."""
@@ -55,16 +69,26 @@ class Driver(AutoHarness):
         goal = self.types.drive_distance.Goal(distance=distance)
         if speed is not None:
             goal.speed = speed
+        self._began = len(self.messages(COMMANDS))
         sent: Goal = self.send_goal(self.types.drive_distance, ACTION, goal, ANSWER_SECONDS)
+        self.used = True
         self.until(lambda: sent.accepted is not None, ANSWER_SECONDS)
         expect(sent.accepted is not None, "The action server drive_distance did not answer a goal.")
         return sent
 
     def start(self, distance: float, speed: float | None = None) -> Goal:
-        """Send a goal that must be accepted."""
+        """Send a goal that must be accepted, by a program that was started again if need be."""
+        used = self.used
         sent = self.send(distance, speed)
+        if used and not sent.accepted:
+            self.restart()
+            sent = self.send(distance, speed)
         expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
         return sent
+
+    def commands(self) -> list[ReceivedMessage]:
+        """Return the commands that have come since the last goal was sent."""
+        return self.messages(COMMANDS)[self._began :]
 
     def why_aborted(self) -> str:
         """Return what rclpy has logged of an execute that did not end its goal, or ""."""
@@ -76,7 +100,7 @@ class Driver(AutoHarness):
     def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
         """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.
 
-        Each command moves the robot for as long as it lasts, a tenth of a second.
+        Each command moves the robot for a tenth of a second, or for as long as the one before it lasted.
         """
         before = seen = len(self.messages(COMMANDS))
         end = self.seconds + seconds
@@ -103,10 +127,10 @@ class Driver(AutoHarness):
 
     def _obey(self, seen: int) -> int:
         commands = self.messages(COMMANDS)
-        for received in commands[seen:]:
+        for number, received in enumerate(commands[seen:], seen):
             if not self.stuck:
-                self.x += PERIOD * received.message.linear.x * math.cos(self.heading)
-                self.y += PERIOD * received.message.linear.x * math.sin(self.heading)
+                lasts = min(PERIOD, received.seconds - commands[number - 1].seconds) if number else PERIOD
+                self.shift(lasts * received.message.linear.x)
         return len(commands)
 
     def _publish_odometry(self) -> None:

@@ -11,7 +11,7 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Header
 
 from autograder.checks import expect
-from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE, STATUS
+from autograder.checks.ch03_interfaces.support.contract import PACKAGE, RESERVE, STATUS, UNKNOWN
 from autograder.checks.ch03_interfaces.support.types import Types
 from autograder.harness import AutoHarness, Workspace
 
@@ -19,6 +19,7 @@ BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_sta
 OFFERS = {BATTERY: BatteryState, JOINTS: JointState}
 PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
 STALE_NS = 700_000_000  # how old what a sensor says is when it is said
+SLOW_SECONDS = 4.0  # more, for a status whose period is too long
 HEARD_SECONDS = 1.5  # until a battery that has spoken shows in the status; a status may be wrong, too
 ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, generous where time is real
 
@@ -53,19 +54,26 @@ class Reporter(AutoHarness):
         """Return the status that comes next; fail the check if none does."""
         began = self.seconds
         self.run(PERIOD + 0.2)
+        self.until(lambda: bool(self.messages(TOPIC, since=began)), SLOW_SECONDS)  # another check asks for its period
         heard = self.messages(TOPIC, since=began)
-        expect(bool(heard), "No message came on robot_status for more than a second.")
+        expect(bool(heard), f"No message came on robot_status for {PERIOD + SLOW_SECONDS:.0f} s.")
         return heard[-1].message
 
-    def set_battery(self, percent: int, over: float = 0.25) -> None:
-        """Charge the battery to a level, `over` percent more; wait until the status shows that the program knows it."""
+    def set_battery(self, percent: int, over: float = 0.25) -> int:
+        """Charge the battery to a level, `over` percent more; wait until the status shows that the program knows it.
+
+        Returns:
+            The level that the status shows then, in percent; -1 if no status comes.
+        """
         began = self.seconds
         self.publish_battery(min(1.0, (percent + over) / 100.0))
 
-        def shown() -> bool:
-            return any(received.message.battery_level == percent for received in self.messages(TOPIC, since=began)[-1:])
+        def shown() -> int:
+            heard = self.messages(TOPIC, since=began)
+            return int(heard[-1].message.battery_level) if heard else UNKNOWN
 
-        self.until(shown, HEARD_SECONDS)
+        self.until(lambda: shown() == percent, HEARD_SECONDS)
+        return shown()
 
     def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
         """Ask about a trip; return the response, fail the check if none comes."""

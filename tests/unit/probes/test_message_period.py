@@ -1,0 +1,72 @@
+"""Messages that come one by one are told from as many that come in pairs, in lockstep and in real time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import accumulate
+
+import pytest
+
+from autograder.harness import ReceivedMessage
+from autograder.probes.message_period import describe_pace, is_paced
+from autograder.time_record import LOCKSTEP, REAL
+
+PERIOD = 0.1  # s
+STEADY = [PERIOD] * 40
+
+
+def _after(pauses: Sequence[float]) -> list[ReceivedMessage]:
+    return [ReceivedMessage(seconds, None) for seconds in accumulate(pauses, initial=1.0)]
+
+
+@pytest.mark.parametrize("time", [LOCKSTEP, REAL])
+def test_messages_with_the_right_pauses_are_paced(time: str) -> None:
+    assert is_paced(_after(STEADY), PERIOD, time)
+
+
+@pytest.mark.parametrize("time", [LOCKSTEP, REAL])
+@pytest.mark.parametrize(
+    "pauses",
+    [
+        [0.0, 0.2] * 20,
+        [0.2, 0.0] * 20,
+        [0.0, 0.0, 0.3] * 14,
+        [0.12] * 40,
+        [0.08] * 40,
+        [0.2] * 20,
+        [0.0] * 40,
+        [0.1] + [0.5] * 7,
+    ],
+    ids=["pairs", "pairs later", "threes", "a fifth longer", "a fifth shorter", "half as many", "at once", "seldom"],
+)
+def test_messages_with_other_pauses_are_not_paced_in_whichever_time(pauses: Sequence[float], time: str) -> None:
+    assert not is_paced(_after(pauses), PERIOD, time)
+
+
+@pytest.mark.parametrize("period", [1.2, 1.1, 0.9])
+def test_a_second_is_judged_to_a_tenth_in_real_time_too(period: float) -> None:
+    assert not is_paced(_after([period] * 6), 1.0, REAL)
+
+
+def test_a_machine_that_holds_some_messages_up_in_real_time_costs_nothing() -> None:
+    late = [0.1, 0.18, 0.02, 0.1, 0.1, 0.35, 0.0, 0.1, 0.105, 0.095] * 4
+    assert is_paced(_after(late), PERIOD, REAL)
+    assert not is_paced(_after(late), PERIOD, LOCKSTEP)
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_fewer_than_two_messages_have_no_pace(count: int) -> None:
+    assert not is_paced(_after([])[:count], PERIOD, LOCKSTEP)
+
+
+@pytest.mark.parametrize(
+    ("messages", "words"),
+    [
+        (_after([0.2] * 20), "every 0.20 s"),
+        (_after([0.0, 0.2] * 20), "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"),
+        (_after([]), "once"),
+        ([], "not at all"),
+    ],
+)
+def test_a_pace_is_told_in_words(messages: Sequence[ReceivedMessage], words: str) -> None:
+    assert describe_pace(messages) == words
