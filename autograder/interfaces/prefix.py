@@ -101,6 +101,7 @@ def _make(package: str, recipe: str, prefix: Path) -> None:
             text=True,
             errors="replace",
             timeout=SECONDS,
+            cwd="/",  # `python -m` imports from the folder it is started in
             env={**without_wheel_bootstrap(os.environ), "PYTHONPATH": os.pathsep.join(path)},
         )
     except subprocess.TimeoutExpired:

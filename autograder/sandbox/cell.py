@@ -67,7 +67,8 @@ def in_cell(
             command = bubblewrap.cell(command, scratch=scratch, size=CELL_SCRATCH)
         own = {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log")}
         environment = {**without_wheel_bootstrap(os.environ), **own}
-        with Process(command, limits, environment=environment, pass_fds=pass_fds) as process:
+        # `python -m` imports from the folder it is started in, and that may hold submissions.
+        with Process(command, limits, environment=environment, pass_fds=pass_fds, cwd=Path("/")) as process:
             yield process, scratch
     finally:
         shutil.rmtree(scratch, ignore_errors=True)

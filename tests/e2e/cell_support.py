@@ -64,7 +64,9 @@ def is_forked(process: Process) -> bool:
     return b"autograder.prefork" in words
 
 
-_PROGRAM = (sys.executable, "-m", "tests.e2e.cell_support")
+# A cell's process is started in /, from where no path leads to the tests.
+_RUN = f"import sys; sys.path[0] = {str(ROOT)!r}; from tests.e2e.cell_support import main; main()"
+_PROGRAM = (sys.executable, "-c", _RUN)
 
 
 class _SharedCell:
@@ -149,7 +151,3 @@ def main() -> None:
             _serve(Path(sys.argv[3]), link.makefile("r"), link.makefile("w"))
     else:
         _run(Path(sys.argv[1]), sys.argv[2])
-
-
-if __name__ == "__main__":
-    main()

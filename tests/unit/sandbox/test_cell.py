@@ -34,3 +34,16 @@ def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkey
     assert Path(report.output.strip()).parent == tmp_path
     assert {*tmp_path.iterdir()} == {held, young, other, link}
     assert (other / "ws").is_dir()
+
+
+def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("json", "yaml", "numpy"):
+        (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
+    monkeypatch.chdir(tmp_path)
+    for tier in (Tier.PROCESS, Tier.BUBBLEWRAP):
+        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grading.worker", "{}"], tier)
+        assert "JSON" not in report.output
+        assert "TypeError" in report.output  # it came as far as reading its job
+    assert not (tmp_path / "ran").exists()
