@@ -55,15 +55,19 @@ def run_notebook(
     *,
     timeout: float = 120.0,
     report: Path | None = None,
+    packages: Path | None = None,
 ) -> Execution:
     """Execute a chapter's notebook in a ROS domain of its own; the chapter's folder is left as it is.
 
-    A cell may take `timeout` seconds. The executed notebook is kept at `report`.
+    A cell may take `timeout` seconds. The executed notebook is kept at `report`, and `ws/src` in
+    the folder `packages`.
     """
     notebook = in_form(chapter.read(), form)
     started = time.monotonic()
     with working_copy(chapter.folder) as folder, Domain() as domain:
         failure = execute(notebook, folder, timeout, domain.number)
+        if packages is not None and (folder / "ws" / "src").is_dir():
+            shutil.copytree(folder / "ws" / "src", packages, ignore=layout.NOT_COPIED, dirs_exist_ok=True)
     seconds = time.monotonic() - started
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)

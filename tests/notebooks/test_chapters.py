@@ -7,16 +7,19 @@ import re
 import runpy
 import subprocess
 import sys
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
 
 import pytest
 import yaml
 from _pytest.mark import ParameterSet
 
+from autograder.checks import suites
 from autograder.course.execute import run_notebook
 from autograder.course.forms import Form, in_form
 from autograder.course.sync import Chapter, chapters
+from autograder.intake.exercises import SOURCE, exercises_of
+from autograder.intake.writefile import written_file
 from autograder.layout import ROOT
 from tests.notebooks.alternative_texts import images_without_alt
 from tests.notebooks.outputs import said
@@ -110,14 +113,33 @@ def runs() -> list[ParameterSet]:
 @pytest.mark.timeout(1200)  # half a minute on an idle machine; the bound is for a stuck kernel
 @pytest.mark.parametrize(("chapter", "form"), runs())
 def test_a_chapter_runs_to_its_end_without_a_warning(chapter: Chapter, form: Form, tmp_path: Path) -> None:
-    result = run_notebook(chapter, form, timeout=400, report=tmp_path / chapter.notebook_path.name)
+    packages = tmp_path / "src"
+    result = run_notebook(chapter, form, timeout=400, report=tmp_path / "report.ipynb", packages=packages)
     assert result.ok, result.failure
+    if form is Form.SOURCE:
+        assert made_without_a_word(chapter, packages) == set()
     assert images_without_alt(result.notebook) == []
     counts = re.findall(r"(\d+) of (\d+) visible checks passed", said(result.notebook.cells))
     solved = form is not Form.RELEASED
     assert all((passed == every) is solved for passed, every in counts)
     if counts:
         assert (STILL_TO_BE_WRITTEN in said(result.notebook.cells)) is not solved
+
+
+def made_without_a_word(chapter: Chapter, packages: Path) -> set[str]:
+    """Return the files of an answer that the notebook made, and that neither `%%writefile` nor metadata name."""
+    exercises = exercises_of(chapter.assignment)
+    assert exercises is not None
+    graded = [name for name in suites.graded_assignments() if name == chapter.assignment]
+    sources = suites.hidden(chapter.assignment).sources if graded else ()
+    written = {found[0] for cell in chapter.read().cells if (found := written_file(cell.source)) is not None}
+    made = set()
+    for path in (path for source in sources for path in (packages / source).rglob("*") if path.is_file()):
+        name = PurePosixPath(path.relative_to(packages))
+        given = exercises.given.get(name)
+        if name not in exercises.makes and SOURCE / name not in written:
+            made |= {str(name)} if given is None or given.data != path.read_bytes() else set()
+    return made
 
 
 def drawing(figure: Path) -> str:
