@@ -1,18 +1,31 @@
-"""Records of runs of a student's tests: the package, the run that is wanted, and its report in JUnit XML."""
+"""Records of runs of a student's tests: the package, the run that is wanted, and its report in JUnit XML.
+
+A run that could read a hidden version can put its text into whatever it reports: ids of parametrized tests, names of
+generated ones, exceptions, output. So its report is closed (`Report.closed`): only names that stand in the student's
+source are left of its words.
+"""
 
 from __future__ import annotations
 
+import ast
+import hmac
+import secrets
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from pathlib import PurePosixPath
 from typing import ClassVar
 
+from autograder.probes.files import parse_python
 from autograder.probes.versions import Version
 from autograder.sandbox import Ending
 
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300
+MAX_SOURCE = 256 * 1024  # bytes of a test file, of which names are read
+UNNAMED = "a test"  # what a test is called whose name does not stand in the student's source
+_KEY = secrets.token_bytes(16)
 
 
 class ClaimedOutcome(str, Enum):
@@ -43,6 +56,7 @@ class TestRun:
     first_failure: bool = False  # whether the run ends with the first test that fails
     sniffed: bool = False  # whether an `RtpsSniffer` listens in the default domain
     conftest: bool = True  # whether pytest reads the conftest.py that is there
+    shown: bool = False  # whether the student may read what it says of `version`: only if the version is no secret
     __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
 
 
@@ -56,6 +70,7 @@ class Report:
     left: int  # UDP sockets that were still open after the last test: each ROS context that is not ended holds some
     output: str  # what it printed
     joined_domain: bool = False  # whether a program joined the default domain, where the run was sniffed
+    known: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
 
     @property
     def passed(self) -> bool:
@@ -75,7 +90,30 @@ class Report:
 
     def detects_fault(self, right: Report) -> bool:
         """Whether a test fails here that passed on a right version. A file that cannot be read does not count."""
+        if self.known is not None and right.known is None:
+            right = right.closed(self.known)
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
+
+    def closed(self, known: frozenset[str]) -> Report:
+        """Return the report without any text of the run, for a run that could read a hidden version.
+
+        There is no output and no message. A test is called by its name in the student's source, or `UNNAMED`. A
+        parameter's id becomes a digest, by which runs in this process can be compared, and which says nothing else.
+        """
+        verdicts = {_closed(name, known): verdict for name, verdict in self.claims.verdicts.items()}
+        return replace(self, claims=Claims(verdicts), output="", known=known)
+
+
+def shown_name(test: str) -> str:
+    """Return what a sentence calls a test, `module::name[parameters]`; of a closed report, without parameters."""
+    return test.partition("[#")[0].partition("::")[2] or UNNAMED
+
+
+def _closed(name: str, known: frozenset[str]) -> str:
+    if name in known:
+        return name
+    base, digest = name.partition("[")[0], hmac.digest(_KEY, name.encode(errors="replace"), "sha256").hex()[:16]
+    return f"{base if base in known else UNNAMED}[#{digest}]"
 
 
 @dataclass(frozen=True)
@@ -89,6 +127,27 @@ class Source:
     def tests(self) -> dict[str, bytes]:
         """The files below `test`, by their paths there."""
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
+
+    def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
+        """Return the tests that stand in test files, as a report names them; the files are parsed and not run."""
+        found: set[str] = set()
+        for name in files:
+            data = self.tests.get(name, b"")
+            tree = parse_python(data) if len(data) <= MAX_SOURCE else None
+            for node in tree.body if tree else ():
+                stem = PurePosixPath(name).stem
+                found |= {f"{stem}::{test}" for test in _tests(node)}
+        return frozenset(found)
+
+
+def _tests(node: ast.stmt) -> list[str]:
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        return [node.name]
+    return (
+        [f"{node.name}::{test}" for inner in node.body for test in _tests(inner)]
+        if isinstance(node, ast.ClassDef)
+        else []
+    )
 
 
 def parse_claims(data: bytes) -> Claims | None:

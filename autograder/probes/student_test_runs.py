@@ -7,8 +7,9 @@ A run is in the power of the student's tests: what it reports is a claim, "passe
 claiming the right thing of each version. So a run must not be able to tell which version it has before it: every run
 gets a sandbox of its own with no network but its own loopback, a path drawn at random, the same times and environment,
 and nothing that it can write to but a /tmp that ends with it. It sees its version and nothing of the others, the suites
-or earlier runs. `versions` says how versions are kept alike, and what remains. Only a run that is sniffed shares the
-grader's loopback, which no other program uses. The run can notice that, so it has to get a right version.
+or earlier runs. `versions` says how versions are kept alike, and what remains. What it says of a version that students
+do not have comes back without its words (`Report.closed`). Only a run that is sniffed shares the grader's loopback,
+which no other program uses. The run can notice that, so it has to get a right version.
 """
 
 from __future__ import annotations
@@ -128,11 +129,14 @@ def _run_in(place: Path, workspace: Workspace, source: Source, wanted: TestRun) 
     launches = _launches(source, wanted)
     arguments = _arguments(source, folder, wanted, launches)
     if not wanted.sniffed:
-        return _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
-    with RtpsSniffer() as sniffer:
-        spec = _confined(replace(there, domain=sniffer.domain), folder, wanted, place / "home")
-        report = _host(spec, wanted, arguments, launches)
-        return replace(report, joined_domain=sniffer.take_announcements())
+        report = _host(_confined(there, folder, wanted, place / "home"), wanted, arguments, launches)
+    else:
+        with RtpsSniffer() as sniffer:
+            spec = _confined(replace(there, domain=sniffer.domain), folder, wanted, place / "home")
+            report = _host(spec, wanted, arguments, launches)
+            report = replace(report, joined_domain=sniffer.take_announcements())
+    is_secret = wanted.version is not None and not wanted.shown
+    return report.closed(source.test_names(wanted.files)) if is_secret else report
 
 
 def _confined(workspace: Workspace, folder: Path, wanted: TestRun, home: Path) -> Sandbox:
@@ -197,7 +201,7 @@ def _status(descriptor: int, process: Process) -> int | None:
             if process.ending is not None:
                 return None
         said = os.read(descriptor, 64)
-        return int(said) if re.fullmatch(rb"\d{1,9}\n", said) else None
+        return int(said) if re.fullmatch(rb"[0-5]\n", said) else None
     finally:
         os.close(descriptor)
 

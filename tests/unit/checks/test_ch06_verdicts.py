@@ -73,8 +73,13 @@ def test_enough_passing_tests_are_usable() -> None:
     assert is_usable(LIMITS, ENOUGH)
 
 
-def test_messages_of_tests_about_a_hidden_version_are_not_shown() -> None:
-    assert "secret" not in describe_failure(LIMITS, report(BAD, message="secret"), "here")
+def test_of_a_closed_report_nothing_but_a_known_name_is_shown() -> None:
+    claims = Claims({"test_limits::test_0[secret]": BAD}, {"test_limits::test_0[secret]": "secret"})
+    failed = replace(report(BAD), claims=claims)
+    assert describe_failure(LIMITS, failed.closed(frozenset({"test_limits::test_0"})), "here") == (
+        "test_0 in test_limits.py fails here."
+    )
+    assert describe_failure(LIMITS, failed.closed(frozenset()), "here") == "a test in test_limits.py fails here."
 
 
 def test_a_stopped_colcon_test_is_not_reported_as_without_tests() -> None:
@@ -129,8 +134,8 @@ def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination)
 
 
 def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:
-    examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret")
+    examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret").closed(frozenset())
     examination.expect_right(LIMITS)
-    with pytest.raises(CheckFailed, match=r"test_limits\.py fail when they run in the opposite") as failed:
+    with pytest.raises(CheckFailed, match=r"test_limits\.py fails when the tests run in the opposite") as failed:
         examination.expect_right(LIMITS, BACKWARDS)
     assert "secret" not in failed.value.message

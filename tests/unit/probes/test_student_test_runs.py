@@ -50,7 +50,7 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
 
 
 def runs(workspace: Workspace, *orders: TestRun) -> list[Report]:
-    return run(workspace, take(workspace, "half"), orders)
+    return run(workspace, take(workspace, "half"), [replace(order, shown=True) for order in orders])
 
 
 def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: Workspace) -> None:
@@ -62,6 +62,56 @@ def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: W
     assert wrong.claims.messages["test_half::test_odd"].startswith("assert 1 == 1.5")
     assert wrong.detects_fault(right)
     assert not right.detects_fault(right)
+
+
+TELLTALE = """import inspect
+import sys
+import warnings
+
+import half
+import pytest
+
+SECRET = inspect.getsource(half)
+print(SECRET, file=sys.stderr)
+warnings.warn(SECRET)
+
+
+def test_known():
+    raise AssertionError(SECRET)
+
+
+@pytest.mark.parametrize("case", [SECRET, *SECRET], ids=[SECRET, *map(ascii, SECRET)])
+def test_cases(case):
+    open(SECRET)
+
+
+globals()[f"test_{SECRET}"] = test_known
+
+
+class TestNamed:
+    def test_inside(self):
+        pytest.fail(SECRET)
+
+
+TestNamed.__name__ = TestNamed.__qualname__ = SECRET
+"""
+
+
+def test_a_run_on_a_hidden_version_comes_back_without_any_word_of_its_own(workspace: Workspace) -> None:
+    write(workspace, TELLTALE)
+    source, order = take(workspace, "half"), TestRun(("test_half.py",), WRONG)
+    hidden, again = run(workspace, source, [order, order])
+    names = {name.partition("[#")[0] for name in hidden.claims.verdicts}
+    assert names == {"test_half::test_known", "test_half::test_cases", "test_half::TestNamed::test_inside", "a test"}
+    assert not hidden.output
+    assert not hidden.claims.messages
+    for text in ("return", "x // 2", "def half"):
+        assert text not in repr(hidden)
+    (shown,) = runs(workspace, order)
+    assert "x // 2" in repr(shown)
+    # The same test has the same name in each run, so that verdicts can be compared.
+    assert hidden.claims.verdicts == again.claims.verdicts
+    assert len(hidden.claims.verdicts) == len(shown.claims.verdicts)
 
 
 def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace: Workspace) -> None:

@@ -15,7 +15,7 @@ from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.fault_injection import UNTIDY, expect_failures
 from autograder.probes.given_files import changed_files
-from autograder.probes.student_test_reports import Source, TestRun
+from autograder.probes.student_test_reports import Source, TestRun, shown_name
 from autograder.probes.versions import read, read_files
 
 HINTS = (
@@ -78,7 +78,7 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     (report,) = student_test_runs.run(
         workspace, source, [TestRun(files, read(layout.SOLUTIONS / given.package, {}), conftest=False)]
     )
-    failed = " and ".join(test.partition("::")[2] for test in report.failed)
+    failed = " and ".join(dict.fromkeys(map(shown_name, report.failed)))
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})
     # The linter tests of `ros2 pkg create` may be the student's own, and so may each __init__.py.

@@ -74,7 +74,7 @@ class Examination:
         """What the tests of each file say of a right version; those of the node are overheard."""
         asked = {FILES[check] for check in self._checks if check in FILES}
         wanted = {
-            name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD)
+            name: TestRun((name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, shown=True)
             for name in MIN_TESTS
             if name in asked and name in self.source.tests
         }
@@ -159,9 +159,8 @@ class Examination:
 
 
 _OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"
-# What a test says of these versions stays here: only the first version's text is public.
 _WHERE = {
     SECOND: _OTHERWISE,
     REWORDED: _OTHERWISE,
-    BACKWARDS: "when they run in the opposite order: one test lives on what another has left behind",
+    BACKWARDS: "when the tests run in the opposite order: one test lives on what another has left behind",
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
-from autograder.probes.student_test_reports import Report, Source
+from autograder.probes.student_test_reports import Report, Source, shown_name
 from autograder.sandbox import Ending
 
 UNFINISHED = "still to be written"
@@ -21,7 +21,7 @@ def expect_passed(name: str, report: Report | None) -> None:
     if report is None:
         raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
     if not report.passed:
-        raise CheckFailed(describe_failure(name, report, "on the package as it is", said=True))
+        raise CheckFailed(describe_failure(name, report, "on the package as it is"))
     count = len(report.executed)
     expect(
         count >= MIN_TESTS[name],
@@ -37,24 +37,25 @@ def expect_no_sleep(source: Source) -> None:
     expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
 
 
-def describe_failure(name: str, report: Report, where: str, *, said: bool = False) -> str:
+def describe_failure(name: str, report: Report, where: str) -> str:
     """Say why a run that should have passed did not.
 
     Args:
         name: the test file.
-        report: its run.
+        report: its run. What a test said is quoted only if the report is not closed.
         where: the version, or the circumstances.
-        said: whether what the test said is repeated; only of a version whose text the student has.
     """
     if report.ending is Ending.WALL_TIME:
         return f"The tests in {name} do not end {where}."
     if report.failed:
-        test = report.failed[0]
-        message = report.claims.messages[test] if said else ""
+        test = shown_name(report.failed[0])
+        if report.known is not None:
+            return f"{test} in {name} fails {where}."
+        message = report.claims.messages[report.failed[0]]
         if UNFINISHED in message:
-            return f"{name} is still to be written: {test.partition('::')[2]} raises NotImplementedError."
+            return f"{name} is still to be written: {test} raises NotImplementedError."
         count = f"{len(report.failed)} of {len(report.claims.verdicts)} tests in {name} fail"
-        return f"{count} {where}: {test.partition('::')[2]}{f': {message}' if message else ''}"
+        return f"{count} {where}: {test}{f': {message}' if message else ''}"
     if report.status in (0, 5):
         return f"No test in {name} ran {where}."
     if report.status is None:

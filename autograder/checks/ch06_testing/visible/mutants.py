@@ -103,9 +103,12 @@ def reports(workspace: Workspace, source: Source) -> Reports:
         (LIMITS, BLIND): GOES_BLIND,
         (LIMITS, HALF): HALF_IN_BETWEEN,
     }
-    wanted = {(name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD) for name in MIN_TESTS}
+    wanted = {
+        (name, RIGHT): TestRun((name,), Version(files, SCRIPTS), sniffed=name == GUARD, shown=True)
+        for name in MIN_TESTS
+    }
     for (name, what), changed in mutants.items():
-        wanted[name, what] = TestRun((name,), Version({**files, **changed}, SCRIPTS), first_failure=True)
+        wanted[name, what] = TestRun((name,), Version({**files, **changed}, SCRIPTS), first_failure=True, shown=True)
     wanted = {key: one for key, one in wanted.items() if key[0] in source.tests}
     return dict(zip(wanted, run(workspace, source, list(wanted.values())), strict=True))
 

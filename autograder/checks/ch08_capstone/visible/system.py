@@ -51,7 +51,7 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
         wanted = {files: TestRun(files) for files in (TESTS, LINTERS) if not _absent(workspace, files)}
         if TESTS in wanted:
             version = Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
-            wanted[MUTANT] = TestRun(TESTS, version, first_failure=True)
+            wanted[MUTANT] = TestRun(TESTS, version, first_failure=True, shown=True)
         runs = student_test_runs.run(workspace, student_test_runs.take(workspace, PACKAGE), list(wanted.values()))
         return dict(zip(wanted, runs, strict=True))
 
