@@ -32,7 +32,7 @@ _EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.
 # colcon's own error, told again, and its word about what this machine's ROS is made of.
 _OTHERS = re.compile(r"^(?:Command '\[|\[[\d.]+s\] WARNING:colcon\.colcon_ros\.prefix_path\.).*\n?", re.MULTILINE)
 _TOOK = r"(?:\d+h )?(?:\d+min )?[\d.]+s"
-_TIME = re.compile(rf"^\[{_TOOK}\] | \[{_TOOK}\]$|(?<= \[){_TOOK}, (?=[^\]\n]+\]$)", re.MULTILINE)
+_TIME = re.compile(rf"^\[{_TOOK}\] | \[{_TOOK}\]$|(?<= \[){_TOOK}, (?=[^\[\]\n]+\]$)", re.MULTILINE)
 
 
 def readable(log: str) -> str:

@@ -7,7 +7,8 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import pairwise
 from types import MappingProxyType
 
 from autograder.checks import CheckFailed, expect
@@ -15,6 +16,7 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
 from autograder.lockstep.tracebacks import with_source_paths
+from autograder.probes.launch_arguments import Argument, parse_arguments
 from autograder.probes.parameters import Value, same
 from autograder.probes.rclpy_races import lost_a_race
 from autograder.reading import reading
@@ -26,41 +28,16 @@ STOP_SECONDS = 20.0  # real time for the end; nodes that end cleanly need 0.2
 SHOW_SECONDS = 30.0
 KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
-_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
-_DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
-_CHOICES = re.compile(r"(?:Valid choices are|One of): (?P<choices>[\[(].*[\])])")  # a list or a tuple
-_QUOTED = re.compile(r"'([^']*)'")
 _CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
-_NOT_READ = re.compile(r"Caught multiple exceptions when trying to load file.*\n - (?P<what>.+)")
-_PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"]+)", line (?P<line>\d+)', re.MULTILINE)
-_STARTED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process started with pid")
-_ENDED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has (?:finished cleanly|died)")
-_DIED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died \[pid \d+, exit code (?P<code>-?\d+)")
-_LABEL_OF_DEAD = re.compile(r"\[([^\]]+-\d+)\]: process has died")
-_NAMED = re.compile(r"\[(?P<name>[^\]]+)-\d+\]: process has died .*__node:=(?P<node>\w+)")
-_RAISED = re.compile(r"^\[[^\]]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
-
-
-@dataclass(frozen=True)
-class Argument:
-    """A launch argument, as `ros2 launch -s` shows it."""
-
-    name: str
-    description: str  # what is said of it; empty if nothing is
-    default: str | None  # the text of its default, None if it has to be given or its default is worked out
-    choices: tuple[str, ...]  # the values that are allowed; empty if any is
-
-
-def parse_arguments(text: str) -> dict[str, Argument]:
-    """Read what `ros2 launch -s` prints; return arguments by name."""
-    found: dict[str, Argument] = {}
-    for line in text.splitlines():
-        if match := _NAME.match(line):
-            found[match["name"]] = Argument(match["name"], "", None, ())
-        elif found and line.startswith("        "):
-            last = list(found)[-1]
-            found[last] = _with_line(found[last], line)
-    return found
+_NOT_READ = "Caught multiple exceptions when trying to load file"
+_PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
+_LABEL = r"\[(?P<label>(?P<name>[^\[\]\n]+)-\d+)\]: "  # of a program: its name and its number
+_STARTED = re.compile(rf"{_LABEL}process started with pid")
+_ENDED = re.compile(rf"{_LABEL}process has (?:finished cleanly|died)")
+_DIED = re.compile(rf"{_LABEL}process has died \[pid \d+, exit code (?P<code>-?\d+)")
+_DEAD = re.compile(rf"{_LABEL}process has died")
+_NODE, _WORD = "__node:=", re.compile(r"\w+")
+_RAISED = re.compile(r"^\[[^\]\n]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
 
 
 def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
@@ -193,10 +170,12 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
 
 def _lost_a_race(output: str) -> bool:
     """Return whether by a launch's output one of the programs that died did so because rclpy lost a race."""
-    return any(
-        lost_a_race("\n".join(re.findall(rf"^\[{re.escape(label)}\] (.*)$", output, re.MULTILINE)))
-        for label in _LABEL_OF_DEAD.findall(output)
-    )
+    said: dict[str, list[str]] = {f"[{match['label']}": [] for match in _DEAD.finditer(output)}
+    for line in output.splitlines():
+        label, _, words = line.partition("] ")
+        if label in said:
+            said[label].append(words)
+    return any(lost_a_race("\n".join(lines)) for lines in said.values())
 
 
 def expect_stopped(stop: Stop) -> None:
@@ -218,7 +197,12 @@ def ended(output: str) -> list[str]:
 
 def node_names(output: str, program: str) -> set[str]:
     """Return the names that a launch gave to nodes of a program that has died, whose commands its output repeats."""
-    return {match["node"] for match in _NAMED.finditer(output) if match["name"] == program}
+    found = set()
+    for line in output.splitlines():
+        if (died := _DEAD.search(line)) and died["name"] == program:
+            _, given, rest = line[died.end() :].rpartition(_NODE)
+            found |= {match[0]} if given and (match := _WORD.match(rest)) else set()
+    return found
 
 
 def failure(output: str) -> str:
@@ -235,7 +219,9 @@ def failure(output: str) -> str:
 
 def unreadable(output: str) -> str:
     """Return in a line why `ros2 launch` could not read a launch file, with the place in the student's file."""
-    what = match["what"] if (match := _NOT_READ.search(output)) else _last_line(output)
+    lines = output.split("\n")
+    reasons = (after[3:] for line, after in pairwise(lines) if _NOT_READ in line and after.startswith(" - "))
+    what = next(filter(None, reasons), "") or _last_line(output)
     places = _PLACE.findall(with_source_paths(output))
     if not places or ", line " in what:
         return what
@@ -285,18 +271,6 @@ def with_files(
             target.write_text(text)
             target.chmod(mode)
     return replace(workspace, root=root)
-
-
-def _with_line(argument: Argument, line: str) -> Argument:
-    if match := _DEFAULT.match(line):
-        quoted = _QUOTED.fullmatch(match["default"])
-        return replace(argument, default=quoted[1] if quoted else None)
-    words = line.strip()
-    if match := _CHOICES.search(words):
-        words = words.removesuffix(match[0]).strip()
-        argument = replace(argument, choices=tuple(_QUOTED.findall(match["choices"])))
-    said = "" if words == "no description given" else f"{argument.description} {words}".strip()
-    return replace(argument, description=said)
 
 
 def _base(name: str) -> str:

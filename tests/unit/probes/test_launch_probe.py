@@ -8,7 +8,7 @@ from autograder.checks import CheckFailed
 from autograder.exceptions import StudentError
 from autograder.harness.launch import Stop
 from autograder.probes import launch_probe
-from autograder.probes.launch_probe import Argument
+from autograder.probes.launch_arguments import Argument, parse_arguments
 
 SHOWN = """Arguments (pass arguments as '<name>:=<value>'):
 
@@ -41,7 +41,7 @@ CAUGHT = "[ERROR] [launch]: Caught exception in launch (see debug for traceback)
 
 
 def test_shown_arguments_are_read_with_description_default_and_choices() -> None:
-    assert launch_probe.parse_arguments(SHOWN) == {
+    assert parse_arguments(SHOWN) == {
         "robot_name": Argument("robot_name", "who reports", "robot1", ()),
         "mode": Argument("mode", "What to do.", "drive", ("drive", "park")),
         "rest": Argument("rest", "", None, ()),
@@ -73,11 +73,11 @@ def test_a_launch_file_that_cannot_be_read_is_reported_with_error_and_line() -> 
 
 def test_choices_may_be_a_tuple() -> None:
     shown = SHOWN.replace("['drive', 'park']", "('drive', 'park')")
-    assert launch_probe.parse_arguments(shown) == launch_probe.parse_arguments(SHOWN)
+    assert parse_arguments(shown) == parse_arguments(SHOWN)
 
 
 def test_a_launch_file_without_arguments_shows_none() -> None:
-    assert launch_probe.parse_arguments("Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n") == {}
+    assert parse_arguments("Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n") == {}
 
 
 @pytest.mark.parametrize(
@@ -90,7 +90,7 @@ def test_a_launch_file_without_arguments_shows_none() -> None:
 )
 def test_a_wrong_argument_is_named(name: str, default: str, sentence: str) -> None:
     with pytest.raises(CheckFailed) as caught:
-        launch_probe.expect_argument(launch_probe.parse_arguments(SHOWN), name, default)
+        launch_probe.expect_argument(parse_arguments(SHOWN), name, default)
     assert caught.value.message == sentence
 
 

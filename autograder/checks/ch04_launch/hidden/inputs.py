@@ -64,5 +64,5 @@ def with_sim_time(text: str) -> str:
 def with_values(text: str, values: dict[str, float]) -> str:
     """Return a parameters file with other numbers in it; what it does not have is not added."""
     for name, value in values.items():
-        text = re.sub(rf"(?m)^(\s+{name}:\s*)[-+.\deE]+", rf"\g<1>{value}", text)
+        text = re.sub(rf"(?m)^([ \t]+{name}:[ \t]*)[-+.\deE]+", rf"\g<1>{value}", text)
     return text

@@ -12,7 +12,8 @@ from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, w
 from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes.launch_probe import Argument, hangs, shown_arguments, with_files
+from autograder.probes.launch_arguments import Argument
+from autograder.probes.launch_probe import hangs, shown_arguments, with_files
 
 CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.

@@ -49,7 +49,7 @@ def generate_launch_description():
     return LaunchDescription([GroupAction([PushRosNamespace('{SPACE}'), include])])
 """
 SHOWS_ARGUMENTS = '#!/bin/sh\necho "${0##*/} got: $*" >&2\nexec sleep 600\n'  # launch shows standard error in any case
-_GOT = re.compile(r"(?P<program>\w+) got: (?P<words>.*)")
+_GOT = re.compile(r"\b(?P<program>\w+) got: (?P<words>.*)")
 _ABSOLUTE = re.compile(r"(?:-r|--remap) (?P<name>\S+?):=(?P<to>/\S*)")
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",

@@ -10,13 +10,21 @@ from autograder.checks.ch09_assessment.support.contract import LETTERS, QUESTION
 from autograder.harness import Workspace
 
 MAX_BYTES = 64 * 1024
-_LINE = re.compile(r"""\s*(?P<question>\w+)\s*:\s*["']?(?P<answer>[^"'#]*?)["']?\s*(?:#.*)?""")
+_QUESTION = re.compile(r"\w+")
+QUOTES = ("'", '"')
 
 
 def parse(text: str) -> dict[str, str]:
     """Read the lines `question: answer`; answers in small letters, the last one where a question stands twice."""
-    lines = filter(None, map(_LINE.fullmatch, text.splitlines()))
-    return {line["question"].lower(): line["answer"].strip().lower() for line in lines}
+    found = {}
+    for line in text.splitlines():
+        question, colon, answer = (part.strip() for part in line.partition("#")[0].partition(":"))
+        if colon and _QUESTION.fullmatch(question):
+            answer = answer[answer.startswith(QUOTES) :]
+            answer = answer[: len(answer) - answer.endswith(QUOTES)].strip()
+            if not any(quote in answer for quote in QUOTES):
+                found[question.lower()] = answer.lower()
+    return found
 
 
 def answers(workspace: Workspace) -> dict[str, str]:

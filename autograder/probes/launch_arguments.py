@@ -1,0 +1,53 @@
+"""The arguments that a launch file declares, as `ros2 launch --show-args` prints them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
+_DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
+_CHOICES = ("Valid choices are: ", "One of: ")  # what stands before a list or a tuple
+_QUOTED = re.compile(r"'([^']*)'")
+
+
+@dataclass(frozen=True)
+class Argument:
+    """A launch argument, as `ros2 launch -s` shows it."""
+
+    name: str
+    description: str  # what is said of it; empty if nothing is
+    default: str | None  # the text of its default, None if it has to be given or its default is worked out
+    choices: tuple[str, ...]  # the values that are allowed; empty if any is
+
+
+def parse_arguments(text: str) -> dict[str, Argument]:
+    """Read what `ros2 launch -s` prints; return arguments by name."""
+    found: dict[str, list[str]] = {}
+    lines: list[str] = []
+    for line in text.splitlines():
+        if match := _NAME.match(line):
+            lines = found[match["name"]] = []
+        elif line.startswith("        "):
+            lines.append(line)
+    return {name: _argument(name, lines) for name, lines in found.items()}
+
+
+def _argument(name: str, lines: Sequence[str]) -> Argument:
+    """Return an argument of the lines below its name."""
+    said: list[str] = []
+    default: str | None = None
+    choices: tuple[str, ...] = ()
+    for line in lines:
+        words = line.strip()
+        if match := _DEFAULT.match(line):
+            quoted = _QUOTED.fullmatch(match["default"])
+            default = quoted[1] if quoted else None
+            continue
+        for phrase in _CHOICES:
+            before, found, listed = words.rpartition(phrase)
+            if found and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
+                words, choices = before.strip(), tuple(_QUOTED.findall(listed))
+        said += [words] if words and words != "no description given" else []
+    return Argument(name, " ".join(said), default, choices)
