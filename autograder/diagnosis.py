@@ -35,6 +35,13 @@ class Kind(str, Enum):
     NOT_GRADED = "not_graded"
 
 
+# What helps with a program that crashed, whatever was looked at when it did.
+HINTS = {
+    kind: ("Read the traceback from its last line upwards. The first line that names a file of yours says where.",)
+    for kind in (Kind.SYNTAX_ERROR, Kind.CRASHED_AT_IMPORT, Kind.CRASHED_AT_START, Kind.CRASHED_LATER)
+}
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The outcome of reading, building and starting one submission: what happened, and what the student can do.
@@ -45,6 +52,11 @@ class Diagnosis:
     kind: Kind
     sentence: str
     detail: str = ""
+
+    @property
+    def hints(self) -> tuple[str, ...]:
+        """Hints for the student, one after the other. Most sentences say themselves what to do."""
+        return HINTS.get(self.kind, ())
 
 
 OK = Diagnosis(Kind.OK, "The package was built and its node runs.")

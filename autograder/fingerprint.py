@@ -27,6 +27,7 @@ NOT_READ = frozenset(
     {
         "bootstrap.py",
         "bundle.py",
+        "causes.py",
         "cli",
         "cluster",
         "course",

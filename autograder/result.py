@@ -65,14 +65,23 @@ class CheckResult:
 
     @classmethod
     def of(
-        cls, check: Check, outcome: Outcome, message: str = "", *, fraction: float = 0.0, seconds: float = 0.0
+        cls,
+        check: Check,
+        outcome: Outcome,
+        message: str = "",
+        *,
+        fraction: float = 0.0,
+        seconds: float = 0.0,
+        hints: tuple[str, ...] | None = None,
     ) -> CheckResult:
         """Return the result of a check, which took `seconds` of wall time.
 
-        If it failed, it earns the share `fraction` of its points, 0 to 1. If it was not checked, it earns none.
+        If it failed, it earns the share `fraction` of its points, 0 to 1. If it was not checked, it earns none. The
+        hints are those of the check, unless `hints` has those that follow from what was wrong.
         """
         share = {Outcome.PASSED: 1.0, Outcome.FAILED: fraction, Outcome.NOT_CHECKED: 0.0}[outcome]
-        hints = () if outcome is Outcome.PASSED else check.hints
+        if hints is None or outcome is Outcome.PASSED:
+            hints = () if outcome is Outcome.PASSED else check.hints
         return cls(
             id=check.id,
             title=check.title,

@@ -92,14 +92,18 @@ class Check:
 
 
 class CheckFailed(AutograderError):
-    """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached."""
+    """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
 
-    def __init__(self, message: str, *, fraction: float = 0.0) -> None:
+    `hints` are what helps with this failure; None for the hints of the check.
+    """
+
+    def __init__(self, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
         super().__init__(message)
         if not (math.isfinite(fraction) and 0.0 <= fraction < 1.0):
             raise GraderError(f"a failed check's fraction must be in [0, 1), not {fraction!r}")
         self.message = message
         self.fraction = fraction
+        self.hints = hints
 
 
 class Declare(Protocol):
@@ -228,14 +232,14 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
     return declare_each
 
 
-def expect(condition: bool, message: str, *, fraction: float = 0.0) -> None:
-    """Fail the check with `message` unless `condition` holds.
+def expect(condition: bool, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
+    """Fail the check with `message` unless `condition` holds, and with `hints` if those of the check do not fit.
 
     Raises:
         CheckFailed: it does not hold.
     """
     if not condition:
-        raise CheckFailed(message, fraction=fraction)
+        raise CheckFailed(message, fraction=fraction, hints=hints)
 
 
 def check_of(function: object) -> Check | None:

@@ -4,6 +4,7 @@ The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py
 
     PACKAGES          the ROS 2 packages that a submission must bring
     MODULES           its modules that hold checks, in the order in which they are run
+    GROUPS            optional: the groups of checks in the order in which results show them, instead of MODULES
     FOLDERS           optional: folders in `src` that a submission brings besides its packages
     READS             optional: files and folders of the course, by their paths below its root, that the checks read
                       besides what lies in their own chapter's folder
@@ -36,7 +37,7 @@ class Suite:
         assignment: the assignment that it judges.
         packages: ROS 2 packages that a submission must bring.
         files: its modules, in the order in which they are run.
-        checks: every check in that order.
+        checks: every check, in the order in which results show them.
         build_may_fail: whether its checks are run even if a package is missing or does not build.
         folders: what a submission brings in `src` besides its packages.
         reads: files and folders of the course that its checks read besides their own packages, by their paths.
@@ -87,10 +88,11 @@ class Suite:
 
     def with_dependencies(self, *wanted: str) -> tuple[str, ...]:
         """Return the ids of checks and of all that they need, in the order of the suite."""
-        needed = set(wanted)
-        for check in reversed(self.checks):  # a check stands after those that it needs
-            if check.id in needed:
-                needed.update(check.needs)
+        needs, needed, pending = {check.id: check.needs for check in self.checks}, set[str](), list(wanted)
+        while pending:
+            if (name := pending.pop()) not in needed:
+                needed.add(name)
+                pending += needs.get(name, ())
         return tuple(check.id for check in self.checks if check.id in needed)
 
 
@@ -136,6 +138,10 @@ def read(home: str, assignment: str, kind: str) -> Suite:
     files = tuple(Path(inspect.getfile(module)) for module in modules)
     checks = [found for module in modules for value in vars(module).values() if (found := check_of(value))]
     _require_order(assignment, checks)
+    if groups := getattr(described, "GROUPS", ()):
+        if unlisted := {check.group for check in checks}.difference(groups):
+            raise GraderError(f"{assignment}: GROUPS of the {kind} checks does not name {sorted(unlisted)}")
+        checks.sort(key=lambda check: groups.index(check.group))
     return Suite(
         assignment,
         tuple(described.PACKAGES),

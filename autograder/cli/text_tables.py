@@ -6,19 +6,19 @@ import math
 import shutil
 import textwrap
 
+from autograder.causes import causes, dearest
 from autograder.checks import Outcome
 from autograder.result import Result, Status
 
 
 def failure_summary(result: Result) -> str:
-    """Return one sentence that says why points are missing. A failed check with a picture comes first."""
+    """Return one sentence that says why points are missing: the failure that costs most."""
     if result.status is not Status.GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
-    failed = [check for check in result.checks if check.outcome is Outcome.FAILED]
-    pictured = {artifact.check for artifact in result.artifacts}
-    failed.sort(key=lambda check: check.id not in pictured)
-    more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
-    return f"{failed[0].message}{more}" if failed else ""
+    first = dearest(causes(result.checks, result.diagnosis.sentence))
+    failed = sum(check.outcome is Outcome.FAILED for check in result.checks)
+    more = f" (and {failed - 1} more)" if failed > 1 else ""
+    return f"{first.message or first.title}{more}" if first else ""
 
 
 def table(rows: list[tuple[str, str, str]], headings: tuple[str, str, str]) -> str:

@@ -15,11 +15,11 @@ from autograder.course.findings import Difference, Finding
 
 
 def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, float]) -> Iterator[Difference]:
-    """Yield the grade cells whose points or group differ from the suite's, and the groups without a cell.
+    """Yield the grade cells whose points, group or place differ from the suite's, and the groups without a cell.
 
     Findings call the notebook by `name`. `points` are those of each group of its hidden suite.
     """
-    seen: set[str] = set()
+    seen: dict[str, None] = {}
     for cell in notebook.cells:
         if not is_graded(cell) or is_manually_graded(cell):
             continue
@@ -33,7 +33,10 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
             message = f"has {has} points, but the checks of {named!r} have {points[named]:g}"
             set_points = partial(cell.metadata.nbgrader.__setitem__, "points", points[named])
             yield Finding(name, cell.id, message), set_points
-        seen.add(str(named))
+        seen.setdefault(str(named))
     for named in points:
         if named not in seen:
             yield Finding(name, None, f"no grade cell stands for group {named!r}"), None
+    order = [named for named in points if named in seen]
+    if [named for named in seen if named in points] != order:
+        yield Finding(name, None, f"its grade cells do not stand in the order of the suite: {', '.join(order)}"), None

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from autograder.causes import Cause, causes, dearest
 from autograder.checks import Outcome
 from autograder.checks.contract import Sentence
 from autograder.diagnosis import Kind
@@ -16,43 +17,94 @@ from autograder.result import CheckResult, Result, Status
 
 @dataclass(frozen=True)
 class CheckView:
-    """A check on a page.
+    """A check on a page, with those that did not pass because it did not.
 
-    `message` is empty if the check before it says the same. `contract` holds the sentences that a check which failed
-    holds a student to.
+    Attributes:
+        result: its result.
+        contract: the sentences that a check which failed holds a student to.
+        pictures: its pictures.
+        also: the checks that failed as well.
+        not_checked: the line that names what could not be checked, or an empty string.
     """
 
     result: CheckResult
-    message: str
     contract: tuple[str, ...]
     pictures: tuple[Picture, ...]
+    also: tuple[CheckView, ...] = ()
+    not_checked: str = ""
+
+    @property
+    def message(self) -> str:
+        """The reason of the outcome, or an empty string."""
+        return clean(self.result.message).strip()
+
+
+@dataclass(frozen=True)
+class Elsewhere:
+    """The checks of a group that did not pass because of a check of another group."""
+
+    cause: CheckResult
+    results: tuple[CheckResult, ...]
+
+    @property
+    def count(self) -> str:
+        """How many they are, in words."""
+        return f"{len(self.results)} check{'s' if len(self.results) > 1 else ''}"
+
+    @property
+    def lost(self) -> float:
+        """The points that they lost."""
+        return sum(result.max_points - result.points for result in self.results)
 
 
 @dataclass(frozen=True)
 class GroupView:
-    """The checks that count for one locked grade cell."""
+    """The checks that count for one locked grade cell.
+
+    Attributes:
+        name: the group's.
+        results: all of its checks.
+        checks: the checks to show, with those of any group that came with them.
+        elsewhere: its checks that are shown in other groups.
+    """
 
     name: str
+    results: tuple[CheckResult, ...]
     checks: tuple[CheckView, ...]
+    elsewhere: tuple[Elsewhere, ...] = ()
 
     @property
     def points(self) -> float:
         """The points that the checks earned."""
-        return sum(check.result.points for check in self.checks)
+        return sum(result.points for result in self.results)
 
     @property
     def max_points(self) -> float:
         """The points that the checks are worth."""
-        return sum(check.result.max_points for check in self.checks)
+        return sum(result.max_points for result in self.results)
+
+    @property
+    def pictures(self) -> tuple[Picture, ...]:
+        """The pictures of all checks that are shown."""
+        return tuple(picture for check in self.checks for one in (check, *check.also) for picture in one.pictures)
 
 
 @dataclass(frozen=True)
 class PageView:
-    """The content of a feedback page: the groups in the order of the suite, and pictures that belong to no check."""
+    """The content of a feedback page.
+
+    Attributes:
+        result: the result that it shows.
+        groups: the groups of checks, in the order of the suite.
+        pictures: pictures that belong to no check.
+        first: the check with which to start, or None: of those that failed, the one that costs most points, together
+            with those that failed or were not checked because of it.
+    """
 
     result: Result
     groups: tuple[GroupView, ...]
     pictures: tuple[Picture, ...]
+    first: CheckResult | None
 
     @property
     def graded(self) -> bool:
@@ -65,15 +117,9 @@ class PageView:
         return self.result.diagnosis.kind is Kind.OK
 
     @property
-    def first(self) -> CheckResult | None:
-        """The first check that failed, or None."""
-        checks = (check.result for group in self.groups for check in group.checks)
-        return next((check for check in checks if check.outcome is Outcome.FAILED), None)
-
-    @property
     def plays(self) -> bool:
         """Whether the page has a run to play."""
-        shown = [*self.pictures, *(p for group in self.groups for check in group.checks for p in check.pictures)]
+        shown = [*self.pictures, *(picture for group in self.groups for picture in group.pictures)]
         return self.graded and any(picture.run is not None for picture in shown)
 
     @property
@@ -93,27 +139,23 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
     known = {check.id for check in result.checks}
     pictures: dict[str, list[Picture]] = {}
     for artifact in result.artifacts:
-        found = None if folder is None else read_picture(artifact, folder)
-        if found is not None:
-            pictures.setdefault(artifact.check if artifact.check in known else "", []).append(found)
-    groups = tuple(
-        GroupView(name, _checks(result.group(name), pictures, contract))
-        for name in dict.fromkeys(check.group for check in result.checks)
-    )
-    return PageView(result, groups, tuple(pictures.get("", ())))
+        picture = None if folder is None else read_picture(artifact, folder)
+        if picture is not None:
+            pictures.setdefault(artifact.check if artifact.check in known else "", []).append(picture)
+    found = causes(result.checks, result.diagnosis.sentence)
 
-
-def _checks(
-    checks: Sequence[CheckResult], pictures: Mapping[str, Sequence[Picture]], contract: Mapping[str, Sentence]
-) -> tuple[CheckView, ...]:
-    views: list[CheckView] = []
-    last_reason = ""  # the reason for which the check before was not checked
-    for check in checks:
+    def view(check: CheckResult, cause: Cause | None = None) -> CheckView:
         held = check.holds if check.outcome is Outcome.FAILED else ()
-        sentences = tuple(contract[name].text for name in held if name in contract)
-        message = clean(check.message).strip()
-        skipped = check.outcome is Outcome.NOT_CHECKED
-        shown = "" if skipped and message == last_reason else message
-        views.append(CheckView(check, shown, sentences, tuple(pictures.get(check.id, ()))))
-        last_reason = message if skipped else ""
-    return tuple(views)
+        sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
+        also = tuple(view(one) for one in cause.failed) if cause else ()
+        return CheckView(
+            check, tuple(sentences), tuple(pictures.get(check.id, ())), also, cause.not_checked if cause else ""
+        )
+
+    groups = []
+    for name in dict.fromkeys(check.group for check in result.checks):
+        shown = tuple(view(cause.check, cause) for cause in found if cause.check.group == name)
+        others = ((cause, tuple(one for one in cause.checks if one.group == name)) for cause in found)
+        elsewhere = tuple(Elsewhere(cause.check, came) for cause, came in others if came and cause.check.group != name)
+        groups.append(GroupView(name, result.group(name), shown, elsewhere))
+    return PageView(result, tuple(groups), tuple(pictures.get("", ())), dearest(found))

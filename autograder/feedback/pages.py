@@ -18,6 +18,7 @@ import jinja2
 from markupsafe import Markup
 
 from autograder import layout
+from autograder.causes import FAILED_AS_WELL
 from autograder.checks.contract import contract
 from autograder.feedback.model import page_view
 from autograder.feedback.pictures import Picture
@@ -50,6 +51,7 @@ def environment() -> jinja2.Environment:
     found.filters["player"] = _player
     found.filters["web_address"] = _web_address
     found.globals["no_mark"] = no_mark
+    found.globals["failed_as_well"] = FAILED_AS_WELL
     found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return found
 

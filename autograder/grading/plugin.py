@@ -138,11 +138,19 @@ class GradingPlugin:
                 return
             verdict = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
         elif isinstance(error, CheckFailed):
-            verdict = CheckResult.of(check, Outcome.FAILED, error.message, fraction=error.fraction, seconds=seconds)
+            verdict = CheckResult.of(
+                check,
+                Outcome.FAILED,
+                error.message,
+                fraction=error.fraction,
+                seconds=seconds,
+                hints=error.hints,
+            )
         elif isinstance(error, StudentError):
             if self.diagnosis is OK:
                 self.diagnosis = error.diagnosis
-            verdict = CheckResult.of(check, Outcome.FAILED, error.diagnosis.sentence, seconds=seconds)
+            said = error.diagnosis  # the hints of the check are about a program that runs
+            verdict = CheckResult.of(check, Outcome.FAILED, said.sentence, seconds=seconds, hints=said.hints)
         elif isinstance(error, pytest.skip.Exception):
             verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
         elif is_of_data(error) and (data := self._in_hand(item)):

@@ -15,7 +15,8 @@ from typing import Any
 from nbformat import NotebookNode
 from nbformat.v4 import new_output
 
-from autograder.feedback.model import GroupView, PageView
+from autograder.causes import FAILED_AS_WELL
+from autograder.feedback.model import CheckView, GroupView, PageView
 from autograder.feedback.pages import environment
 from autograder.feedback.text import number
 from autograder.plain_text import clean
@@ -33,18 +34,25 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
         first: whether this is the first grade cell of the notebook, which also gets the diagnosis.
     """
     html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
-    text = "\n".join(
-        f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip() for check in group.checks
-    )
+    lines = [line for check in group.checks for line in _lines(check)]
+    lines += [f"{other.count} did not pass with: {other.cause.title}" for other in group.elsewhere]
     outputs = [
         new_output("execute_result", {"text/plain": str(float(points))}, execution_count=1),
-        new_output("display_data", {"text/html": html, "text/plain": clean(text) or number(points)}),
+        new_output("display_data", {"text/html": html, "text/plain": clean("\n".join(lines)) or number(points)}),
     ]
-    for picture in (picture for check in group.checks for picture in check.pictures):
+    for picture in group.pictures:
         if picture.uri is not None:
             shown = {"image/png": picture.uri.partition(",")[2], "text/plain": clean(picture.caption)}
             outputs.append(new_output("display_data", shown, metadata={"image/png": {"alt": clean(picture.caption)}}))
     return outputs
+
+
+def _lines(check: CheckView) -> list[str]:
+    """Return a check, and what did not pass with it, as lines of text."""
+    lines = [f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip()]
+    if check.also:
+        lines += [FAILED_AS_WELL, *(line for other in check.also for line in _lines(other))]
+    return lines + ([check.not_checked] if check.not_checked else [])
 
 
 def sanitized_outputs(outputs: Iterable[Any]) -> list[NotebookNode]:

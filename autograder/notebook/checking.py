@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder import layout
+from autograder.causes import FAILED_AS_WELL, Cause, causes
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
@@ -17,6 +18,7 @@ from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}
 HIDDEN_CHECKS_HEADING = "After you hand in, {count} more checks judge, with inputs of their own:"
+INDENT = 'style="margin-left:2em"'
 COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECKED: "#767676"}
 
 
@@ -44,14 +46,24 @@ class CheckReport:
         good = sum(line.outcome is Outcome.PASSED for line in self.lines)
         return f"{self.assignment}: {good} of {len(self.lines)} visible checks passed."
 
+    @property
+    def causes(self) -> tuple[Cause, ...]:
+        """The checks, each with those that did not pass because it did not."""
+        return causes(self.lines, "" if self.trouble is None else self.trouble.sentence)
+
     def __repr__(self) -> str:
         parts = [] if self.trouble is None else [repr(self.trouble), ""]
-        for line in self.lines:
-            parts.append(f"{SYMBOLS[line.outcome]} {line.outcome.text:<11} {line.title}")
+        for cause in self.causes:
+            line = cause.check
+            parts.append(_head(line))
             parts += [f"    {line.message}"] if line.message else []
             if line.outcome is Outcome.FAILED:
                 parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
                 parts += [f"    read: {line.doc}"] if line.doc else []
+            parts += (
+                [f"    {FAILED_AS_WELL}", *(f"    {_head(other)}" for other in cause.failed)] if cause.failed else []
+            )
+            parts += [f"    {cause.not_checked}"] if cause.not_checked else []
         parts += ["", self.summary]
         if self.passed and self.later:
             parts += ["", HIDDEN_CHECKS_HEADING.format(count=len(self.later)), *(f"- {title}" for title in self.later)]
@@ -60,7 +72,7 @@ class CheckReport:
     def _repr_html_(self) -> str:
         trouble = "" if self.trouble is None else self.trouble._repr_html_()
         colour = COLOURS[Outcome.PASSED] if self.passed else INFO
-        rows = "".join(_row(line) for line in self.lines)
+        rows = "".join(_cause(cause) for cause in self.causes)
         if self.passed and self.later:
             titles = "".join(f"<li>{html.escape(title)}</li>" for title in self.later)
             heading = HIDDEN_CHECKS_HEADING.format(count=len(self.later))
@@ -89,17 +101,30 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
     return CheckReport(assignment, lines, trouble, tuple(later))
 
 
+def _head(line: CheckResult) -> str:
+    return f"{SYMBOLS[line.outcome]} {line.outcome.text:<11} {line.title}"
+
+
+def _cause(cause: Cause) -> str:
+    """Return the HTML of a check, with what did not pass because of it folded below it."""
+    row = _row(cause.check)
+    if cause.failed:
+        rows = "".join(map(_row, cause.failed))
+        row += f"<details {INDENT}><summary>{FAILED_AS_WELL} {len(cause.failed)}</summary>{rows}</details>"
+    return row + (f"<div {INDENT}>{html.escape(cause.not_checked)}</div>" if cause.not_checked else "")
+
+
 def _row(line: CheckResult) -> str:
     # The colour stands beside the words: there is none that can be read on white as well as on black.
     style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
     mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.text}</span>'
     row = f"<div>{mark} &nbsp;{html.escape(line.title)}</div>"
     if line.message:
-        row += f'<div style="margin-left:2em">{html.escape(line.message)}</div>'
+        row += f"<div {INDENT}>{html.escape(line.message)}</div>"
     if line.outcome is not Outcome.FAILED:
         return row
     for number, hint in enumerate(line.hints, 1):
-        row += f'<details style="margin-left:2em"><summary>hint {number}</summary>{html.escape(hint)}</details>'
+        row += f"<details {INDENT}><summary>hint {number}</summary>{html.escape(hint)}</details>"
     if line.doc:
-        row += f'<div style="margin-left:2em"><a href="{html.escape(line.doc)}">read about it</a></div>'
+        row += f'<div {INDENT}><a href="{html.escape(line.doc)}">read about it</a></div>'
     return row

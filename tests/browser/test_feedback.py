@@ -9,8 +9,9 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from autograder import feedback
+from autograder.checks import Check, Outcome
 from autograder.gallery import Gallery
-from autograder.result import Artifact, Result
+from autograder.result import Artifact, CheckResult, Result
 from tests.browser.wall_run import keep_run
 
 pytestmark = pytest.mark.browser
@@ -50,6 +51,40 @@ def test_the_track_is_shown_and_hints_unfold(
     expect(second).to_be_visible()
 
     page.screenshot(path=screenshots / "feedback.png", full_page=True)
+    assert complaints == []
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_what_came_with_a_failure_unfolds_below_it(
+    page: Page,
+    make_result: Callable[..., Result],
+    make_check: Callable[..., Check],
+    tmp_path: Path,
+    complaints: list[str],
+    screenshots: Path,
+    width: int,
+) -> None:
+    first = make_check("first", "It drives where the way is clear.", 1.0, "graph")
+    with_it = [
+        make_check(f"also_{n}", f"It does another thing, number {n}.", 2.0, "graph", after=("first",)) for n in range(3)
+    ]
+    blind = make_check("blind", "It stands still where it is blind.", 3.0, "safety", needs=("first",))
+    checks = (
+        *(CheckResult.of(check, Outcome.FAILED, "it stood still at 0.0 m/s") for check in (first, *with_it)),
+        CheckResult.of(blind, Outcome.NOT_CHECKED, "not checked"),
+    )
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(feedback.write(make_result(checks=checks), tmp_path).as_uri())
+    also = page.get_by_text("It does another thing, number 2.")
+    expect(also).to_be_hidden()
+    expect(page.get_by_text("Not checked: It stands still where it is blind.")).to_be_visible()
+    page.screenshot(path=screenshots / f"feedback-folded-{width}.png", full_page=True)
+    page.get_by_text("These failed as well; mend the first and run again: 3").click()
+    expect(also).to_be_visible()
+    page.get_by_text("1 check did not pass with").get_by_role("link").click()
+    expect(page.locator("#check-first")).to_be_in_viewport()
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.screenshot(path=screenshots / f"feedback-unfolded-{width}.png", full_page=True)
     assert complaints == []
 
 

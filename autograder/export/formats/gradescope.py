@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from autograder.causes import causes
 from autograder.checks import Outcome, Visibility
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored, per_student
@@ -42,14 +43,26 @@ def report(result: Result) -> dict[str, Any]:
         "output": "" if result.diagnosis.kind is Kind.OK else clean(result.diagnosis.sentence),
         "output_format": "text",
         "stdout_visibility": "hidden",
-        "tests": [_test(check, index) for index, check in enumerate(result.checks, start=1)],
+        "tests": _tests(result),
         "extra_data": {"seed": result.seed, "suite_version": result.suite_version, "isolation": result.isolation},
     }
 
 
-def _test(check: CheckResult, index: int) -> dict[str, Any]:
-    hints = [f"Hint: {hint}" for hint in check.hints if check.outcome is Outcome.FAILED]
-    message = check.message if check.outcome is not Outcome.PASSED else ""
+def _tests(result: Result) -> list[dict[str, Any]]:
+    """Return the tests in the order of the suite. What came with another failure names it, as nothing can be folded."""
+    found = causes(result.checks, result.diagnosis.sentence)
+    came_with = {id(check): cause.check for cause in found for check in cause.checks[1:]}
+    return [_test(check, index, came_with.get(id(check))) for index, check in enumerate(result.checks, start=1)]
+
+
+def _test(check: CheckResult, index: int, cause: CheckResult | None) -> dict[str, Any]:
+    lines: list[str] = []
+    if check.outcome is not Outcome.PASSED and cause is not None:
+        came = f'This came with "{cause.title}": mend that first and run again.'
+        lines = [check.message, came] if check.outcome is Outcome.FAILED else [f"Not checked. {came}"]
+    elif check.outcome is not Outcome.PASSED:
+        hints = check.hints if check.outcome is Outcome.FAILED else ()
+        lines = [check.message, *(f"Hint: {hint}" for hint in hints)]
     return {
         "number": str(index),
         "name": clean(check.title),
@@ -57,7 +70,7 @@ def _test(check: CheckResult, index: int) -> dict[str, Any]:
         "score": check.points,
         "max_score": check.max_points,
         "status": "passed" if check.outcome is Outcome.PASSED else "failed",
-        "output": clean("\n".join(line for line in (message, *hints, check.doc or "") if line)),
+        "output": clean("\n".join(line for line in (*lines, check.doc or "") if line)),
         "output_format": "text",
         "tags": [check.group, check.outcome.value],
         "visibility": VISIBILITY[check.visibility],

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from autograder.causes import causes
 from autograder.checks import Outcome
 from autograder.diagnosis import Kind
 from autograder.export.stored import Stored
@@ -35,12 +36,20 @@ def _submission(result: Result) -> list[str]:
     if _diagnosis(result):
         lines += ["", _plain(_diagnosis(result))]
     if result.status is Status.GRADED and result.checks:
-        lines += ["", "| | Check | Points | Why |", "|---|---|--:|---|", *map(_row, result.checks)]
+        lines += ["", "| | Check | Points | Why |", "|---|---|--:|---|", *_rows(result)]
     return lines
 
 
-def _row(check: CheckResult) -> str:
-    why = "" if check.outcome is Outcome.PASSED else check.message
+def _rows(result: Result) -> Iterator[str]:
+    """Yield a row for each check; what did not pass because of another check stands below that, with an arrow."""
+    for cause in causes(result.checks, result.diagnosis.sentence):
+        yield _row(cause.check, cause.check.message)
+        yield from (_row(check, f"↳ {check.message}") for check in cause.failed)
+        yield from (_row(check, "↳ not checked") for check in cause.unchecked)
+
+
+def _row(check: CheckResult, reason: str) -> str:
+    why = "" if check.outcome is Outcome.PASSED else reason
     points = f"{number(check.points)} / {number(check.max_points)}"
     return f"| {MARKS[check.outcome]} | {_plain(check.title)} | {points} | {_plain(why)} |"
 

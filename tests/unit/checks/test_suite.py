@@ -56,6 +56,17 @@ def test_checks_have_the_order_of_modules_and_of_lines(home: Home) -> None:
     assert suites.assignments_with(name, KIND) == ["01_tiny"]
 
 
+def test_results_show_the_groups_in_their_own_order_and_files_are_run_in_that_of_the_modules(home: Home) -> None:
+    name = home('("first", "second")\nGROUPS = ("g", "h")', first=_check("a", group="h"), second=_check("b", '("a",)'))
+    read = suites.read(name, "01_tiny", KIND)
+    assert [check.id for check in read.checks] == ["b", "a"]
+    assert [path.name for path in read.files] == ["first.py", "second.py"]
+    assert read.with_dependencies("b") == ("b", "a")
+    name = home('("first",)\nGROUPS = ("g",)', first=_check("a", group="h"))
+    with pytest.raises(GraderError, match=r"GROUPS of the hidden checks does not name \['h'\]"):
+        suites.read(name, "01_tiny", KIND)
+
+
 def test_a_check_is_graded_with_the_checks_that_it_needs_and_without_those_that_it_comes_after(home: Home) -> None:
     first = _check("a") + _check("b", '("a",)') + _check("c")
     read = suites.read(home(first=first, second=_check("d", '("b",)', after='("c",)')), "01_tiny", KIND)

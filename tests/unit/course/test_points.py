@@ -52,6 +52,7 @@ def test_wrong_points_are_named() -> None:
 @pytest.mark.parametrize(
     ("made", "message"),
     [
+        (graded(graph=1, reaction=3.5), "its grade cells do not stand in the order of the suite: reaction, graph"),
         (graded(reaction=3.5), "no grade cell stands for group 'graph'"),
         (graded(reaction=3.5, graph=1, magic=1), "stands for no group of the suite ('magic'); its groups: reaction"),
         (notebook(code("", "bare", nbgrader=grade("bare", 1))), "stands for no group of the suite (None)"),

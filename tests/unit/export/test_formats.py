@@ -100,6 +100,13 @@ def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp
     assert bob["output"] == "The package does not build: setup.py line 3."
 
 
+def test_gradescope_names_the_failure_with_which_another_came(a_class: Class, tmp_path: Path) -> None:
+    tests = json.loads((write(a_class, "gradescope", tmp_path / "g") / "alice" / "results.json").read_text())["tests"]
+    came = f'This came with "{tests[2]["name"]}": mend that first and run again.'
+    assert tests[3]["output"] == f"Not checked. {came}"
+    assert came not in tests[2]["output"] + tests[4]["output"]
+
+
 def test_gradescope_shows_hidden_checks_with_the_marks(a_class: Class, tmp_path: Path) -> None:
     tests = gradescope(a_class, tmp_path / "out")[0]["tests"]
     assert {test["visibility"] for test in tests} == {"after_published"}

@@ -66,11 +66,43 @@ def test_only_a_result_with_a_program_in_real_time_has_the_note_on_real_time(
     assert "real time" not in Page(feedback.write(make_result(), tmp_path)).text
 
 
-def test_the_page_tells_to_start_with_the_first_failed_check(make_result: MakeResult, tmp_path: Path) -> None:
+def test_the_page_tells_to_start_with_the_failed_check_that_costs_most(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    cheap, dear = (make_check(id, f"It is {id}.", points, "graph") for id, points in (("cheap", 1.0), ("dear", 4.0)))
+    lost = tuple(CheckResult.of(check, Outcome.FAILED, fraction=0.25) for check in (cheap, dear))
+    page = Page(feedback.write(make_result(checks=lost), tmp_path))
+    assert "Start here It is dear." in page.text
+
+
+def test_the_page_links_the_check_to_start_with(make_result: MakeResult, tmp_path: Path) -> None:
     page = Page(feedback.write(make_result(), tmp_path))
     assert "Start here The robot turns when something" in page.text
     assert "#check-turns" in page.all("href")
     assert "check-turns" in page.all("id")
+
+
+def test_what_came_with_a_failure_is_folded_under_it_and_named_once_in_its_own_group(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    first = make_check("first", "It drives.", 1.0, "graph")
+    same = make_check("same", "It turns.", 2.0, "graph", after=("first",), hints=("Look.",), holds=("stale",))
+    other = make_check("other", "It stops.", 3.0, "safety", after=("first",))
+    blind = make_check("blind", "It sees.", 4.0, "safety", needs=("other",))
+    checks = (
+        CheckResult.of(first, Outcome.FAILED, "it stood"),
+        CheckResult.of(same, Outcome.FAILED, "it turned right"),
+        CheckResult.of(other, Outcome.FAILED, "it went on"),
+        CheckResult.of(blind, Outcome.NOT_CHECKED, 'not checked: first "It stops." has to pass'),
+    )
+    page = Page(feedback.write(make_result(checks=checks), tmp_path))
+    assert page.all("aria-label") == ["failed", "failed", "failed", "not checked"]
+    folded = "It drives. 0 / 1 it stood These failed as well; mend the first and run again: 2 It turns. 0 / 2 it turned"
+    assert folded in page.text
+    assert "Not checked: It sees. Safety 0 / 7 2 checks did not pass with It drives. (7 points)" in page.text
+    assert "has to pass" not in page.text
+    assert page.all("href").count("#check-first") == 2  # to start with, and from the other group
+    assert page.tags.count("details") == 2  # what failed as well, and a hint in it
 
 
 def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(

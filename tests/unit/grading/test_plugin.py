@@ -101,6 +101,23 @@ def test_each_check_passes_or_fails_with_its_fraction_in_the_order_of_the_file(g
     assert plugin.diagnosis is OK
 
 
+def test_a_failure_has_the_hints_of_the_check_or_its_own(grade: Grade) -> None:
+    plugin = grade("""
+        @check(points=1, group="g")
+        @hint("of the check")
+        def test_usual():
+            '''The usual.'''
+            expect(False, "no")
+
+        @check(points=1, group="g")
+        @hint("of the check")
+        def test_other():
+            '''Another failure.'''
+            expect(False, "no", hints=("of the failure",))
+        """)
+    assert [result.hints for result in plugin.results.values()] == [("of the check",), ("of the failure",)]
+
+
 def test_checks_that_need_a_failed_check_directly_or_not_are_not_run(grade: Grade) -> None:
     plugin = grade("""
         @check(points=1, group="g")
@@ -159,14 +176,19 @@ def test_a_fault_of_the_student_s_in_a_fixture_fails_the_check_and_is_the_diagno
             raise StudentError(Diagnosis(Kind.CRASHED_AT_START, "Your node crashed.", "line 3"))
 
         @check(points=1, group="g")
+        @hint("a hint about a program that runs")
         def test_starts(robot):
             '''It starts.'''
 
         @check(points=1, group="g")
+        @hint("a hint about a program that runs")
         def test_other():
             '''It does the other thing.'''
             raise StudentError(Diagnosis(Kind.STUCK, "Your node hangs."))
         """)
+    crashed, hangs = (result.hints for result in plugin.results.values())
+    assert crashed[0].startswith("Read the traceback from its last line upwards.")
+    assert hangs == ()
     assert [result.outcome for result in plugin.results.values()] == [Outcome.FAILED] * 2
     assert plugin.results["starts"].message == "Your node crashed."
     assert plugin.diagnosis.kind is Kind.CRASHED_AT_START

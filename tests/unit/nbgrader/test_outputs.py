@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.utils import determine_grade
 
+from autograder.checks import Check, Outcome
 from autograder.feedback.model import PageView, page_view
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
 from autograder.nbgrader.sanitizing import sanitized_markdown
-from autograder.result import Artifact, Result
+from autograder.result import Artifact, CheckResult, Result
 
 TEXT = st.text(st.sampled_from("ab <>'&\x00\x1b[31m\udcff\ud800é\n"), max_size=20)
 JSON = st.recursive(
@@ -83,6 +84,27 @@ def test_a_verdict_shows_its_pictures_with_alternative_texts(page: PageView) -> 
     picture = grade_outputs(1.0, page, page.groups[1], first=False)[-1]
     assert picture.metadata["image/png"]["alt"] == "The robot's track: it touches the north wall at t = 12.4 s."
     assert base64.b64decode(picture.data["image/png"]).startswith(b"\x89PNG")
+
+
+def test_what_came_with_a_failure_is_folded_under_it_and_named_in_its_own_cell(
+    make_result: Callable[..., Result], make_check: Callable[..., Check]
+) -> None:
+    first, same, other = (
+        make_check(id, f"It is {id}.", 1.0, group, after=after)
+        for id, group, after in (("first", "a", ()), ("same", "a", ("first",)), ("other", "b", ("first",)))
+    )
+    checks = tuple(CheckResult.of(check, Outcome.FAILED, f"{check.id} is wrong") for check in (first, same, other))
+    page = page_view(make_result(checks=checks, max_score=3.0), None)
+    cells = [grade_outputs(0, page, group, first=False)[1].data for group in page.groups]
+    assert cells[0]["text/plain"].splitlines() == [
+        "[failed] It is first. first is wrong",
+        "These failed as well; mend the first and run again:",
+        "[failed] It is same. same is wrong",
+        "[failed] It is other. other is wrong",
+    ]
+    assert "mend the first and run again: 2</summary>" in cells[0]["text/html"]
+    assert cells[1]["text/plain"] == "1 check did not pass with: It is first."
+    assert "1 check did not pass with “It is first.” (1 points)" in cells[1]["text/html"]
 
 
 def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> None:

@@ -48,6 +48,33 @@ def test_output_of_a_program_is_escaped_in_a_notebook() -> None:
     assert shown.count("look &lt;here&gt;") == 1
 
 
+def test_what_came_with_a_failure_stands_below_it_in_a_line() -> None:
+    def line(id: str, outcome: Outcome, *after: str) -> CheckResult:
+        check = Check(id, f"It is <{id}>.", 1.0, "g", Visibility.VISIBLE, ("look",), None, (), (), after)
+        return CheckResult.of(check, outcome, f"{id} is wrong")
+
+    lines = line("a", Outcome.FAILED), line("b", Outcome.FAILED, "a"), line("c", Outcome.NOT_CHECKED, "b")
+    report = CheckReport("02_nodes", (*lines, line("d", Outcome.NOT_CHECKED, "a"), line("e", Outcome.PASSED)))
+    assert (
+        repr(report)
+        == """\
+✘ failed      It is <a>.
+    a is wrong
+    hint 1: look
+    These failed as well; mend the first and run again:
+    ✘ failed      It is <b>.
+    Not checked: It is <c>. It is <d>.
+✔ passed      It is <e>.
+    e is wrong
+
+02_nodes: 1 of 5 visible checks passed."""
+    )
+    shown = report._repr_html_()
+    assert "<summary>These failed as well; mend the first and run again: 1</summary>" in shown
+    assert "Not checked: It is &lt;c&gt;. It is &lt;d&gt;.</div>" in shown
+    assert shown.count("not checked") == 0
+
+
 def test_a_report_passes_when_every_check_does() -> None:
     assert CheckReport("02_nodes", LINES[:1]).passed
     assert not CheckReport("02_nodes", LINES).passed

@@ -14,5 +14,6 @@ MODULES = (
     "tests",
     "quality",
 )
+GROUPS = tuple(f"step_{number}" for number in range(1, 8))  # step 2 needs the messages of step 3, which is run first
 BUILD_MAY_FAIL = True
 OWN_TESTS = ("linters_pass", "tests_pass")

@@ -1,0 +1,76 @@
+"""Failures that came with another one stand below it, and the dearest cause comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from autograder.causes import causes, dearest
+from autograder.checks import Check, Outcome
+from autograder.result import CheckResult
+
+MakeCheck = Callable[..., Check]
+Make = Callable[..., CheckResult]
+FAILED, PASSED, NOT_CHECKED = Outcome.FAILED, Outcome.PASSED, Outcome.NOT_CHECKED
+
+
+@pytest.fixture
+def result(make_check: MakeCheck) -> Make:
+    """Make the result of a check, which comes after others."""
+
+    def make(id: str, outcome: Outcome, *after: str, points: float = 1.0, message: str = "") -> CheckResult:
+        check = make_check(id, f"It is {id}.", points, "graph", after=after)
+        return CheckResult.of(check, outcome, message or f"{id} is wrong")
+
+    return make
+
+
+def told(*checks: CheckResult, diagnosis: str = "") -> list[tuple[str, str, str]]:
+    """Return each cause with what failed and what was not checked because of it, as ids."""
+    found = causes(checks, diagnosis)
+    assert sorted(check.id for cause in found for check in cause.checks) == sorted(check.id for check in checks)
+    return [(c.check.id, " ".join(o.id for o in c.failed), " ".join(o.id for o in c.unchecked)) for c in found]
+
+
+def test_what_failed_after_a_failure_is_folded_under_it_directly_or_not(result: Make) -> None:
+    assert told(
+        result("a", PASSED),
+        result("b", FAILED, "a"),
+        result("c", FAILED, "a", "b"),
+        result("d", NOT_CHECKED, "c"),
+        result("e", FAILED, "d"),
+        result("f", PASSED, "b"),
+        result("g", FAILED, "f"),
+    ) == [("a", "", ""), ("b", "c e", "d"), ("f", "", ""), ("g", "", "")]
+
+
+def test_a_check_is_folded_under_a_cause_that_is_shown_after_it(result: Make) -> None:
+    checks = result("b", FAILED, "a"), result("a", FAILED)
+    assert told(*checks) == [("a", "b", "")]
+
+
+def test_a_check_that_names_what_is_not_in_the_result_or_itself_stands_alone(result: Make) -> None:
+    assert told(result("a", FAILED, "gone"), result("b", FAILED, "b")) == [("a", "", ""), ("b", "", "")]
+
+
+def test_what_was_not_checked_for_the_same_reason_is_one_line(result: Make) -> None:
+    build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
+    assert told(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
+    assert causes(build)[0].not_checked == "Not checked: It is b. It is c."
+    assert told(result("a", NOT_CHECKED, message="x"), result("b", NOT_CHECKED)) == [("a", "", ""), ("b", "", "")]
+
+
+def test_checks_that_failed_by_the_diagnosis_have_one_cause(result: Make) -> None:
+    checks = [result(name, FAILED, message="It crashed.") for name in "ab"]
+    assert told(*checks, result("c", FAILED), diagnosis="It crashed.") == [("a", "b", ""), ("c", "", "")]
+    assert told(*checks, diagnosis="It hangs.") == [("a", "", ""), ("b", "", "")]
+
+
+def test_the_dearest_cause_counts_all_that_came_with_it_and_the_first_of_equals_wins(result: Make) -> None:
+    small, large = result("small", FAILED, points=2.0), result("large", FAILED, points=3.0)
+    equal, passed = result("equal", FAILED, points=3.0), result("passed", PASSED, points=9.0)
+    assert dearest(causes([passed, small, large, equal])) == large
+    with_small = [result(name, outcome, "small") for name, outcome in (("x", FAILED), ("y", NOT_CHECKED))]
+    assert dearest(causes([small, large, *with_small])) == small
+    assert dearest(causes([passed, result("unknown", NOT_CHECKED)])) is None
