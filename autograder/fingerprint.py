@@ -44,7 +44,7 @@ NOT_READ = frozenset(
 PROOF = frozenset(
     {"attack_payloads.py", "attacks.py", "mutants.snapshot.yaml", "mutants.yaml", "survivors.yaml", "variants"}
 )
-CHECKS_IMPORT = re.compile(r"\bautograder\.checks(?:\.| import )(ch\d\w+)")
+CHECKS_IMPORT = re.compile(r"\bautograder\.checks\.(ch\d[\w.]+)(?: import (\([\w\s,]+\)|[^\n#]+))?")
 
 
 def version(assignment: str, reads: Iterable[str] = ()) -> str:
@@ -64,20 +64,16 @@ def digest(assignment: str, reads: Iterable[str] = ()) -> str:
 
 def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of all files that a grading reads; the arguments are as in `version`."""
-    course, home = layout.COURSE, layout.ROOT
+    home = layout.ROOT
     shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
     read = (path for path in shared if _is_read(path.relative_to(home).parts))
+    course = layout.COURSE
     return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
 
 
 def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
     """Return the sorted paths of a chapter's files and of what its checks read; the arguments are as in `version`."""
-    course = layout.COURSE
-    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
-    suites = _below(course.root, (checks / name for name in _chapters(assignment, checks)))
-    own = (path for path in suites if PROOF.isdisjoint(path.relative_to(checks).parts))
-    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src", *(course.root / name for name in reads))
-    return sorted({*own, *_below(course.root, given)})
+    return sorted(_below(layout.COURSE.root, places(assignment, reads)))
 
 
 def _digest(paths: Iterable[Path]) -> str:
@@ -89,6 +85,27 @@ def _digest(paths: Iterable[Path]) -> str:
     return found.hexdigest()[:12]
 
 
+def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
+    """Return the files and folders of the course that are an assignment's own in a grading: nothing of them is shared.
+
+    They are its checks without what is for the proof, the modules of other chapters' checks that those import, its
+    notebook, the packages that it gives, and what its suite says that it reads.
+
+    Args:
+        assignment: name of the assignment.
+        reads: files and folders that its checks read beside their own, as paths in the course's folder.
+        parts: which of its suites.
+    """
+    course = layout.COURSE
+    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
+    suite = checks / f"ch{assignment}"
+    unread = PROOF | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
+    own = [path for path in suite.iterdir() if path.name not in unread] if suite.is_dir() else []
+    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
+    named = [*own, *_imported(own, checks), *given, *(course.root / name for name in reads)]
+    return sorted({path for path in named if path.exists()})
+
+
 def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
     """Yield the files at and below some paths, without what tools left there."""
     for path in (path for top in tops for path in (top, *top.rglob("*")) if path.is_file()):
@@ -97,19 +114,25 @@ def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
             yield path
 
 
-def _chapters(assignment: str, checks: Path) -> set[str]:
-    """Return the name of the folder of the assignment's checks, and of those from which they import."""
-    pending = [f"ch{assignment}"]
-    found: set[str] = set()
+def _imported(own: Iterable[Path], checks: Path) -> set[Path]:
+    """Return the modules of other chapters' checks that some checks import, and those that these import."""
+    pending, found = [path for top in own for path in (top, *top.rglob("*")) if path.suffix == ".py"], set[Path]()
     while pending:
-        name = pending.pop()
-        if name not in found:
-            found.add(name)
-            sources = (
-                path for path in (checks / name).rglob("*.py") if PROOF.isdisjoint(path.relative_to(checks).parts)
-            )
-            pending += [other for path in sources for other in CHECKS_IMPORT.findall(path.read_text(encoding="utf-8"))]
+        for name, names in CHECKS_IMPORT.findall(pending.pop().read_text(encoding="utf-8")):
+            dotted = [name, *(f"{name}.{each}" for each in re.findall(r"\w+", names))]
+            for path in (path for each in dotted for path in _modules(each, checks)):
+                if path not in found and not any(path == top or top in path.parents for top in own):
+                    found.add(path)
+                    pending.append(path)
     return found
+
+
+def _modules(dotted: str, checks: Path) -> Iterator[Path]:
+    """Yield the files of a module of the checks and of the packages around it."""
+    parts = dotted.strip(".").split(".")
+    for count in range(1, len(parts) + 1):
+        path = checks.joinpath(*parts[:count])
+        yield from filter(Path.is_file, (path / "__init__.py", path.with_suffix(".py")))
 
 
 def _is_read(parts: tuple[str, ...]) -> bool:

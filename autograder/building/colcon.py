@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +14,8 @@ from autograder.exceptions import StudentError
 from autograder.lockstep.failures import tail
 from autograder.sandbox import Ending, Mount
 from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import BUILD
+from autograder.sandbox.limits import BUILD, INSTALLED
+from autograder.sandbox.trees import TreeError, survey
 from autograder.workspace import Workspace
 
 HOST = Path(__file__).with_name("colcon_host.py")
@@ -65,27 +65,25 @@ def colcon_build(workspace: Workspace, *choice: str) -> None:
 
 
 def require_contained(install: Path) -> None:
-    """Raise a StudentError if a link leads out of the install space, or its folders are nested too deep to look at.
+    """Raise a StudentError if an install space is too large, or holds what is no file, folder or link inside it.
 
-    It is mounted for nodes, and a mount would follow the link.
+    It is mounted for nodes, and a mount would follow a link. It is copied, and a copy fills the holes of a file.
     """
-    pending = [install]
-    while pending:
-        path = pending.pop()
-        try:
-            with suppress(FileNotFoundError):
-                path.stat()  # raises at a loop of links, which `resolve` has not done since Python 3.13
-            inside = path.resolve().is_relative_to(install.parent.resolve() / install.name)
-            children = [] if path.is_symlink() or not path.is_dir() else list(path.iterdir())
-        except (OSError, RuntimeError):  # a name too long, a loop of links
-            inside, children = False, []
-        if not inside:
-            sentence = (
-                f"The build left {str(path.relative_to(install.parent))[:200]}, which leads out of the install space: "
-                "setup.py and CMakeLists.txt must install files, not links to other places."
-            )
-            raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
-        pending += children
+    if install.is_symlink():
+        found = f"{install.name}, which leads out of the install space"
+    else:
+        found = _refused(install) if install.exists() else ""
+    if found:
+        sentence = f"The build left {found}: setup.py and CMakeLists.txt must install plain files of the package alone."
+        raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
+
+
+def _refused(install: Path) -> str:
+    try:
+        survey(install, INSTALLED)
+    except TreeError as error:
+        return str(error)
+    return ""
 
 
 def _build_failure(output: str, ending: Ending | None) -> str:

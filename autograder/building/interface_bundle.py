@@ -2,28 +2,29 @@
 
 Building messages takes ten times as long as building nodes, and most of a class brings the same messages. The bundle is
 built in a workspace of its own, so what is kept depends on nothing but the content that it is kept under. What
-student's build files made is used in sandboxes only.
+student's build files made is used in sandboxes only. `keeper` keeps it; a worker has no cache of its own.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from autograder.building import keeper
 from autograder.building.colcon import colcon_build
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.interfaces import Cache
-from autograder.interfaces.prefix import identity
 from autograder.packages import MANIFEST, read_summary
+from autograder.sandbox import line
+from autograder.sandbox.limits import SOURCES
+from autograder.sandbox.trees import TreeError, read_tree
 from autograder.workspace import Workspace
 
 GROUP = "rosidl_interface_packages"
-VERSION = 1  # of the way in which a bundle is built and kept
 NOTE = "bundle.json"
 HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
 
@@ -40,7 +41,21 @@ def interface_bundle(found: dict[str, Path], wanted: tuple[str, ...]) -> dict[st
 
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
     """Put a bundle's built packages into a workspace's install space."""
-    entry = Cache.default("bundles").get(_key(bundle, workspace), partial(_make, bundle, workspace))
+    sources, entry = workspace.scratch / "bundle-sources", workspace.scratch / "bundle"
+    for folder in (sources, entry):
+        shutil.rmtree(folder, ignore_errors=True)  # of a build that failed, and is tried again for another package
+    for name, folder in bundle.items():
+        shutil.copytree(folder, sources / name, symlinks=True)
+    try:
+        tree = read_tree(sources, SOURCES)
+    except TreeError as error:
+        sentence = f"The packages {', '.join(bundle)} hold {error}: definitions of messages are small."
+        raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence)) from None
+    with line.held() as connection:
+        if connection is None:
+            entry = Cache.default(keeper.CACHE).get(keeper.key(tree), partial(_make, sources, workspace))
+        else:
+            keeper.ask(connection, tree, entry)
     note = json.loads((entry / NOTE).read_text())
     for name in bundle:
         if (workspace.install / name).is_dir():  # for another package that needs it, too
@@ -49,19 +64,28 @@ def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
         relocate(workspace.install / name, note["install"], str(workspace.install))
 
 
-def _make(bundle: dict[str, Path], workspace: Workspace, entry: Path) -> None:
-    alone = replace(workspace, root=workspace.scratch / "bundle")
-    shutil.rmtree(alone.root, ignore_errors=True)  # of a build that failed, and is tried again for another package
-    for name, folder in bundle.items():
-        shutil.copytree(folder, alone.root / "src" / name, symlinks=True)
-    colcon_build(alone, "--packages-select", *bundle)
-    for name in bundle:
-        if not (alone.install / name).is_dir():
+def _make(sources: Path, workspace: Workspace, entry: Path) -> None:
+    alone = replace(workspace, root=workspace.scratch / "alone")
+    shutil.rmtree(alone.root, ignore_errors=True)
+    shutil.copytree(sources, alone.root / "src")
+    build_alone(alone, entry)
+    shutil.rmtree(alone.root)
+
+
+def build_alone(workspace: Workspace, entry: Path) -> None:
+    """Build all packages of a workspace that holds a bundle's sources alone, and copy what they install to `entry`.
+
+    Raises:
+        StudentError: they do not build, or install nothing, or what may not be installed.
+    """
+    names = sorted(path.name for path in (workspace.root / "src").iterdir())
+    colcon_build(workspace, "--packages-select", *names)
+    for name in names:
+        if not (workspace.install / name).is_dir():
             sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
             raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
-        shutil.copytree(alone.install / name, entry / "install" / name, symlinks=True)
-    (entry / NOTE).write_text(json.dumps({"install": str(alone.install)}))
-    shutil.rmtree(alone.root)
+        shutil.copytree(workspace.install / name, entry / "install" / name, symlinks=True)
+    (entry / NOTE).write_text(json.dumps({"install": str(workspace.install)}))
 
 
 def relocate(prefix: Path, old: str, new: str) -> None:
@@ -71,16 +95,6 @@ def relocate(prefix: Path, old: str, new: str) -> None:
             text = path.read_bytes()
             if old.encode() in text:
                 path.write_bytes(text.replace(old.encode(), new.encode()))
-
-
-def _key(bundle: dict[str, Path], workspace: Workspace) -> str:
-    digest = hashlib.sha256(json.dumps([VERSION, identity(workspace.ros)], sort_keys=True).encode())
-    for name, folder in sorted(bundle.items()):
-        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-            where = f"{name}/{path.relative_to(folder)}"
-            digest.update(json.dumps([where, path.stat().st_mode & 0o111, path.stat().st_size]).encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:40]
 
 
 def _closure(found: dict[str, Path], wanted: tuple[str, ...]) -> set[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from autograder.result import structure
 from autograder.sandbox import Tier
+from autograder.sandbox.limits import GRADING_CELL
 
 
 @dataclass(frozen=True)
@@ -32,10 +33,12 @@ class Job:
     assignment: str  # which assignment it answers
     student: str  # whose it is
     seed: int  # every hidden input is drawn from it
-    out: Path  # the folder that gets `result.json`, `notebook.ipynb` and the pictures
-    scratch: Path  # the cell's own file system; nothing in it outlives the cell
     tier: Tier  # how the submission is isolated
     scope: Scope = ALL  # how much of the suite is run
+    # Who starts the worker sets the rest.
+    out: Path = Path()  # the folder that gets `result.json`, `notebook.ipynb` and the pictures
+    scratch: Path = Path()  # the cell's own file system; nothing in it outlives the cell
+    seconds: float = GRADING_CELL.wall_seconds  # real time for all of it
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

@@ -6,8 +6,7 @@ it up and it lost a point, the submission is graded once more while this process
 
 from __future__ import annotations
 
-import json
-import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime, timezone
@@ -17,27 +16,26 @@ from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
+from autograder.grading.answer import AnswerError, Asked, checked
 from autograder.grading.job import ALL, Job, Scope
 from autograder.grading.machine_lock import MachineLock
+from autograder.grading.own_cell import in_own_cell
 from autograder.grading.store import LOG, RESULT, empty, new_result
-from autograder.result import Build, CheckResult, Result, Status, from_json, write_json
+from autograder.result import Build, CheckResult, Result, Status, write_json
 from autograder.sandbox import Tier, require
-from autograder.sandbox.cell import CellReport, run_in_cell
+from autograder.sandbox.cell import CellReport
+from autograder.sandbox.limits import GRADING_CELL
 from autograder.sandbox.process import Ending
 
 TRIES = 2
-FAILED = f"The grader failed on this submission, {TRIES} times."
+LEAST = 1 / 4  # of the time that a submission has: a try with less would only show that it is too little
 DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
 
-RunJob = Callable[[Callable[[Path], Job], Tier], CellReport]
+RunJob = Callable[[Job, float], CellReport]
+"""Runs a job in a cell, for at most so many seconds."""
 
 
 _machine = MachineLock()
-
-
-def in_own_cell(job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
-    """Run a job, which `job_in` makes from a scratch folder, by a worker of its own in a cell of its own."""
-    return run_in_cell(lambda scratch: _worker(job_in(scratch)), tier)
 
 
 def grade_submission(
@@ -50,6 +48,7 @@ def grade_submission(
     isolation: Tier = Tier.BUBBLEWRAP,
     scope: Scope = ALL,
     run_job: RunJob = in_own_cell,
+    seconds: float = GRADING_CELL.wall_seconds,
 ) -> Result:
     """Grade one submission.
 
@@ -63,10 +62,11 @@ def grade_submission(
         isolation: the sandbox's tier.
         scope: how much of the suite is run.
         run_job: runs the job in a cell.
+        seconds: real time for all of it: a second grading has what the first has left.
 
     Returns:
-        The result. Its `status` is `not_graded` when the grader failed twice; that is no zero. It is in doubt when the
-        machine held up, twice, what ran in real time.
+        The result. Its `status` is `not_graded` when the grader failed twice, or did not end in time; that is no zero.
+        It is in doubt when the machine held up, twice, what ran in real time.
 
     Raises:
         UsageError: there is no such path or assignment.
@@ -77,40 +77,71 @@ def grade_submission(
         raise UsageError(f"{path}: there is no such file or folder")
     require(isolation)
 
+    job = Job(path.resolve(), assignment, student, seed, isolation, scope)
+    asked = Asked(suite, student, seed, isolation.value)
+    budget = Budget(seconds)
     with new_result(out) as folder:
 
-        def job_in(scratch: Path) -> Job:
-            return Job(path.resolve(), assignment, student, seed, folder.resolve(), scratch, isolation, scope)
-
-        def grade() -> Result | None:
-            return _grade(lambda: run_job(job_in, isolation), folder)
+        def grade() -> tuple[Result | None, str]:
+            return _grade(lambda left: run_job(job, left), asked, folder, budget)
 
         with _machine.shared():
-            result = grade()
-        if result is not None and result.in_doubt:
+            result, why = grade()
+        if result is not None and result.in_doubt and budget.is_enough:
             with _machine.exclusive():
-                result = grade()
+                result, why = grade()
         if result is None:
-            result = not_graded(suite, student, seed, isolation, FAILED)
-            write_json(folder / RESULT, result.to_json())
+            result = not_graded(suite, student, seed, isolation, why)
+        write_json(folder / RESULT, result.to_json())
     return result
 
 
-def _grade(run: Callable[[], CellReport], folder: Path) -> Result | None:
-    """Return a worker's result; None if it failed twice, and then `folder` has its log."""
-    report = CellReport(Ending.EXITED, 0, "")
-    for _ in range(TRIES):
+class Budget:
+    """The real time that one submission has, for all its gradings together."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = self.left = seconds
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether a grading may begin."""
+        return self.left >= LEAST * self.seconds
+
+    def spend(self, run: Callable[[float], CellReport]) -> CellReport:
+        """Run something with the time that is left; what waits for its turn on the machine costs nothing."""
+        began = time.monotonic()
+        try:
+            return run(self.left)
+        finally:
+            self.left -= time.monotonic() - began
+
+
+def _grade(run: Callable[[float], CellReport], asked: Asked, folder: Path, budget: Budget) -> tuple[Result | None, str]:
+    """Return a worker's result, whose files are in `folder`; None and why if there is none, and then its log is there.
+
+    A worker may have been taken over. Nothing of its answer is used before it was checked.
+    """
+    said, why, tries = "", "", 0
+    while tries < TRIES and budget.is_enough:
+        tries += 1
         empty(folder)
-        report = run()
-        if report.returncode == 0 and (folder / RESULT).is_file():
-            return from_json(json.loads((folder / RESULT).read_text()), source=str(folder / RESULT))
+        report = budget.spend(run)
+        said = f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}"
+        why = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
+        if report.ending is Ending.WALL_TIME:
+            why = f"The grading did not end within {budget.seconds / 60:.0f} minutes."
+        if report.returncode == 0 and report.files:
+            try:
+                result = checked(report.files, asked)
+            except AnswerError as error:
+                said += f"\n{error}"
+                continue
+            for name, content in report.files.items():
+                (folder / name).write_bytes(content)
+            return result, ""
     # Never part of the result: its traceback may quote a hidden check, and results become feedback.
-    (folder / LOG).write_text(f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}")
-    return None
-
-
-def _worker(job: Job) -> list[str]:
-    return [sys.executable, "-m", "autograder.grading.worker", job.to_json()]
+    (folder / LOG).write_text(said)
+    return None, why
 
 
 def not_graded(suite: Suite, student: str, seed: int, isolation: Tier, why: str) -> Result:

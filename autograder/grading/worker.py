@@ -1,9 +1,9 @@
 """The worker: the trusted process that grades one submission inside its cell.
 
-    python -m autograder.grading.worker JOB
+    python -m autograder.grading.worker JOB DESCRIPTOR
 
-It imports no student code; that runs in sandboxes below it. It writes `result.json`, or ends with a traceback, which is
-a failure of the grader.
+It imports no student code; that runs in sandboxes below it. It sends `result.json` and the pictures over the line that
+the descriptor is an end of, or ends with a traceback, which is a failure of the grader.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import traceback
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime, timezone
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 from autograder import layout
@@ -31,8 +32,12 @@ from autograder.reading import reading
 from autograder.result import Build, CheckResult, Result, Status, write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
+from autograder.sandbox import line
 from autograder.sandbox.launcher import restore_sigint
+from autograder.sandbox.limits import RESULT_FILES
+from autograder.sandbox.parcel import send_message, send_tree
 from autograder.sandbox.tiers import Tier
+from autograder.sandbox.trees import read_tree
 from autograder.time_record import REAL
 from autograder.workspace import Workspace
 
@@ -186,14 +191,19 @@ def prepare() -> None:
 
 
 def work(job: Job, suite: Suite) -> None:
-    """Grade a job, and write its result."""
+    """Grade a job, and send what it left over this process's line."""
     job.out.mkdir(parents=True, exist_ok=True)
     write_json(job.out / RESULT, Grading(job, suite).grade().to_json())
+    with line.held() as connection:
+        if connection is not None:
+            send_message(connection, {"do": "result"})
+            send_tree(connection, read_tree(job.out, RESULT_FILES))
 
 
 def main() -> None:
     """Grade the job that the command line holds."""
     job = Job.from_json(sys.argv[1])
+    line.take(Connection(int(sys.argv[2])))
     prepare()
     work(job, suites.hidden(job.assignment))
 

@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from autograder.exceptions import GraderError, UsageError
+from autograder.fingerprint import places
 from autograder.sandbox import best_tier
 from autograder.sandbox.cell import run_in_cell
 from autograder.sandbox.limits import NOTEBOOK_CELL
+from autograder.sandbox.spec import View
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"
@@ -38,7 +40,9 @@ def run_in_worker(verb: str, workspace: Path, **arguments: Any) -> Iterator[tupl
             file.write_text(json.dumps(request, default=str))
             return [sys.executable, "-m", "autograder.notebook.check_worker", str(file)]
 
-        report = run_in_cell(command, best_tier(), NOTEBOOK_CELL)
+        shown = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        view = View(shown=tuple(shown), submitted=(source.resolve(),), writable=(Path(folder),))
+        report = run_in_cell(command, best_tier(), NOTEBOOK_CELL, view=view)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")

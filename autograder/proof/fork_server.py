@@ -4,16 +4,16 @@
 
 Starting a worker costs about a core-second, as much as the checks of many a submission. The proof grades thousands of
 submissions, which the course itself wrote. So one worker in one cell grades many of them, one after another. The
-submission of a student always gets a new worker in a new cell (`pipeline.in_own_cell`). The sandboxes around students'
-code are the same in both.
+submission of a student always gets a new worker in a new cell (`own_cell.in_own_cell`), and so does an attack. The
+sandboxes around students' code are the same in both.
 
-It receives jobs. A reply is the child's exit status and what it wrote. All are JSON; nothing is unpickled.
+It receives jobs. A child sends what it leaves, and the server then the child's exit status with what it wrote. Nothing
+is unpickled.
 """
 
 from __future__ import annotations
 
 import gc
-import json
 import os
 import subprocess
 import sys
@@ -27,7 +27,9 @@ from autograder.checks.suites import Suite
 from autograder.grading import worker
 from autograder.grading.job import Job
 from autograder.prefork.profiles import PROFILES
+from autograder.sandbox import line
 from autograder.sandbox.launcher import warm_up
+from autograder.sandbox.parcel import send_message
 
 OUTPUT = 1024 * 1024  # bytes: the end of a child's output that goes into the reply
 
@@ -41,13 +43,14 @@ def serve(scratch: Path, client: Connection) -> None:
         assert suite.version + suite.files_digest  # read once for all, too
         child = os.fork()
         if child == 0:
+            line.take(client)
             _work(job, suite, log_file)
         _, status = os.waitpid(child, 0)
         output = log_file.read_bytes()[-OUTPUT:].decode("utf-8", errors="replace") if log_file.is_file() else ""
-        reply = {"status": os.waitstatus_to_exitcode(status), "output": output}
+        reply = {"do": "done", "status": os.waitstatus_to_exitcode(status), "output": output}
         for left in scratch.iterdir():
             subprocess.run(["rm", "-rf", "--", left], check=True)
-        client.send_bytes(json.dumps(reply).encode())
+        send_message(client, reply)
 
 
 def _work(job: Job, suite: Suite, log_file: Path) -> None:

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from autograder.checks import suites
 from autograder.grading.batch import GradingRequest
+from autograder.grading.own_cell import in_own_cell
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.grading.store import LOG
 from autograder.proof.cases import Case
-from autograder.proof.claims import Claim
+from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.worker_pool import WorkerPool
 from autograder.result import Status
 
@@ -59,7 +60,7 @@ def prove(
                 out=place if whole else place / PART,
                 isolation=workers.tier,
                 scope=case.scope,
-                run_job=workers,
+                run_job=in_own_cell if case.kind is CaseKind.ATTACK else workers,
             )
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if result.unjudged:

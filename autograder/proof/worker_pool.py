@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
-import json
+import hashlib
 import queue
+import shutil
 import sys
 import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from multiprocessing import Pipe
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from autograder import layout
+from autograder.building.keeper import attend
 from autograder.grading.job import Job
-from autograder.sandbox.cell import CellReport, in_cell
-from autograder.sandbox.limits import GRADING_CELL, PROOF_CELL
+from autograder.sandbox.cell import CellReport, copy_submission, in_cell
+from autograder.sandbox.limits import PROOF_CELL
+from autograder.sandbox.parcel import ParcelError
 from autograder.sandbox.process import Ending
+from autograder.sandbox.spec import View
 from autograder.sandbox.tiers import Tier, require
 
-_TICK = 0.25  # s between two tests whether a silent server still runs
+_TICK = 5.0  # s in which a server that is gone is seen to have ended
 
 
 class WorkerPool:
     """Grades submissions with a few workers, each in one cell for many submissions; a context manager.
 
-    It is called as `pipeline.in_own_cell` is. For submissions that are the course's own, see `fork_server`.
+    It is called as `own_cell.in_own_cell` is. For submissions that are the course's own, see `fork_server`.
 
     Args:
         tier: the isolation of each worker's cell.
@@ -51,12 +57,12 @@ class WorkerPool:
                 worker.close()
         self._starter.shutdown()
 
-    def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
-        """Grade one submission; `job_in` makes its job from a scratch folder."""
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        """Grade one submission, in at most so many seconds; report the files that its worker left."""
         worker = self._idle.get()
         try:
             worker = worker or self._starter.submit(_Worker, self.tier).result()
-            report = worker.grade(job_in(worker.scratch / "job"))
+            report = worker.grade(job, seconds)
             if report.ending is not Ending.EXITED:
                 worker.close()
                 worker = None
@@ -66,35 +72,51 @@ class WorkerPool:
 
 
 class _Worker:
-    """A fork server in a cell."""
+    """A fork server in a cell, which sees the whole course, and one folder for what is handed in."""
 
     def __init__(self, tier: Tier) -> None:
         self._stack = ExitStack()
         ours, theirs = Pipe()
-        self._server = self._stack.enter_context(ours)
+        self._server, self._tier = self._stack.enter_context(ours), tier
+        # The cell cannot see what comes later, but in a folder that it sees. It has to be open to a user of its own.
+        self._shown = Path(self._stack.enter_context(TemporaryDirectory(prefix="proof-shown-")))
+        self._shown.chmod(0o755)
 
         def command(scratch: Path) -> list[str]:
             return [sys.executable, "-m", "autograder.proof.fork_server", str(scratch), str(theirs.fileno())]
 
+        view = View(shown=(*{layout.ROOT, layout.COURSE.root}, self._shown))
         with theirs:
-            cell = in_cell(command, tier, PROOF_CELL, pass_fds=(theirs.fileno(),))
-            self._process, self.scratch = self._stack.enter_context(cell)
+            cell = in_cell(command, tier, PROOF_CELL, view=view, pass_fds=(theirs.fileno(),))
+            self._process, self._scratch = self._stack.enter_context(cell)
 
-    def grade(self, job: Job) -> CellReport:
+    def grade(self, job: Job, seconds: float) -> CellReport:
         """Send one job and wait for its result. If the ending is not `exited`, the worker cannot be used again."""
-        deadline = time.monotonic() + GRADING_CELL.wall_seconds
-        try:
-            self._server.send_bytes(job.to_json().encode())
-            while not self._server.poll(_TICK):
-                if self._process.ending is not None or time.monotonic() > deadline:
-                    return self._dead()
-            reply = json.loads(self._server.recv_bytes())
-        except (EOFError, OSError):  # the server is no more
-            self._process.wait(GRADING_CELL.wall_seconds)
-            return self._dead()
-        return CellReport(Ending.EXITED, reply["status"], reply["output"])
+        deadline = time.monotonic() + seconds
+        place = self._scratch / "job"
+        with TemporaryDirectory(dir=self._shown) as folder:
+            Path(folder).chmod(0o755)
+            path = Path(folder, job.path.name)
+            copy_submission(job.path, path)
+            scope = replace(job.scope, built=job.scope.built and str(self._show(Path(job.scope.built))))
+            told = replace(job, path=path, scope=scope, scratch=place, out=place / "out", seconds=seconds)
+            try:
+                self._server.send_bytes(told.to_json().encode())
+                over = lambda: self._process.ending is not None or time.monotonic() > deadline  # noqa: E731
+                files, reply = attend(self._server, self._tier, over)
+            except (ParcelError, OSError):
+                files, reply = {}, {}
+        return CellReport(Ending.EXITED, reply["status"], reply["output"], files) if reply else self._dead()
+
+    def _show(self, built: Path) -> Path:
+        """Show the fork server a built workspace, which serves many jobs."""
+        shown = self._shown / f"built-{hashlib.sha256(str(built).encode()).hexdigest()[:16]}"
+        if not shown.exists():
+            shutil.copytree(built, shown, symlinks=True)
+        return shown
 
     def _dead(self) -> CellReport:
+        self._process.wait(_TICK)
         self._process.kill()
         ending = self._process.ending or Ending.WALL_TIME
         ending = Ending.KILLED if ending is Ending.EXITED else ending

@@ -13,14 +13,16 @@ import os
 import signal
 import subprocess
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
 from autograder.sandbox.limits import Limits
 
 _NUMBERS = itertools.count()
+_PROCESS = os.urandom(6).hex()  # cells have process ids of their own, and some share a folder
 _NAME = "autograder"
+_LEAF = "worker"
 _CLOSE_SECONDS = 5.0
 _TICK = 0.005
 _STALE = 3600.0  # s after which an empty group was left by a grader that was killed
@@ -33,6 +35,7 @@ class ControlGroup:
     """A group of processes that are counted, by the folder of each controller."""
 
     by_controller: dict[str, Path]
+    entered: dict[str, Path] = field(default_factory=dict)  # the group below it that is entered in its place, if any
 
     @property
     def folders(self) -> tuple[Path, ...]:
@@ -41,7 +44,8 @@ class ControlGroup:
 
     def enter(self, command: list[str]) -> list[str]:
         """Return `command`, run as a member of the group from its first moment."""
-        return ["sh", "-c", _ENTER, "sh", *map(str, self.folders), "--", *command] if self.folders else command
+        folders = dict.fromkeys({**self.by_controller, **self.entered}.values())
+        return ["sh", "-c", _ENTER, "sh", *map(str, folders), "--", *command] if folders else command
 
     def ran_out(self) -> bool:
         """Return whether the kernel has ended a process because the group's memory was used up."""
@@ -56,7 +60,7 @@ class ControlGroup:
         deadline = time.monotonic() + _CLOSE_SECONDS
         for folder in self.folders:
             while not _removed(folder) and time.monotonic() < deadline:
-                for pid in map(int, _read(folder / "cgroup.procs").split()):
+                for pid in map(int, " ".join(map(_read, folder.rglob("cgroup.procs"))).split()):
                     with contextlib.suppress(OSError):
                         if pid > 0:  # 0 is one of another pid namespace, and to kill() the caller's whole group
                             os.kill(pid, signal.SIGKILL)
@@ -76,7 +80,7 @@ def make(limits: Limits) -> ControlGroup:
         home = _home(controller)
         if home is None:
             continue
-        folder = home / f"{_NAME}-{os.getpid()}-{number}"
+        folder = home / f"{_NAME}-{_PROCESS}-{number}"
         with contextlib.suppress(OSError):
             folder.mkdir(exist_ok=True)
             for file in (folder / name for name in files):
@@ -87,6 +91,27 @@ def make(limits: Limits) -> ControlGroup:
                 if (folder / name).exists():
                     (folder / name).write_text(value)
     return ControlGroup(folders)
+
+
+def make_nested(limits: Limits, user: int | None) -> ControlGroup:
+    """Return a new group in which its processes make groups for what they start; `user` is who they are, if not this.
+
+    The bounds of the new group stay out of their reach.
+    """
+    group = make(limits)
+    entered = {}
+    for controller, folder in group.by_controller.items():
+        handed_down, inner = folder / "cgroup.subtree_control", folder / _LEAF
+        if handed_down.exists():  # version 2, where only a group without groups has processes
+            handed_down.write_text(
+                " ".join(f"+{name}" for name, place in group.by_controller.items() if place == folder)
+            )
+            inner.mkdir(exist_ok=True)
+        for path in (folder, folder / "cgroup.procs", inner, inner / "cgroup.procs"):
+            if user is not None and path.exists():
+                os.chown(path, user, user)
+        entered[controller] = inner if inner.exists() else folder
+    return replace(group, entered=entered)
 
 
 def bounds() -> frozenset[str]:
@@ -100,7 +125,7 @@ def bounds() -> frozenset[str]:
 def _home(controller: str) -> Path | None:
     """Return the folder in which this process can make groups of a controller, and have its children join them."""
     for home in homes(controller, _read(Path("/proc/self/mountinfo")), _read(Path("/proc/self/cgroup"))):
-        trial = home / f"{_NAME}-{os.getpid()}-{next(_NUMBERS)}"
+        trial = home / f"{_NAME}-{_PROCESS}-{next(_NUMBERS)}"
         try:
             trial.mkdir()
         except OSError:
@@ -122,13 +147,13 @@ def homes(controller: str, mountinfo: str, own: str) -> list[Path]:
     found = []
     for line in mountinfo.splitlines():
         before, _, after = line.partition(" - ")
-        mount = Path(before.split()[4])
+        root, mount = map(Path, before.split()[3:5])  # a cell sees its own group alone, at its usual place
         kind, _, options = after.split(maxsplit=2)
         if kind == "cgroup" and controller in options.split(","):
-            place = mount / _own(own, controller)
+            place = _below(mount, root, _own(own, controller))
             found += [folder for folder in _upwards(place, mount) if folder.is_dir()]
         elif kind == "cgroup2":
-            place = mount / _own(own, "")
+            place = _below(mount, root, _own(own, ""))
             handed_down = "cgroup.subtree_control"
             found += [folder for folder in _upwards(place, mount) if controller in _read(folder / handed_down).split()]
     return found
@@ -138,8 +163,13 @@ def _own(cgroups: str, controller: str) -> str:
     for line in cgroups.splitlines():
         _, controllers, path = line.split(":", maxsplit=2)
         if controller in controllers.split(","):
-            return path.lstrip("/")
-    return ""
+            return path
+    return "/"
+
+
+def _below(mount: Path, root: Path, group: str) -> Path:
+    """Return where a group stands below a mount that shows `root`, or the mount itself if it does not show it."""
+    return mount / Path(group).relative_to(root) if Path(group).is_relative_to(root) else mount
 
 
 def _upwards(place: Path, mount: Path) -> list[Path]:
@@ -148,6 +178,8 @@ def _upwards(place: Path, mount: Path) -> list[Path]:
 
 def _removed(folder: Path) -> bool:
     with contextlib.suppress(OSError):
+        for below in filter(Path.is_dir, folder.iterdir()):
+            _removed(below)  # groups of a cell that was killed
         folder.rmdir()
     return not folder.exists()
 

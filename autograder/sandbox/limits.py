@@ -29,6 +29,15 @@ class Limits:
         return self.threads * 4
 
 
+@dataclass(frozen=True)
+class TreeLimits:
+    """Bounds on files that leave a sandbox or a cell."""
+
+    names: int = 5000  # files, folders and links
+    size: int = 64 * MIB  # apparent bytes in all: holes count
+    depth: int = 32  # folders in each other
+
+
 # The harness bounds each wait for a node; the wall time is for a node that nothing waits for.
 NODE = Limits(wall_seconds=600.0)
 # Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
@@ -49,3 +58,10 @@ NOTEBOOK_CELL = replace(GRADING_CELL, wall_seconds=300.0)
 # A cell of the proof, which lives while there is work; each of its jobs has the wall time of GRADING_CELL.
 PROOF_CELL = replace(GRADING_CELL, wall_seconds=24 * 3600.0)
 CELL_SCRATCH = 512 * MIB  # bytes of a cell's file system
+CELL_TMP = 64 * MIB  # bytes of a cell's /tmp, where nothing of a student's is kept
+INOTIFY_INSTANCES = 16  # of a whole cell; the kernel gives a user of the machine 128
+INOTIFY_WATCHES = 4096  # of a whole cell
+INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
+SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
+RESULT_FILES = TreeLimits(names=200, depth=1)  # what a worker leaves: the result, its notebook, the pictures
+MESSAGE = 4 * MIB  # bytes of one message from a worker to who started it

@@ -29,6 +29,17 @@ class Mount:
 
 
 @dataclass(frozen=True)
+class View:
+    """What a cell sees of the machine, beyond the system, the grader's own code and its scratch folder."""
+
+    shown: tuple[Path, ...] = ()  # folders and files that it reads; they are read-only
+    # What was handed in. A worker of root's is another user, and may be unable to read it: it gets a copy.
+    submitted: tuple[Path, ...] = ()
+    writable: tuple[Path, ...] = ()  # folders that it writes to
+    copies: Mapping[Path, Path] = field(default_factory=dict)  # what is shown in the place of a path, if not itself
+
+
+@dataclass(frozen=True)
 class Sandbox:
     """One sandbox: what is seen, what may be used, with which environment."""
 

@@ -6,8 +6,12 @@ import shutil
 import subprocess
 from enum import Enum
 from functools import cache
+from pathlib import Path
 
 from autograder.exceptions import IsolationError
+from autograder.sandbox import bubblewrap
+from autograder.sandbox.identity import ordinary_user
+from autograder.sandbox.spec import Sandbox, View
 
 
 class Tier(str, Enum):
@@ -32,12 +36,13 @@ def namespaces_failure() -> str | None:
     """Return why a sandbox inside a cell cannot be made here, or None where it can."""
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed"
-    inner = ["bwrap", "--unshare-user", "--unshare-pid", "--ro-bind", "/", "/", "--proc", "/proc", "true"]
-    outer = ["bwrap", "--unshare-user", "--unshare-net", "--dev-bind", "/", "/", *inner]
-    try:
-        done = subprocess.run(outer, capture_output=True, text=True, timeout=20, check=False)
-    except subprocess.TimeoutExpired:
-        return "bubblewrap did not answer within 20 s"
+    inner = bubblewrap.sandbox(["true"], Sandbox(Path("/tmp")), filter_fd=None)
+    with ordinary_user() as user:
+        outer = bubblewrap.cell(inner, View(), scratch=Path("/tmp/cell"), user=user)
+        try:
+            done = subprocess.run(outer, capture_output=True, text=True, timeout=20, check=False)
+        except subprocess.TimeoutExpired:
+            return "bubblewrap did not answer within 20 s"
     return None if done.returncode == 0 else done.stderr.strip() or f"bwrap ended with status {done.returncode}"
 
 

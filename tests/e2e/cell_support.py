@@ -19,32 +19,32 @@ import socket
 import subprocess
 import sys
 import traceback
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
 
 from autograder.sandbox import Process, Tier, cell
 from autograder.sandbox.limits import PROOF_CELL
+from autograder.sandbox.spec import View
 
 ROOT = Path(__file__).resolve().parents[2]
 _MARK = "answer: "
+_VIEW = View(shown=(ROOT,))  # the tests, and what they grade
 
 
-def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUBBLEWRAP, own_cell: bool = False) -> Any:
+def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUBBLEWRAP) -> Any:
     """Run `function(scratch, *arguments)` in a cell; return its answer, which crosses as JSON.
 
     Args:
         function: a function of a test module.
         arguments: what JSON can hold.
         tier: of the cell; any but bubblewrap gets a cell of its own.
-        own_cell: whether it gets a cell that ends with it.
     """
-    module = Path(function.__code__.co_filename).relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
-    piece = json.dumps([module, function.__name__, arguments])
-    if own_cell or tier is not Tier.BUBBLEWRAP:
-        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, str(scratch), piece], tier)
+    piece = _piece(function, arguments)
+    if tier is not Tier.BUBBLEWRAP:
+        report = cell.run_in_cell(lambda scratch: [*_PROGRAM, piece, str(scratch)], tier, view=_VIEW)
         status, said = report.returncode, report.output
     else:
         status, said = _shared_cell().run(piece)
@@ -52,6 +52,19 @@ def in_cell(function: Callable[..., Any], *arguments: Any, tier: Tier = Tier.BUB
     assert status == 0, said
     assert answers, said
     return json.loads(answers[-1].removeprefix(_MARK))
+
+
+@contextmanager
+def started_in_cell(function: Callable[..., Any], *arguments: Any) -> Iterator[Process]:
+    """Start `function(scratch, *arguments)` in a cell of its own, and end it with the block."""
+    command = [*_PROGRAM, _piece(function, arguments)]
+    with cell.in_cell(lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, view=_VIEW) as (process, _):
+        yield process
+
+
+def _piece(function: Callable[..., Any], arguments: tuple[Any, ...]) -> str:
+    module = Path(function.__code__.co_filename).relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
+    return json.dumps([module, function.__name__, arguments])
 
 
 def is_forked(process: Process) -> bool:
@@ -79,7 +92,9 @@ class _SharedCell:
         with theirs:
             fd = theirs.fileno()
             command = [*_PROGRAM, "serve", str(fd)]
-            made = cell.in_cell(lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, PROOF_CELL, pass_fds=(fd,))
+            made = cell.in_cell(
+                lambda scratch: [*command, str(scratch)], Tier.BUBBLEWRAP, PROOF_CELL, view=_VIEW, pass_fds=(fd,)
+            )
             self._process, _ = stack.enter_context(made)
         self._requests, self._replies = ours.makefile("w"), ours.makefile("r")
         self._variables = dict(os.environ)
@@ -150,4 +165,4 @@ def main() -> None:
         with socket.socket(fileno=int(sys.argv[2])) as link:
             _serve(Path(sys.argv[3]), link.makefile("r"), link.makefile("w"))
     else:
-        _run(Path(sys.argv[1]), sys.argv[2])
+        _run(Path(sys.argv[2]), sys.argv[1])

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building.interface_bundle import _key, interface_bundle, relocate
-from autograder.harness import Workspace
+from autograder.building import keeper
+from autograder.building.interface_bundle import interface_bundle, relocate
 from autograder.packages import find_packages
-from autograder.ros import activate
+from autograder.sandbox.limits import SOURCES
+from autograder.sandbox.trees import read_tree
 
 GROUP = "<member_of_group>rosidl_interface_packages</member_of_group>"
 
@@ -51,14 +52,16 @@ def test_packages_that_need_each_other_end_the_search(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "package.xml", "extra.txt"])
 def test_any_change_of_content_changes_the_key(tmp_path: Path, name: str) -> None:
-    package(tmp_path / "src", "robot_msgs", interface=True)
-    workspace = Workspace(tmp_path, activate(), tmp_path / "home")
-    folders = {"robot_msgs": tmp_path / "src" / "robot_msgs"}
-    before = _key(folders, workspace)
-    assert _key(folders, workspace) == before
-    path = folders["robot_msgs"] / name
+    package(tmp_path, "robot_msgs", interface=True)
+
+    def found() -> str:
+        return keeper.key(read_tree(tmp_path, SOURCES))
+
+    before = found()
+    assert found() == before
+    path = tmp_path / "robot_msgs" / name
     path.write_text((path.read_text() if path.exists() else "") + " ")
-    assert _key(folders, workspace) != before
+    assert found() != before
 
 
 def test_scripts_name_the_new_folder_and_other_files_are_unchanged(tmp_path: Path) -> None:

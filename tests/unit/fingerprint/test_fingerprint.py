@@ -23,13 +23,14 @@ SHARED = {
     "sim/world.py": "",
     "assets/worlds/lab.yaml": "",
 }
+IMPORT = "from autograder.checks.ch01_package_structure.hidden import (\n    growth,\n)\n"
 OWN = {
     "autograder/checks/ch02_nodes/conftest.py": "",
     "autograder/checks/ch02_nodes/hidden/__init__.py": "",
     "autograder/checks/ch02_nodes/hidden/graph.py": "from autograder.checks.ch03_interfaces.support import reading\n",
     "autograder/checks/ch02_nodes/hidden/inputs.yaml": "",
     "autograder/checks/ch02_nodes/hidden/versions/second/guard.py": "",
-    "autograder/checks/ch02_nodes/support/robot.py": "from autograder.checks import ch01_package_structure\n",
+    "autograder/checks/ch02_nodes/support/robot.py": IMPORT,
     "autograder/checks/ch03_interfaces/support/reading.py": "",
     "autograder/checks/ch01_package_structure/hidden/growth.py": "",
     "chapters/02_nodes/02_nodes.ipynb": "{}",
@@ -44,6 +45,8 @@ NOT_READ = (
     "autograder/checks/ch02_nodes/survivors.yaml",
     "autograder/checks/ch02_nodes/variants/other/node.py",
     "autograder/checks/ch02_nodes/.cache/x",
+    "autograder/checks/ch03_interfaces/support/driver.py",
+    "autograder/checks/ch03_interfaces/hidden/status.py",
     "autograder/checks/ch05_parameters/hidden/files.py",
     "autograder/checks/ch05_parameters/support/robot.py",
     "chapters/03_interfaces/03_interfaces.ipynb",

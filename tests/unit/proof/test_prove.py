@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Callable
 from dataclasses import replace
@@ -20,7 +21,6 @@ from autograder.proof.cases import WITHOUT_PICTURES, Case
 from autograder.proof.claims import CaseKind, verify_full_marks
 from autograder.proof.prove import prove
 from autograder.proof.worker_pool import WorkerPool
-from autograder.result import write_json
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import CellReport
 from autograder.sandbox.process import Ending
@@ -37,9 +37,9 @@ class NoGrader:
     def __init__(self) -> None:
         self._together = threading.Barrier(WORKERS, timeout=60.0)
 
-    def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
+    def __call__(self, job: Job, seconds: float) -> CellReport:
         self._together.wait()
-        return CellReport(Ending.EXITED, 1, f"nobody grades {job_in(Path()).student}")
+        return CellReport(Ending.EXITED, 1, f"nobody grades {job.student}")
 
 
 class OneByOne(NoGrader):
@@ -56,12 +56,12 @@ class Recorder(OneByOne):
 
     count, asked = 1, 0
 
-    def __call__(self, job_in: Callable[[Path], Job], tier: Tier) -> CellReport:
-        job, self.asked = job_in(Path()), self.asked + 1
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        self.asked += 1
         suite, digest = suites.hidden(job.assignment), read_submission(job.path, job.assignment).sha256
-        result = refused(suite, job.student, job.seed, tier, Diagnosis(Kind.OK, "It was looked at."))
-        write_json(job.out / "result.json", replace(result, submission_sha256=digest).to_json())
-        return CellReport(Ending.EXITED, 0, "")
+        result = refused(suite, job.student, job.seed, job.tier, Diagnosis(Kind.OK, "It was looked at."))
+        told = replace(result, submission_sha256=digest).to_json()
+        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(told).encode()})
 
 
 def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:

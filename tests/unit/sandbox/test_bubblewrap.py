@@ -8,6 +8,8 @@ from pathlib import Path
 
 from autograder import layout
 from autograder.sandbox import Limits, Mount, Sandbox, bubblewrap
+from autograder.sandbox.limits import CELL_SCRATCH
+from autograder.sandbox.spec import View
 
 
 def _pairs(arguments: list[str], flag: str) -> list[str]:
@@ -73,7 +75,7 @@ def test_every_file_system_in_memory_has_a_size_or_is_read_only(tmp_path: Path) 
     for path in ("/tmp", "/dev/shm"):
         at = next(i for i, pair in enumerate(itertools.pairwise(options)) if pair == ("--tmpfs", path))
         assert options[at - 2 : at] == ["--size", "4096"]
-    assert {"/", "/dev"} <= set(_pairs(options, "--remount-ro"))
+    assert {"/", "/dev", "/proc"} <= set(_pairs(options, "--remount-ro"))
 
 
 def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
@@ -92,12 +94,38 @@ def test_the_grader_s_own_python_is_shown_read_only(tmp_path: Path) -> None:
         assert sys.prefix in _pairs(options, "--ro-bind")
 
 
-def test_a_cell_has_its_own_network_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
-    arguments = bubblewrap.cell(["worker"], scratch=tmp_path, size=1234)
+def test_a_cell_has_namespaces_and_a_scratch_folder_of_limited_size(tmp_path: Path) -> None:
+    arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path)
     options = _options(arguments)
-    assert "--unshare-net" in options
-    assert "--unshare-user" in options
-    assert "--unshare-pid" not in options  # a sandbox inside could not mount /proc
-    at = options.index("--tmpfs")
-    assert options[at - 2 : at + 2] == ["--size", "1234", "--tmpfs", str(tmp_path)]
+    for flag in ("--unshare-net", "--unshare-user", "--unshare-pid", "--unshare-ipc"):
+        assert flag in options
+    at = options.index(str(tmp_path))
+    assert options[at - 3 : at] == ["--size", str(CELL_SCRATCH), "--tmpfs"]
     assert arguments[-1] == "worker"
+
+
+def test_a_cell_of_root_becomes_an_ordinary_user_before_it_makes_namespaces(tmp_path: Path) -> None:
+    arguments = bubblewrap.cell(["worker"], View(), scratch=tmp_path, user=47001)
+    assert "--unshare-user" not in _options(arguments)
+    become = arguments[arguments.index("setpriv") :]
+    assert {"--reuid=47001", "--regid=47001", "--clear-groups", "--no-new-privs"} <= set(become)
+    assert become.index("--no-new-privs") < become.index("--unshare-user")
+
+
+def test_a_cell_shows_the_grader_s_code_and_of_all_chapters_nothing_but_what_it_is_to_see(tmp_path: Path) -> None:
+    shown, out = layout.SOLUTIONS / "speed_guard", tmp_path / "out"
+    options = _options(bubblewrap.cell(["worker"], View((shown,), (tmp_path,), (out,)), scratch=Path("/tmp/cell")))
+    read_only, writable = _pairs(options, "--ro-bind"), _pairs(options, "--bind")
+    assert writable == [str(out)]
+    assert {str(layout.ROOT / "autograder"), str(shown), str(tmp_path)} <= set(read_only)
+    for secret in (
+        layout.ROOT,
+        layout.CHAPTERS,
+        layout.SOLUTIONS,
+        Path("/"),
+        Path("/home"),
+        Path("/etc"),
+        Path("/run"),
+    ):
+        assert str(secret) not in read_only
+    assert {*map(str, layout.check_folders())} <= set(_pairs(options, "--tmpfs")) & set(_pairs(options, "--remount-ro"))

@@ -67,7 +67,7 @@ def test_without_a_control_group_prlimit_bounds_all_users_but_root(
 def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """No controller is at work in this folder. The test only asserts that the right texts are written to its files."""
     monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
-    folder = tmp_path / f"autograder-{os.getpid()}-7"
+    folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
     folder.mkdir()
     for name in ("pids.max", "memory.max", "memory.swap.max", "memory.oom.group"):
         (folder / name).touch()

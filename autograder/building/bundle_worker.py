@@ -1,0 +1,42 @@
+"""The worker that builds interface packages for who keeps them: it sees their sources, and no submission.
+
+python -m autograder.building.bundle_worker SCRATCH DESCRIPTOR
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from autograder.building.interface_bundle import build_alone
+from autograder.exceptions import StudentError
+from autograder.ros import activate
+from autograder.sandbox.launcher import restore_sigint
+from autograder.sandbox.limits import INSTALLED, SOURCES
+from autograder.sandbox.parcel import receive_tree, send_message, send_tree, write_received
+from autograder.sandbox.trees import read_tree
+from autograder.workspace import Workspace
+
+
+def main() -> None:
+    """Build the packages that come over the line, and send what was installed back."""
+    scratch = Path(sys.argv[1])
+    restore_sigint()
+    ros = activate()
+    with Connection(int(sys.argv[2])) as line:
+        (scratch / "home").mkdir()
+        workspace = Workspace(scratch / "ws", ros, scratch / "home")
+        write_received(receive_tree(line, SOURCES), workspace.root / "src")
+        try:
+            build_alone(workspace, scratch / "made")
+        except StudentError as error:
+            send_message(line, {"diagnosis": asdict(error.diagnosis)})
+        else:
+            send_message(line, {})
+            send_tree(line, read_tree(scratch / "made", INSTALLED))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+"""What outlives a grading, on the side of who started the worker: built interface packages, for all who bring them.
+
+A worker cannot write to the cache. It sends sources. Who started it looks them up by their content; where they are new
+it has them built by another worker in a cell of its own, which sees these sources and nothing else of any submission.
+So an entry is what an untouched worker makes of the content that it is kept under: a worker that was taken over can
+have its own sources built, and cannot say what anybody else's become.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import asdict, astuple, replace
+from functools import partial
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import GraderError, StudentError
+from autograder.interfaces import Cache
+from autograder.interfaces.prefix import identity
+from autograder.ros import find
+from autograder.sandbox import Tier
+from autograder.sandbox.cell import ended, in_cell
+from autograder.sandbox.limits import BUILD, GRADING_CELL, INSTALLED, RESULT_FILES, SOURCES
+from autograder.sandbox.parcel import (
+    ParcelError,
+    receive_message,
+    receive_tree,
+    send_message,
+    send_tree,
+    write_received,
+)
+from autograder.sandbox.trees import Entry, read_tree
+
+CACHE = "bundles"
+VERSION = 2  # of the way in which a bundle is built and kept
+_TICK = 0.25  # s between two looks whether a silent worker still runs
+_MARGIN = 60.0  # s for the start and the end of a worker that builds
+
+
+def attend(line: Connection, tier: Tier, is_over: Callable[[], bool]) -> tuple[dict[str, bytes], dict[str, Any]]:
+    """Serve a worker until it is done; return the files of its result, and its last message.
+
+    It asks to have interface packages built, leaves its result, and may say that it is done. A worker that ends without
+    a word has an empty last message.
+
+    Raises:
+        ParcelError: it says what no worker would.
+    """
+    files: dict[str, bytes] = {}
+    while True:
+        if not line.poll(_TICK):
+            if is_over():
+                return files, {}
+            continue
+        try:
+            message = receive_message(line)
+            if message.get("do") == "result":
+                files = {entry.path: data for entry, data in receive_tree(line, RESULT_FILES).items()}
+            elif message.get("do") == "build":
+                _answer(line, receive_tree(line, SOURCES), tier)
+            elif message.get("do") == "done":
+                return files, message
+            else:
+                raise ParcelError("a worker asks for what nobody offers")
+        except (EOFError, ConnectionError):
+            return files, {}
+
+
+def ask(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
+    """Have a tree of interface packages built by who started this worker, and write what was installed to `target`.
+
+    Raises:
+        StudentError: they do not build; the diagnosis says why.
+        GraderError: they could not be built for another reason.
+    """
+    send_message(line, {"do": "build"})
+    send_tree(line, sources)
+    reply = receive_message(line)
+    if "diagnosis" in reply:
+        raise StudentError(Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])}))
+    if "failed" in reply:
+        raise GraderError(reply["failed"])
+    write_received(receive_tree(line, INSTALLED), target)
+
+
+def key(sources: Mapping[Entry, bytes]) -> str:
+    """Return the key of built packages: all that they are made of, and what makes them."""
+    digest = hashlib.sha256(json.dumps([VERSION, identity(find())], sort_keys=True).encode())
+    for entry in sorted(sources, key=lambda entry: entry.path):
+        digest.update(json.dumps(astuple(entry)).encode() + sources[entry])
+    return digest.hexdigest()[:40]
+
+
+def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> None:
+    try:
+        entry = Cache.default(CACHE).get(key(sources), partial(_make, sources, tier))
+    except StudentError as error:
+        send_message(line, {"diagnosis": asdict(error.diagnosis)})
+    except GraderError as error:
+        send_message(line, {"failed": str(error)})
+    else:
+        send_message(line, {})
+        send_tree(line, read_tree(entry, INSTALLED))
+
+
+def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
+    """Fill a new entry with what a worker in a cell of its own makes of some sources."""
+    ours, theirs = Pipe()
+
+    def command(scratch: Path) -> list[str]:
+        return [sys.executable, "-m", "autograder.building.bundle_worker", str(scratch), str(theirs.fileno())]
+
+    limits = replace(GRADING_CELL, wall_seconds=BUILD.wall_seconds + _MARGIN)
+    with ours, ExitStack() as stack:
+        with theirs:
+            process, _ = stack.enter_context(in_cell(command, tier, limits, pass_fds=(theirs.fileno(),)))
+        try:
+            send_tree(ours, sources)
+            reply = receive_message(ours)
+            if "diagnosis" in reply:
+                raise StudentError(Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])}))
+            write_received(receive_tree(ours, INSTALLED), entry)
+        except (EOFError, OSError, ParcelError, KeyError, ValueError, TypeError) as error:
+            process.kill()
+            raise GraderError(f"interface packages could not be built: {error!r}\n{ended(process).output}") from None

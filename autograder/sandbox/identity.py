@@ -1,0 +1,47 @@
+"""The user that a cell of root's runs as: a number that nobody on the machine has, another one for each cell.
+
+Root owns the kernel's settings, and a user namespace does not change that: who is root outside can write to them
+inside. Users of their own keep the cells apart, too, in all that the kernel counts or allows by user.
+"""
+
+from __future__ import annotations
+
+import os
+import pwd
+import socket
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+
+from autograder.exceptions import IsolationError
+
+# Debian reserves these, and uses none. A container that maps no more than 65,536 users has them.
+_USERS = range(47_000, 48_000)
+
+
+@contextmanager
+def ordinary_user() -> Iterator[int | None]:
+    """Claim a user for as long as the block lasts; None where this process is no root, and needs none.
+
+    A claim is a socket of the operating system's, which ends with its process.
+
+    Raises:
+        IsolationError: all are claimed.
+    """
+    if os.geteuid() != 0:
+        yield None
+        return
+    with closing(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)) as claim:
+        yield next(user for user in _USERS if _claimed(claim, user))
+
+
+def _claimed(claim: socket.socket, user: int) -> bool:
+    if user == _USERS[-1]:
+        raise IsolationError("a thousand cells of root's run on this machine at once: let some end")
+    with suppress(KeyError):
+        pwd.getpwuid(user)
+        return False
+    try:
+        claim.bind(f"\0autograder-user-{user}")
+    except OSError:
+        return False  # another cell's
+    return True
