@@ -11,6 +11,7 @@ from autograder import layout
 from autograder.causes import FAILED_AS_WELL, Cause, causes
 from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
+from autograder.notebook.cells_and_files import differences
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import run_in_worker
 from autograder.result import CheckResult, structure
@@ -27,13 +28,14 @@ class CheckReport:
     """The visible checks' outcome.
 
     `trouble` is what kept the package from being built or the node from running. `later` holds the titles of the checks
-    that judge the packages after they are handed in.
+    that judge the packages after they are handed in. `notices` are sentences about files that differ from their cells.
     """
 
     assignment: str
     lines: tuple[CheckResult, ...]
     trouble: Notice | None = None
     later: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -52,7 +54,8 @@ class CheckReport:
         return causes(self.lines, "" if self.trouble is None else self.trouble.sentence)
 
     def __repr__(self) -> str:
-        parts = [] if self.trouble is None else [repr(self.trouble), ""]
+        parts = [line for notice in self.notices for line in (notice, "")]
+        parts += [] if self.trouble is None else [repr(self.trouble), ""]
         for cause in self.causes:
             line = cause.check
             parts.append(_head(line))
@@ -70,7 +73,8 @@ class CheckReport:
         return "\n".join(parts)
 
     def _repr_html_(self) -> str:
-        trouble = "" if self.trouble is None else self.trouble._repr_html_()
+        notices = "".join(Notice(notice)._repr_html_() for notice in self.notices)
+        trouble = notices + ("" if self.trouble is None else self.trouble._repr_html_())
         colour = COLOURS[Outcome.PASSED] if self.passed else INFO
         rows = "".join(_cause(cause) for cause in self.causes)
         if self.passed and self.later:
@@ -98,7 +102,8 @@ def check(assignment: str, workspace: str | Path = "ws") -> CheckReport | Notice
         lines = tuple(structure(CheckResult, result) for result in answer["checks"])
     path = layout.judged_later(assignment)
     later = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else ()
-    return CheckReport(assignment, lines, trouble, tuple(later))
+    notices = differences(assignment, Path(workspace), suites.visible(assignment).sources)
+    return CheckReport(assignment, lines, trouble, tuple(later), notices)
 
 
 def _head(line: CheckResult) -> str:

@@ -55,7 +55,7 @@ def write(line: str, cell: str, original: Any) -> None:
     arguments = parse(original, line)
     path = Path(arguments.filename.strip("'\"")).expanduser()
     home = _workspace(path)
-    record, name, on_disk = _read_record(home), os.path.relpath(path, home), _text(path)
+    record, name, on_disk = read_record(home), os.path.relpath(path, home), _text(path)
     if arguments.append:
         original(line, cell)
         if on_disk is None or record.get(name) == digest(on_disk):  # cells alone have written it
@@ -103,7 +103,7 @@ def _keep_copy(path: Path, home: Path) -> Path:
     return copy
 
 
-def _read_record(home: Path) -> dict[str, str]:
+def read_record(home: Path) -> dict[str, str]:
     """Read what cells wrote last; nothing where there is no record, or none that can be read."""
     try:
         record = json.loads((home / RECORD).read_text())

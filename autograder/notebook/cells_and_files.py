@@ -1,0 +1,68 @@
+"""Finds files of an answer that differ from the cells that write them, for `check`. The files count."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+
+from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
+from autograder.intake.counting import differs
+from autograder.intake.exercises import SOURCE, text_of
+from autograder.intake.names import is_notebook, names_assignment
+from autograder.intake.notebooks import read_cells
+from autograder.intake.writefile import same_text, written_file
+from autograder.notebook.writefile import digest, read_record
+
+
+def differences(assignment: str, workspace: Path, packages: Sequence[str]) -> tuple[str, ...]:
+    """Return a sentence for each file that its cell would write otherwise.
+
+    The saved notebook may be older than the cells on the screen. So it is asked only about what no cell has written
+    since it was saved.
+
+    Args:
+        assignment: the name of the chapter.
+        workspace: the workspace, with `src`; the notebook lies beside it.
+        packages: the folders of `src` that are looked at.
+    """
+    notebook = _notebook(workspace.resolve().parent, assignment)
+    cells = {} if notebook is None else _texts(notebook)
+    record = {PurePosixPath(name): value for name, value in read_record(workspace).items()}
+    written = {path.relative_to("src"): value for path, value in record.items() if path.is_relative_to("src")}
+    found = []
+    for path in sorted(p for p in cells.keys() | written.keys() if p.parts and p.parts[0] in packages):
+        file, cell, last = workspace / "src" / path, cells.get(path), written.get(path)
+        is_answered = cell is not None and STILL_TO_BE_WRITTEN not in cell
+        if not file.is_file():
+            if is_answered:
+                found.append(f"{SOURCE / path} is not there: run the cell that writes it.")
+            continue
+        text = text_of(file.read_bytes())
+        if cell is not None and same_text(cell, text):
+            continue
+        if last is not None and last != digest(text):  # changed since a cell wrote it
+            is_stub = cell is not None and not is_answered and digest(cell) == last
+            found += [] if is_stub else [differs(path)]
+        elif is_answered and notebook is not None:
+            is_stale = last is not None and notebook.stat().st_mtime <= file.stat().st_mtime
+            found += [] if is_stale else [differs(path)]
+    return tuple(found)
+
+
+def _notebook(folder: Path, assignment: str) -> Path | None:
+    """Return the assignment's notebook in a folder, under whatever name, or None."""
+    usual = folder / f"{assignment}.ipynb"
+    if usual.is_file():
+        return usual
+    like = [p for p in folder.iterdir() if is_notebook(p.name) and names_assignment(p.name, assignment)]
+    return like[0] if len(like) == 1 else None
+
+
+def _texts(notebook: Path) -> dict[PurePosixPath, str]:
+    """Return what the cells of a notebook write below `ws/src`; the last cell that writes a file counts."""
+    try:
+        cells = read_cells(notebook.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    found = (written_file(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    return {path.relative_to(SOURCE): text for path, text in filter(None, found) if path.is_relative_to(SOURCE)}
