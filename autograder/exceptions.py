@@ -4,6 +4,7 @@ AutograderError
 ├── UsageError          the command was called wrongly, or names something that does not exist  (exit status 2)
 ├── StudentError        the submission is wrong; it gets a diagnosis                            (points are lost)
 └── GraderError         the grader or the machine failed; this is never a zero                  ("not graded")
+    ├── DoubtfulError   a program or the machine failed                                         (tried again)
     └── IsolationError  this machine cannot isolate a submission as asked
 
 A check's verdict, `checks.CheckFailed`, is an AutograderError, too. `reading` turns any other exception into a
@@ -33,6 +34,17 @@ class StudentError(AutograderError):
 
 class GraderError(AutograderError):
     """The grader failed. The submission is "not graded", which is not a zero."""
+
+
+class DoubtfulError(GraderError):
+    """A program or the machine failed, and nobody can tell which. The grading is tried again.
+
+    In the last try it is the program's fault, with this diagnosis: a machine does not fail so twice.
+    """
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        super().__init__(diagnosis.sentence)
+        self.diagnosis = diagnosis
 
 
 class IsolationError(GraderError):

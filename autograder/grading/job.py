@@ -39,6 +39,8 @@ class Job:
     out: Path = Path()  # the folder that gets `result.json`, `notebook.ipynb` and the pictures
     scratch: Path = Path()  # the cell's own file system; nothing in it outlives the cell
     seconds: float = GRADING_CELL.wall_seconds  # real time for all of it
+    # Whether no other try follows: an error that may be a program's or the machine's is then the program's.
+    last: bool = False
 
     def to_json(self) -> str:
         """Return the job as one line of JSON."""

@@ -34,6 +34,9 @@ DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to gra
 RunJob = Callable[[Job, float], CellReport]
 """Runs a job in a cell, for at most so many seconds."""
 
+Run = Callable[[float, bool], CellReport]
+"""Makes a try, for at most so many seconds; it is told whether this is the last one."""
+
 
 _machine = MachineLock()
 
@@ -83,7 +86,7 @@ def grade_submission(
     with new_result(out) as folder:
 
         def grade() -> tuple[Result | None, str]:
-            return _grade(lambda left: run_job(job, left), asked, folder, budget)
+            return _grade(lambda left, last: run_job(replace(job, last=last), left), asked, folder, budget)
 
         with _machine.shared():
             result, why = grade()
@@ -107,16 +110,16 @@ class Budget:
         """Whether a grading may begin."""
         return self.left >= LEAST * self.seconds
 
-    def spend(self, run: Callable[[float], CellReport]) -> CellReport:
+    def spend(self, run: Run, last: bool) -> CellReport:
         """Run something with the time that is left; what waits for its turn on the machine costs nothing."""
         began = time.monotonic()
         try:
-            return run(self.left)
+            return run(self.left, last)
         finally:
             self.left -= time.monotonic() - began
 
 
-def _grade(run: Callable[[float], CellReport], asked: Asked, folder: Path, budget: Budget) -> tuple[Result | None, str]:
+def _grade(run: Run, asked: Asked, folder: Path, budget: Budget) -> tuple[Result | None, str]:
     """Return a worker's result, whose files are in `folder`; None and why if there is none, and then its log is there.
 
     A worker may have been taken over. Nothing of its answer is used before it was checked.
@@ -125,7 +128,7 @@ def _grade(run: Callable[[float], CellReport], asked: Asked, folder: Path, budge
     while tries < TRIES and budget.is_enough:
         tries += 1
         empty(folder)
-        report = budget.spend(run)
+        report = budget.spend(run, tries == TRIES)
         said = f"The worker ended: {report.ending.value}, {report.returncode}.\n{report.output}"
         why = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
         if report.ending is Ending.WALL_TIME:

@@ -18,7 +18,7 @@ from datetime import datetime, timezone
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from autograder import layout
+from autograder import layout, patience
 from autograder.checks import suites
 from autograder.checks.suites import Suite
 from autograder.diagnosis import OK, Diagnosis
@@ -50,6 +50,7 @@ class Grading:
     def __init__(self, job: Job, suite: Suite) -> None:
         self._job, self._suite = job, suite
         self._folder = job.scratch / "assignment"
+        patience.begin(job.seconds)
         home = job.scratch / "home"
         home.mkdir(parents=True)
         # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
@@ -155,7 +156,9 @@ class Grading:
         self._workspace.scratch.mkdir()
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
-        plugin = GradingPlugin(self._workspace, self._job.seed, self._gallery, self._builds, self._job.scope)
+        plugin = GradingPlugin(
+            self._workspace, self._job.seed, self._gallery, self._builds, self._job.scope, self._job.last
+        )
         with self._phase("checks"):
             run(self._suite.files, plugin)
         wanted = self._job.scope.only or [check.id for check in self._suite.checks]

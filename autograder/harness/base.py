@@ -14,7 +14,7 @@ from operator import attrgetter
 from typing import Any, TypeVar
 
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.exceptions import GraderError, StudentError
+from autograder.exceptions import DoubtfulError, StudentError
 from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
 from autograder.harness.message_text import format_message
@@ -279,6 +279,8 @@ class Harness(ExitStack, ABC):
             )
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
         if not matched:
-            raise GraderError(
-                f"the grader and the student's node did not discover each other within {MATCH_SECONDS:.0f} s"
+            sentence = (
+                f"Your node and the grader did not discover each other within {MATCH_SECONDS:.0f} s: keep the "
+                "publishers, subscriptions and services that you make, and make all of them with rclpy."
             )
+            raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.exceptions import GraderError, StudentError
+from autograder.exceptions import DoubtfulError, StudentError
 from autograder.harness.base import Harness, Program
 from autograder.harness.matching import connected
 from autograder.harness.steps import next_instant, tick_of
@@ -82,7 +82,7 @@ class SteppedHarness(Harness):
     def step(self, dt_ns: int) -> None:
         """Let the programs take what was published, then run the timers that are due.
 
-        A message that is lost on the way is a GraderError: loopback loses none by itself.
+        A message that is lost on the way is a DoubtfulError: loopback loses none by itself.
         """
         end = self._now_ns + dt_ns
         while True:
@@ -143,7 +143,11 @@ class SteppedHarness(Harness):
         for channel in reply.lost:
             # What others of the student's programs claim to have sent may be forged; what the grader sent is not.
             if pending[channel] and channel in self._grader_node.written.values():
-                raise GraderError(f"messages that were sent to the student's node did not arrive: {channel}")
+                sentence = (
+                    f"A message that was sent to your node on {channel.split()[0]} did not arrive: do not replace "
+                    "functions of rclpy, and take each message that comes."
+                )
+                raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
         self._add_pending(reply.sent, but=stepped)
         self._expect(reply.sent)
         self._collect()

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from autograder import patience
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import protocol
@@ -26,10 +27,12 @@ from autograder.lockstep.failures import (
 from autograder.lockstep.protocol import START_NS, Description, ProtocolError, Reply
 from autograder.sandbox import Process
 from autograder.sandbox.launcher import launch
+from autograder.sandbox.procfs import waited_ns
 from autograder.sandbox.spec import Sandbox
 
 HOST = Path(__file__).with_name("lockstep_host")
 QUIT_SECONDS = 20.0
+HARMLESS_SECONDS = 1.0  # for which a program may keep the grader waiting, whatever the reason
 _TICK = 0.5  # s between two looks at how much a silent program has computed
 
 
@@ -83,6 +86,7 @@ class Stepper:
         self._write_fd = our_write
         self._read_fd = our_read
         self._buffer = bytearray()
+        self._held = 0.0  # s for which it has kept the grader waiting
         self._selector = selectors.DefaultSelector()
         self._selector.register(our_read, selectors.EVENT_READ)
 
@@ -119,6 +123,7 @@ class Stepper:
         return self
 
     def __exit__(self, *_: object) -> None:
+        patience.add_held(self._held_seconds())
         self.process.__exit__()
         self._selector.close()
         os.close(self._read_fd)
@@ -148,7 +153,8 @@ class Stepper:
 
     def _read_line(self, timeout: Timeout, on_timeout: Kind) -> bytes:
         """Return one line, or b'' at the end of the stream."""
-        deadline, before = time.monotonic() + timeout.seconds, None
+        began, before = time.monotonic(), None
+        deadline = began + patience.bounded(timeout.seconds)
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 raise StudentError(diagnose_too_much(self.process.output))
@@ -160,14 +166,27 @@ class Stepper:
                 before = now if before is None else before
                 if now - before > timeout.cpu_seconds:
                     raise self._no_answer(on_timeout, f"{timeout.cpu_seconds:.0f} s of computing")
+                self._require_patience(time.monotonic() - began)
                 continue
             chunk = os.read(self._read_fd, 65536)
             if not chunk:
                 return b""
             self._buffer += chunk
+        self._held += time.monotonic() - began
+        self._require_patience()
         line, _, rest = bytes(self._buffer).partition(b"\n")
         self._buffer = bytearray(rest)
         return line + b"\n"
+
+    def _require_patience(self, waiting: float = 0.0) -> None:
+        """Raise a StudentError if the programs have held the grading for too long, this one for `waiting` just now."""
+        if patience.is_held(self._held + waiting) and patience.is_held(self._held_seconds() + waiting):
+            raise patience.too_slow()
+
+    def _held_seconds(self) -> float:
+        """Return for how long it kept the grader waiting, but for the time in which it was ready and could not run."""
+        waited = waited_ns((self.process.innermost(),)).values() if self._held > HARMLESS_SECONDS else ()
+        return max(0.0, self._held - max(waited, default=0) / 1e9)
 
     def _no_answer(self, kind: Kind, waited: str) -> StudentError:
         return StudentError(diagnose_no_answer(kind, waited, self.process.output))

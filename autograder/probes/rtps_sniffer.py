@@ -12,7 +12,8 @@ from __future__ import annotations
 import socket
 import struct
 
-from autograder.exceptions import GraderError
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import DoubtfulError
 
 # No program would choose these, and their ports are above those that the system gives away.
 DOMAINS = range(215, 232)
@@ -24,7 +25,7 @@ class RtpsSniffer:
     """Listens in a domain that has no participant; `domain` is its `ROS_DOMAIN_ID`."""
 
     def __init__(self) -> None:
-        """Find a free domain; raise a GraderError if each of `DOMAINS` has participants."""
+        """Find a free domain; raise a DoubtfulError if each of `DOMAINS` has participants."""
         for domain in DOMAINS:
             base = 7400 + 250 * domain
             first = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -36,7 +37,8 @@ class RtpsSniffer:
             self.domain = domain
             self._sockets = (first, _member(base))
             return
-        raise GraderError(f"there are participants in all DDS domains from {DOMAINS[0]} to {DOMAINS[-1]}")
+        sentence = f"Programs are in all DDS domains from {DOMAINS[0]} to {DOMAINS[-1]}: end those that you start."
+        raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
 
     def take_announcements(self) -> bool:
         """Return whether a participant has announced itself in the domain since the last call."""

@@ -10,8 +10,10 @@ import socket
 import subprocess
 import tempfile
 import threading
+from dataclasses import replace
 from pathlib import Path
 
+from autograder import patience
 from autograder.prefork import seccomp
 from autograder.prefork.client import PLACEHOLDER_COMMAND, TIMEOUT, ForkError, ForkServer
 from autograder.prefork.request import ForkRequest
@@ -55,7 +57,13 @@ def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (),
         spec: the sandbox.
         pass_fds: descriptors that it inherits.
         profile: for a Python script, what the interpreter from which it is forked has imported (`prefork.profiles`).
+
+    Raises:
+        StudentError: the grading has no time left for programs. What runs when the time is over is stopped.
     """
+    patience.require()
+    limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
+    spec = replace(spec, limits=limits)
     if profile is not None and current_tier() is Tier.BUBBLEWRAP:
         process = _forked(command[1:], spec, pass_fds, profile)
         if process is not None:

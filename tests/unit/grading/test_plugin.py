@@ -34,13 +34,13 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str, scope: Scope = ALL) -> GradingPlugin:
+    def grade_text(text: str, scope: Scope = ALL, last: bool = False) -> GradingPlugin:
         # A name of its own: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), scope=scope)
+        plugin = GradingPlugin(workspace, 7, Gallery(tmp_path / "out"), scope=scope, last=last)
         run((path,), plugin)
         return plugin
 
@@ -278,6 +278,34 @@ def test_what_no_data_cause_is_the_grader_s_own_failure_whatever_is_in_hand(grad
             raise {error}
         """)
     assert (len(plugin.failures), plugin.unjudged) == (1, {})
+
+
+def test_an_error_of_a_program_or_the_machine_is_the_program_s_in_the_last_try(grade: Grade) -> None:
+    text = """
+        from autograder.exceptions import DoubtfulError
+        from autograder.reading import hold
+
+        @check(points=1, group="g")
+        def test_matches():
+            '''It is so.'''
+            raise DoubtfulError(Diagnosis(Kind.STUCK, "They did not discover each other."))
+
+        @check(points=1, group="g")
+        def test_reads():
+            '''It is so.'''
+            hold("What /add answered")
+            raise RuntimeError
+
+        @check(points=1, group="g")
+        def test_other():
+            '''It is so, too.'''
+    """
+    assert len(grade(text).failures) == 2
+    plugin = grade(text, last=True)
+    assert plugin.failures == []
+    assert [result.outcome for result in plugin.results.values()] == [Outcome.FAILED, Outcome.FAILED, Outcome.PASSED]
+    assert plugin.results["matches"].message == "They did not discover each other."
+    assert list(plugin.unjudged) == ["reads"]
 
 
 def test_a_module_that_cannot_be_imported_is_the_grader_s_own_failure(grade: Grade) -> None:

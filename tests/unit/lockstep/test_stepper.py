@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
+from autograder import patience
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.lockstep import Stepper, UnsteppableError, stepper
@@ -51,6 +53,26 @@ signal.pause()
     program = host(answers)
     program.wait_ready()
     assert program.step([10**9], {"/scan": 1}).sent == {"/cmd_vel": 3}
+
+
+def test_a_program_that_holds_up_each_step_a_little_uses_up_the_patience(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(patience._Account, "held", 0.0)
+    monkeypatch.setattr(patience._Account, "deadline", time.monotonic() + 600.0)
+    monkeypatch.setattr(patience, "HELD_SECONDS", 1.0)
+    program = host(rf"""
+import time
+while os.read(read, 999):
+    time.sleep(0.3)
+    os.write(write, b'{DONE}')
+""")
+
+    def steps() -> None:
+        for _ in range(20):
+            program.step([10**9], {})
+
+    assert _kind(steps) is Kind.TIMED_OUT
 
 
 def test_a_line_that_comes_in_pieces_is_read_whole(host: Open) -> None:

@@ -1,0 +1,59 @@
+"""How long a submission may keep the grader waiting, in all."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from autograder import patience
+from autograder.diagnosis import Kind
+from autograder.exceptions import StudentError
+from autograder.sandbox import Sandbox
+from autograder.sandbox.launcher import launch
+
+
+@pytest.fixture(autouse=True)
+def account(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give each test an account of its own, and none to those that follow."""
+    for name in ("deadline", "total", "held"):
+        monkeypatch.setattr(patience._Account, name, getattr(patience._Account, name))
+
+
+def test_waits_are_cut_to_what_is_left_of_the_grading(monkeypatch: pytest.MonkeyPatch) -> None:
+    patience.begin(100.0 / (1 - patience.RESERVE))
+    assert patience.bounded(30.0) == 30.0
+    assert 95.0 < patience.bounded(600.0) <= 100.0
+    assert not patience.is_late()
+    patience.require()
+    later = time.monotonic() + 101.0
+    monkeypatch.setattr(time, "monotonic", lambda: later)
+    assert patience.is_late()
+    assert patience.bounded(30.0) == 0.0
+    with pytest.raises(StudentError, match="2 minutes in all") as caught:
+        patience.require()
+    assert caught.value.diagnosis.kind is Kind.TIMED_OUT
+
+
+def test_programs_that_hold_the_grading_use_it_up() -> None:
+    patience.begin(900.0)
+    patience.add_held(patience.HELD_SECONDS - 1.0)
+    patience.require()
+    assert not patience.is_held(0.5)
+    assert patience.is_held(1.5)
+    patience.add_held(1.5)
+    with pytest.raises(StudentError, match="kept the grader waiting for 180 s in all"):
+        patience.require()
+
+
+def test_without_a_grading_nothing_is_counted() -> None:
+    patience.add_held(1e6)
+    assert patience.bounded(30.0) == 30.0
+    patience.require()
+
+
+def test_no_program_is_started_when_the_time_is_over(tmp_path: Path) -> None:
+    patience.begin(0.0)
+    with pytest.raises(StudentError, match="in all, and the grader waits no longer"):
+        launch(["true"], Sandbox(tmp_path))
