@@ -65,13 +65,15 @@ def _constants() -> tuple[int | None, int | None]:
     return name.value, cast(handle, c_void_p).value
 
 
+_keep: list[Any] = []  # what C code points to, for as long as the process lives
+
+
 class Introspection:
-    """The structures of types, which live as long as this object."""
+    """The structures of types, each made once."""
 
     def __init__(self, members: Members) -> None:
         self._members = members
         self._made: dict[tuple[str, ...], MessageSupport] = {}
-        self._keep: list[Any] = []
 
     def support(self, kind: rosidl.NamespacedType) -> MessageSupport:
         """Return the structure of a message's type."""
@@ -82,7 +84,7 @@ class Introspection:
             namespace, own = "__".join(kind.namespaces).encode(), kind.name.encode()
             described = _Members(namespace, own, len(members), 0, False, array, None, None)
             self._made[name] = MessageSupport(*_constants()[:1], addressof(described), *_constants()[1:])
-            self._keep += [array, described]
+            _keep.extend((array, described, self._made[name]))
         return self._made[name]
 
     def _member(self, name: str, kind: rosidl.AbstractType) -> _Member:

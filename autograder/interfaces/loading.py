@@ -18,6 +18,7 @@ from autograder.interfaces.definitions import (
     read,
     require_uses,
 )
+from autograder.interfaces.prefix import exists
 from autograder.packages import find_packages
 
 if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
@@ -71,7 +72,7 @@ def _gather(
     if package in texts:
         return
     try:
-        if _exists(ros, package, None):
+        if exists(ros, package, None):
             raise DefinitionError("package.xml", f"ROS has a package {package} of its own: give yours another name")
         own = _texts(folder)
         definitions = read(package, own)
@@ -87,17 +88,12 @@ def _gather(
 def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
     """Raise a DefinitionError unless each message of another package is there."""
 
-    def exists(package: str, message: str | None) -> bool:
+    def is_there(package: str, message: str | None) -> bool:
         if package in texts:
             return message is None or f"msg/{message}.msg" in dict(texts[package])
-        return _exists(ros, package, message)
+        return exists(ros, package, message)
 
-    require_uses(definitions, exists)
-
-
-def _exists(ros: tuple[Path, ...], package: str, message: str | None) -> bool:
-    folders = (prefix / "share" / package / "msg" for prefix in ros)
-    return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
+    require_uses(definitions, is_there)
 
 
 def _texts(folder: Path) -> dict[str, str]:

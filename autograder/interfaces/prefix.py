@@ -1,4 +1,4 @@
-"""From the texts of an interface package to a prefix that can be loaded: cached, or built in a process of its own."""
+"""From the texts of an interface package of ours to a prefix with it: cached, or built in a process of its own."""
 
 from __future__ import annotations
 
@@ -27,9 +27,7 @@ class GenerationError(InterfaceError):
     """The definitions read well, but the generators or the compiler would not have them."""
 
 
-def build(
-    package: str, files: Mapping[str, str], *, cache: Cache | None = None, underlays: tuple[Path, ...] = ()
-) -> Path:
+def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None) -> Path:
     """Return a prefix with the package built from its definitions, from the cache if it was built before.
 
     The prefix stays in the cache for an hour at least.
@@ -38,7 +36,6 @@ def build(
         package: its name.
         files: texts by their path in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
         cache: where to keep it, this user's own cache by default.
-        underlays: prefixes that `build` returned for the other packages that this one uses.
 
     Raises:
         DefinitionError: a definition is wrong; names file and line.
@@ -47,21 +44,20 @@ def build(
     """
     ros = activate()
     definitions = read(package, files)
-    prefixes = (*underlays, *ros.prefixes)
-    require_uses(definitions, lambda name, message: _exists(prefixes, name, message))
+    require_uses(definitions, lambda name, message: exists(ros.prefixes, name, message))
     recipe = {
         "package": package,
         "texts": {definition.path: definition.text for definition in definitions},
         "uses": sorted(set(packages_used(definitions)) - {package}),
-        "underlays": [str(path) for path in underlays],
-        "prefixes": [str(path) for path in prefixes],
+        "prefixes": [str(path) for path in ros.prefixes],
     }
     identity_text = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
     key = hashlib.sha256(identity_text.encode()).hexdigest()[:40]
     return (cache or Cache.default("interfaces")).get(key, partial(_make, package, json.dumps(recipe)))
 
 
-def _exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
+def exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
+    """Return whether a package with messages is in one of the prefixes, or a message of it."""
     folders = (prefix / "share" / package / "msg" for prefix in prefixes)
     return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
 

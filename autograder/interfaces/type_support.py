@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from autograder.interfaces.cdr import MAX_BYTES
 from autograder.interfaces.introspection import IDENTIFIER, MessageSupport
 
 LITTLE_ENDIAN = b"\x00\x01"  # how a header of CDR begins
@@ -180,8 +181,8 @@ def _functions() -> tuple[Any, ...]:
             first,
             first,
         ] and here == first + HEADER <= end:
-            little = ctypes.string_at(first, HEADER)[:2] == LITTLE_ENDIAN
-            _messages[number] = ctypes.string_at(here, end - here) if little else None
+            readable = ctypes.string_at(first, HEADER)[:2] == LITTLE_ENDIAN and end - here <= MAX_BYTES
+            _messages[number] = ctypes.string_at(here, end - here) if readable else None
         return True  # a message that cannot be read is taken, too, and counts
 
     def maximum_size(bounds: Any) -> int:

@@ -1,4 +1,4 @@
-"""Measures the cost of a loadable package of a message, a service and an action: built, cached, and by colcon."""
+"""Measures the cost of a package of a message, a service and an action: as plain classes, and built by colcon."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from autograder.interfaces import Cache
 from autograder.interfaces.definitions import KINDS
-from autograder.interfaces.prefix import build
+from autograder.interfaces.loading import Texts, classes
 from autograder.proof.mutants import write_reference
+from autograder.ros import activate
 
 PACKAGE = "my_robot_interfaces"
 RUNS = 3
@@ -23,19 +24,22 @@ RUNS = 3
 def figures() -> dict[str, float]:
     """Return seconds and, where there is something to compute, core-seconds: medians of several runs, colcon's of one.
 
-    `interface.cold_*` builds, `interface.cached_s` finds what was built, `interface.colcon_*` is `colcon build`.
+    `interface.cold_*` makes the classes and their type supports, `interface.cached_s` finds what was made, and
+    `interface.colcon_*` is `colcon build`.
     """
+    activate()
     cold: list[tuple[float, float]] = []
     cached: list[tuple[float, float]] = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_reference((PACKAGE,), folder)
         source = folder / "src" / PACKAGE
-        texts = {f"{kind}/{path.name}": path.read_text() for kind in KINDS for path in (source / kind).iterdir()}
-        for run in range(RUNS):
+        paths = sorted(path for kind in KINDS for path in (source / kind).iterdir())
+        texts = tuple((f"{path.parent.name}/{path.name}", path.read_text()) for path in paths)
+        for _ in range(RUNS):
+            classes.cache_clear()
             for costs in (cold, cached):
-                cache = Cache(folder / "cache" / str(run))
-                costs.append(_cost(lambda cache=cache: build(PACKAGE, texts, cache=cache)))  # type: ignore[misc]
+                costs.append(_cost(lambda: _make(texts)))
         colcon = _cost(lambda: _colcon(folder))
     return {
         "interface.cold_s": round(statistics.median(seconds for seconds, _ in cold), 3),
@@ -44,6 +48,15 @@ def figures() -> dict[str, float]:
         "interface.colcon_s": round(colcon[0], 3),
         "interface.colcon_core_s": round(colcon[1], 3),
     }
+
+
+def _make(texts: Texts) -> None:
+    """Make the classes, and the type supports for which rclpy asks."""
+    package = classes(((PACKAGE, texts),))
+    action: Any = package.action.DriveDistance
+    services = (package.srv.CheckTrip, action.Impl.SendGoalService, action.Impl.GetResultService)
+    for kind in (package.msg.RobotStatus, action.Impl.FeedbackMessage, *services):
+        type(kind).__import_type_support__()
 
 
 def _colcon(folder: Path) -> None:
