@@ -9,6 +9,7 @@ student's code runs in; the trusted side compares its values and believes nothin
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import importlib
 import io
@@ -69,7 +70,8 @@ def _resolved(made: list[Any], value: Any) -> Any:
 
 def _exception(error: Exception) -> dict[str, Any]:
     trace = "".join(traceback.format_exception(error))
-    return {"raised": type(error).__name__, "message": str(error)[:TEXT], "traceback": trace[-TEXT:]}
+    kinds = [kind.__name__ for kind in type(error).__mro__ if getattr(builtins, kind.__name__, kind) is kind]
+    return {"raised": type(error).__name__, "kinds": kinds, "message": str(error)[:TEXT], "traceback": trace[-TEXT:]}
 
 
 if __name__ == "__main__":

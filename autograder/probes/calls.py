@@ -34,6 +34,7 @@ from autograder.workspace import Workspace
 REFERENCE = "$made"  # as in call_host.py, which runs alone in the sandbox
 HOST = Path(__file__).with_name("call_host.py")
 MAX_ANSWER = 1024 * 1024
+MAX_KINDS = 20
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,7 @@ class StepResult:
     type: str = ""  # the name of the returned value's type when JSON cannot hold it; empty otherwise
     raised: str = ""  # the name of the exception, `message` its text; empty without one
     message: str = ""
+    kinds: tuple[str, ...] = ()  # the names of the exceptions that it is an instance of, its own first
     arguments: tuple[Any, ...] = ()  # the arguments after the call, to see whether it changed them
     printed: str = ""  # what it printed
 
@@ -175,7 +177,7 @@ def _not_imported(module: str, failed: object) -> Diagnosis:
 
 def _outcome(data: object) -> StepResult:
     data = data if isinstance(data, dict) else {}
-    arguments = data.get("arguments")
+    arguments, kinds = data.get("arguments"), data.get("kinds")
     beyond = beyond_bounds(data.get("value")) or beyond_bounds(arguments)
     if beyond:
         return StepResult(type=beyond)
@@ -184,6 +186,7 @@ def _outcome(data: object) -> StepResult:
         type=str(data.get("type", "")),
         raised=str(data.get("raised", "")),
         message=str(data.get("message", ""))[:300],
+        kinds=tuple(map(str, kinds[:MAX_KINDS])) if isinstance(kinds, list) else (),
         arguments=tuple(arguments) if isinstance(arguments, list) else (),
         printed=str(data.get("printed", "")),
     )

@@ -140,7 +140,7 @@ def _in_type_of(like: Value, value: Value) -> Value:
         return value
     if type(like) is float:
         return float(value)
-    return int(value) if type(like) is int else value
+    return int(value) if type(like) is int and math.isfinite(value) else value
 
 
 def differences(values: Mapping[str, Value], wanted: Mapping[str, Value]) -> list[str]:

@@ -24,6 +24,14 @@ class Liar(float):
     def __eq__(self, other):
         return True
 
+class Absent(ValueError):
+    pass
+
+class Impostor(Exception):
+    pass
+
+Impostor.__name__ = 'ValueError'
+
 class Counter:
     def __init__(self, start=0):
         self.count = start
@@ -46,6 +54,12 @@ def gone():
 
 def fails():
     raise ValueError('no such thing')
+
+def absent():
+    raise Absent('none')
+
+def pretends():
+    raise Impostor
 
 def strange():
     return object()
@@ -91,6 +105,14 @@ def test_a_subclass_that_equals_everything_comes_back_as_a_plain_number(workspac
     assert type(outcome.value) is float
     assert outcome.value == 1.0
     assert outcome.value != 2.0
+
+
+def test_an_exception_is_known_by_what_it_is_an_instance_of(workspace: Workspace) -> None:
+    absent, pretender = calls(workspace, "demo", call("absent"), call("pretends"))
+    assert absent.raised == "Absent"
+    assert absent.kinds == ("Absent", "ValueError", "Exception", "BaseException", "object")
+    assert pretender.raised == "ValueError"
+    assert "ValueError" not in pretender.kinds
 
 
 def test_exceptions_and_strange_values_are_named(workspace: Workspace) -> None:

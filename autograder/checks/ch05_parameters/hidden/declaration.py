@@ -10,7 +10,16 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED, Wanted
 from autograder.checks.ch05_parameters.support.robot import Robot
-from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, near_misses, shortened, value_text
+from autograder.probes.parameters import (
+    TYPES,
+    Value,
+    as_declared,
+    differences,
+    missing_sentence,
+    near_misses,
+    shortened,
+    value_text,
+)
 
 check = group("declaration")
 SPELT = {
@@ -54,7 +63,8 @@ def test_names(robot: Robot) -> None:
 @check(
     points=2,
     holds=contract.TABLE_ROWS,
-    needs=("names",),
+    needs=("starts",),
+    after=("names",),
     doc=contract.PARAMETERS,
 )
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
@@ -62,9 +72,9 @@ def test_names(robot: Robot) -> None:
 def test_types(robot: Robot) -> None:
     """Each has the type of the table."""
     wrong = [
-        f"{name} is {TYPES.get(descriptor.type, 'an array')} instead of {TYPES[WANTED[name].type]}"
-        for name, descriptor in robot.parameters.descriptors(*WANTED).items()
-        if descriptor.type != WANTED[name].type
+        f"{name} is {_type_text(robot.descriptors.get(name))} instead of {TYPES[wanted.type]}"
+        for name, wanted in WANTED.items()
+        if name not in robot.descriptors or robot.descriptors[name].type != wanted.type
     ]
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
@@ -72,22 +82,23 @@ def test_types(robot: Robot) -> None:
 @check(
     points=1,
     holds=contract.TABLE_ROWS,
-    needs=("types",),
+    needs=("starts",),
+    after=("names", "types"),
 )
 @hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
     """Started without any values, it has the defaults of the table."""
-    wrong = differences(robot.initial, DEFAULTS)
+    wrong = differences(as_declared(robot.initial, DEFAULTS), DEFAULTS)  # another check judges the types
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=_share(len(wrong)))
 
 
-@check(points=1, holds="described", needs=("names",))
+@check(points=1, holds="described", needs=("starts",), after=("names",))
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
     """Each has a description, which names the unit where there is one."""
-    described = robot.parameters.descriptors(*WANTED)
-    poor = [name for name, wanted in WANTED.items() if not _is_description(described[name].description, wanted.unit)]
-    named = [f"{name} ({value_text(described[name].description)})" for name in poor]
+    described = {name: found.description for name, found in robot.descriptors.items()}
+    poor = [name for name, wanted in WANTED.items() if not _is_description(described.get(name, ""), wanted.unit)]
+    named = [f"{name} ({value_text(described.get(name))})" for name in poor]
     expect(not poor, f"The description is missing, or names no unit: {', '.join(named)}.", fraction=_share(len(poor)))
 
 
@@ -101,16 +112,18 @@ def test_descriptions(robot: Robot) -> None:
         "control_frequency",
         "battery_threshold",
     ),
-    needs=("names",),
+    needs=("starts",),
+    after=("names",),
     doc=contract.PARAMETERS,
 )
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.")
 def test_ranges(robot: Robot, draw: random.Random) -> None:
     """Values outside the limits of the table are refused, and the descriptors say the limits."""
-    described = robot.parameters.descriptors(*WANTED)
     limited = {name: wanted for name, wanted in WANTED.items() if wanted.low is not None}
-    wrong = {name: why for name, wanted in limited.items() if (why := _range_fault(wanted, described[name]))}
+    wrong = {
+        name: why for name, wanted in limited.items() if (why := _range_fault(wanted, robot.descriptors.get(name)))
+    }
     for name, wanted in limited.items():
         for value in _outside(wanted, draw):
             answer = robot.change({name: value})
@@ -121,7 +134,7 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     expect(not wrong, f"{told}.", fraction=round(0.8 * (1 - len(wrong) / len(limited)), 2))
 
 
-@check(points=1, holds="robot_name", needs=("names",))
+@check(points=1, holds="robot_name", needs=("starts",), after=("names",))
 @hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
     """The robot's name is fixed once it has started."""
@@ -129,14 +142,15 @@ def test_read_only(robot: Robot) -> None:
     answer = robot.parameters.change({"robot_name": "Somebody"})
     expect(not answer.accepted, "Asked to call itself Somebody, the running node did.")
     expect(robot.parameters.values("robot_name") == before, "It refused another name, and changed it all the same.")
-    fixed = [name for name, found in robot.parameters.descriptors(*WANTED).items() if found.read_only]
+    fixed = [name for name, found in robot.descriptors.items() if found.read_only]
     expect(fixed == ["robot_name"], f"Its descriptors say read-only of: {', '.join(fixed) or 'nothing'}.")
 
 
 @check(
     points=1,
     holds=contract.TABLE_ROWS,
-    needs=("types",),
+    needs=("starts",),
+    after=("names", "types"),
 )
 @hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
 def test_typed(robot: Robot) -> None:
@@ -150,17 +164,21 @@ def test_typed(robot: Robot) -> None:
             ("battery_threshold", 20.0),
             ("control_frequency", "10"),
         )
-        if robot.parameters.change({name: value}).accepted
+        if name in robot.initial and robot.parameters.change({name: value}).accepted
     ]
     expect(not taken, f"It took {', '.join(taken)}.", fraction=_share(len(taken)))
+    absent = near_misses(WANTED, robot.initial)
+    expect(not absent, missing_sentence(WANTED, robot.initial), fraction=_share(len(absent)))
 
 
-@check(points=1, holds="no-others", needs=("names",))
+@check(points=1, holds="no-others", needs=("starts",), after=("names",))
 @hint("Every declared name has work to do: what is not in the table is not declared.")
 @hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:
     """It declares nothing else, and refuses a name that was not declared."""
-    others = sorted(robot.parameters.names() - set(WANTED))
+    found = robot.parameters.names()
+    expect(bool(found & set(WANTED)), "It declares none of the parameters of the table.")
+    others = sorted(found - set(WANTED))
     expect(not others, f"It also declares {shortened(', '.join(others))}.")
     name = draw.choice(("safty_distance", "max_linear_velocty", "control_freqency"))
     expect(not robot.parameters.change({name: 1.0}).accepted, f"It took 1.0 for {name}, a name that nobody declared.")
@@ -181,7 +199,13 @@ def _is_description(text: str, unit: str) -> bool:
     return bool(words) and all(words & SPELT[part] for part in unit.split("/") if part)
 
 
-def _range_fault(wanted: Wanted, found: ParameterDescriptor) -> str:
+def _type_text(found: ParameterDescriptor | None) -> str:
+    return "not declared" if found is None else TYPES.get(found.type, "an array")
+
+
+def _range_fault(wanted: Wanted, found: ParameterDescriptor | None) -> str:
+    if found is None:
+        return "it is not declared"
     ranges = [*found.floating_point_range, *found.integer_range]
     if not ranges:
         return "no range"

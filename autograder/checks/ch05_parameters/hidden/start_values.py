@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator
 from dataclasses import dataclass
+from random import Random
 
 import pytest
 
@@ -37,30 +37,37 @@ class Configured:
     threshold: int
 
 
+def start_numbers(seed: int) -> dict[str, float]:
+    """Return drawn numbers for the five parameters that have limits, in the order of `Configured`."""
+    drawn = Random(f"{seed}:custom")
+    velocity, safety = drawn.randrange(40, 80) / 100, drawn.randrange(70, 110) / 100
+    return {
+        "max_linear_velocity": velocity,
+        "safety_distance": safety,
+        "slow_distance": round(safety + drawn.randrange(30, 60) / 100, 2),
+        "control_frequency": drawn.choice((20.0, 25.0, 50.0)),
+        "battery_threshold": drawn.randrange(35, 65),
+    }
+
+
 @pytest.fixture(scope="module")
 def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[Configured]:
     """A node started with drawn values for all six parameters."""
-    drawn = random.Random(f"{seed}:custom")
-    velocity, safety = drawn.randrange(40, 80) / 100, drawn.randrange(70, 110) / 100
-    slow = round(safety + drawn.randrange(30, 60) / 100, 2)
-    frequency, threshold = drawn.choice((20.0, 25.0, 50.0)), drawn.randrange(35, 65)
-    values: dict[str, Value] = {
-        "robot_name": f"Robot{drawn.randrange(100, 999)}",
-        "max_linear_velocity": velocity,
-        "safety_distance": safety,
-        "slow_distance": slow,
-        "control_frequency": frequency,
-        "battery_threshold": threshold,
-    }
-    values = as_declared(values, shared_robot.get().initial)
+    present = shared_robot.get()
+    numbers = start_numbers(seed)
+    drawn = {name: present.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()}
+    velocity, safety, slow, frequency, threshold = drawn.values()
+    values: dict[str, Value] = {"robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}", **drawn}
+    values = as_declared({**values, "battery_threshold": int(threshold)}, present.initial)
     with Robot(workspace, values) as robot:
-        yield Configured(robot, values, velocity, safety, slow, frequency, threshold)
+        yield Configured(robot, values, velocity, safety, slow, frequency, int(threshold))
 
 
 @check(
     points=2,
     holds=contract.TABLE_ROWS,
-    needs=("names",),
+    needs=("starts",),
+    after=("names", "types"),
     doc=contract.ARGUMENTS,
 )
 @hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
@@ -71,7 +78,7 @@ def test_overrides(configured: Configured) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
 
 
-@check(points=2, holds="max_linear_velocity", needs=("overrides",))
+@check(points=2, holds="max_linear_velocity", needs=("starts",), after=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
 def test_start_speed(configured: Configured) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
@@ -79,7 +86,7 @@ def test_start_speed(configured: Configured) -> None:
     expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
 
 
-@check(points=2, holds="control_frequency", needs=("overrides",))
+@check(points=2, holds="control_frequency", needs=("starts",), after=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
 def test_start_rate(configured: Configured) -> None:
     """It publishes at the frequency that it was started with."""
@@ -88,20 +95,24 @@ def test_start_rate(configured: Configured) -> None:
     )
 
 
-@check(points=1, holds="battery_threshold", needs=("overrides",))
+@check(points=1, holds="battery_threshold", needs=("starts",), after=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
 def test_start_threshold(configured: Configured) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
-    for charge, speed in ((configured.threshold - 5, 0.0), (configured.threshold + 5, configured.velocity)):
-        configured.robot.charge(charge)
-        situation = f"With a threshold of {configured.threshold} percent and a charge of {charge}"
-        expect_speed(configured.robot.speed_at(3.0), speed, situation)
+    situation = f"With a threshold of {configured.threshold} percent and a charge of"
+    low, high = configured.threshold - 5, configured.threshold + 5
+    configured.robot.charge(low)
+    expect_speed(configured.robot.speed_at(3.0), 0.0, f"{situation} {low}")
+    configured.robot.charge(high)
+    expect(
+        configured.robot.speed_at(3.0) > 0.0, f"{situation} {high}, it does not drive."
+    )  # how fast is no matter here
 
 
-@check(points=3, holds="safety_distance", needs=("start_speed", "start_threshold"))
+@check(points=3, holds="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
-def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) -> None:
+def test_stops(configured: Configured, draw: Random, gallery: Gallery) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
     recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
@@ -114,27 +125,30 @@ def test_stops(configured: Configured, draw: random.Random, gallery: Gallery) ->
     gallery.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
-    expect(end < configured.safety + NEAR, sentence, fraction=0.5)
+    expect(end < configured.safety + NEAR, sentence, fraction=0.5 if ahead[0] - end > NEAR else 0.0)
 
 
-@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), needs=("overrides",))
+@check(points=2, holds=("contradictory-start", "contradiction", "reason", "ranges"), needs=("starts",))
 @hint("After declaring: ask contradiction(...) about the two values, and raise ValueError if it says something.")
 @hint("Equal distances do not fit together, either: it divides by their difference.")
 @hint("At a value outside of a range, declare_parameter raises: let that end the node, too.")
-def test_contradictory_start(workspace: Workspace, draw: random.Random) -> None:
+def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
-    distance = draw.randrange(40, 90) / 100
-    for safety, slow in ((round(distance + 0.4, 2), distance), (distance, distance)):
+    distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
+    for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
         values = {"safety_distance": safety, "slow_distance": slow}
-        words = refusal(workspace, values)
+        words = refusal(workspace, as_declared(values, robot.initial))
         told = f"safety_distance {safety} and slow_distance {slow}"
-        expect(words is not None, f"Started with {told}, the node runs.")
+        fraction = 0.75 if safety == slow else 0.0
+        expect(words is not None, f"Started with {told}, the node runs.", fraction=fraction)
         expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
-    frequency = draw.randrange(55, 90) + 0.5
+    frequency = draw.randrange(55, 90) + 0.5  # above the limits
     fits, equal, start, beyond = _called(workspace, distance, frequency)
     raised, message, sentence = start.raised, shortened(start.message), shortened(str(equal.value))
-    expect(fits.value == "", f"contradiction(0.5, 1.0) returned {fits.value!r}, instead of ''.", fraction=0.5)
-    expect(raised == "ValueError", f"declare_configuration raised {raised or 'nothing'}, no ValueError.", fraction=0.5)
+    said = f"contradiction(0.5, 1.0) {f'raised {fits.raised}' if fits.raised else f'returned {fits.value!r}'}"
+    expect(fits.value == "", f"{said}, instead of returning ''.", fraction=0.5)
+    said = f"declare_configuration raised {raised or 'nothing'}, which is no ValueError"
+    expect("ValueError" in start.kinds, f"{said}.", fraction=0.5)
     said = f"declare_configuration raised ValueError with “{message}”; contradiction says “{sentence}”"
     expect(sentence[:100] in message, f"{said}.", fraction=0.75)
     said = f"Started with control_frequency {frequency}, declare_configuration raised nothing"
@@ -160,7 +174,7 @@ def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[St
     return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
 
 
-def _towards_a_wall(draw: random.Random) -> Simulation:
+def _towards_a_wall(draw: Random) -> Simulation:
     """Return a hall whose east wall is straight ahead of the robot, well beyond any slow distance."""
     world = World.from_segments(
         box(draw.uniform(6.5, 7.5), 4.0).tolist(),

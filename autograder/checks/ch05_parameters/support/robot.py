@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
+from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from sensor_msgs.msg import BatteryState, LaserScan
 
 from autograder.checks import expect
@@ -71,6 +72,30 @@ class Robot(AutoHarness):
     def initial(self) -> dict[str, Value]:
         """The values with which it started; to be read before anything is changed."""
         return self.parameters.values(*WANTED)
+
+    @cached_property
+    def descriptors(self) -> dict[str, ParameterDescriptor]:
+        """What it says of its parameters, by their names."""
+        return self.parameters.descriptors(*WANTED)
+
+    def allowed(self, name: str, number: float, *, up: bool = False) -> float:
+        """Return the number next below, or above, that a parameter's type and steps allow: one check judges these."""
+        described = self.descriptors.get(name)
+        if described is None:
+            return number
+        ranges = [*described.floating_point_range, *described.integer_range]
+        low, step = (float(ranges[0].from_value), float(ranges[0].step)) if ranges else (0.0, 0.0)
+        if described.type == ParameterType.PARAMETER_INTEGER:
+            step = max(1.0, step)
+        if not step > 0.0:
+            return number
+        steps = (number - low) / step
+        return round(low + (math.ceil(steps - 1e-6) if up else math.floor(steps + 1e-6)) * step, 9)
+
+    def unfixed(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Return those of these values whose parameters are not read-only; one check judges which are."""
+        described = self.descriptors
+        return {name: value for name, value in values.items() if name not in described or not described[name].read_only}
 
     def change(self, values: Mapping[str, Value]) -> SetParametersReply:
         """Ask for a change of several parameters in one request, numbers in the types that the node declares."""

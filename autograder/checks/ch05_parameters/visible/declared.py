@@ -47,7 +47,7 @@ def test_table(robot: Robot) -> None:
     expect(not wrong, f"{'; '.join(wrong)}.")
 
 
-@check(points=1, holds=("ranges", "robot_name"), needs=("table",), doc=contract.PARAMETERS)
+@check(points=1, holds=("ranges", "robot_name"), needs=("starts",), after=("table",), doc=contract.PARAMETERS)
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
 @hint("An integer has integer_range=[IntegerRange(...)], a name that is fixed has read_only=True.")
 def test_refuses(robot: Robot) -> None:
@@ -61,13 +61,15 @@ def test_refuses(robot: Robot) -> None:
         ("battery_threshold", 101),
         ("robot_name", "R2"),
     ]
+    declared = robot.parameters.names()
     for name, value in requests:
+        expect(name in declared, f"It does not declare {name}.")
         answer = robot.parameters.change({name: value})
         expect(not answer.accepted, f"It took {value_text(value)} for {name}.")
         expect(bool(answer.reason), f"It refused {value_text(value)} for {name}, but gave no reason.")
 
 
-@check(points=1, holds="described", needs=("table",))
+@check(points=1, holds="described", needs=("starts",), after=("table",))
 @hint("ParameterDescriptor(description='...', ...): one sentence for each name, with the unit in it.")
 def test_described(robot: Robot) -> None:
     """Each parameter has a description; that of max_linear_velocity names m/s, that of control_frequency Hz."""
@@ -75,10 +77,10 @@ def test_described(robot: Robot) -> None:
     empty = [name for name, words in described.items() if not words.strip()]
     expect(not empty, f"There is no description of {', '.join(empty)}.")
     for name, unit in (("max_linear_velocity", "m/s"), ("control_frequency", "Hz")):
-        expect(unit.lower() in described[name].lower(), f"The description of {name} does not name {unit}.")
+        expect(unit.lower() in described.get(name, "").lower(), f"The description of {name} does not name {unit}.")
 
 
-@check(points=1, holds="contradictory-start", needs=("table",))
+@check(points=1, holds="contradictory-start", needs=("starts",), after=("table",))
 @hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
 def test_start_refused(workspace: Workspace) -> None:
     """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""

@@ -12,7 +12,7 @@ from autograder.probes.parameters import differences, read_file
 check = group("files")
 
 
-@check(points=1, holds="types", needs=("starts",), doc=contract.ARGUMENTS)
+@check(points=1, holds="types", doc=contract.ARGUMENTS)
 @hint("Three levels: the node or /**, then ros__parameters with two underscores, then the values; two spaces each.")
 @hint("config/configured_node.yaml is an example for one node.")
 def test_file(workspace: Workspace) -> None:
@@ -23,7 +23,8 @@ def test_file(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=(*contract.FLEET_ROWS, "empty-field"),
-    needs=("file", "table"),
+    needs=("file", "starts"),
+    after=("table",),
     doc=contract.ARGUMENTS,
 )
 @hint("Of all entries that fit a node the last one wins: /** stands first.")
@@ -38,7 +39,7 @@ def test_robots(workspace: Workspace) -> None:
         expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 
 
-@check(points=1, holds="once", needs=("robots",))
+@check(points=1, holds="once", needs=("file",), after=("robots",))
 @hint("Under scout and porter stands only what the table gives to them alone.")
 def test_once(workspace: Workspace) -> None:
     """What every robot has stands once: no entry of one robot sets slow_distance again."""

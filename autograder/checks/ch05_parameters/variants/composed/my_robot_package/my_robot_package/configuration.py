@@ -10,6 +10,10 @@ DOUBLES = {
 }
 
 
+class Contradiction(ValueError):
+    """Two values that do not fit together."""
+
+
 def contradiction(safety_distance, slow_distance):
     """Return what does not fit, or nothing."""
     problem = ""
@@ -43,4 +47,4 @@ def declare_configuration(node):
     values = {parameter.name: parameter.value for parameter in node.declare_parameters("", table)}
     if problem := contradiction(values["safety_distance"], values["slow_distance"]):
         node.get_logger().fatal(problem)
-        raise ValueError(problem)
+        raise Contradiction(problem)
