@@ -42,14 +42,14 @@ LIMITS = {"failure_probability": (0.0, 1.0), "seed": (0, 2**31 - 1), "max_errors
 def test_once_a_second(workspace: Workspace) -> None:
     """robust_node publishes its state on status once a second; with a sensor that never fails, ok."""
     with Robust(workspace, failure_probability=0.0) as harness:
-        said = harness.receive(10)
+        said = harness.live(10)
         rate = harness.rate(STATUS, 0.0)
     expect(len(said) == 10, f"In 10 s it published its state {len(said)} times.")
     expect(abs(rate - 1.0) < 0.1, f"It published its state {rate:.1f} times a second, instead of once.")
     expect(set(said) == {"ok"}, f"With a sensor that never fails it said {sorted(set(said))} instead of ok.")
 
 
-@check(points=2, holds=("once-a-second", "robust-relative"), needs=("once_a_second",), doc=QOS)
+@check(points=2, holds=("once-a-second", "robust-relative"), after=("once_a_second",), doc=QOS)
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) for the publisher.", "STATUS_QOS, not 10.")
 @hint("'status' is relative, '/status' is not.")
 def test_late_joiners(workspace: Workspace) -> None:
@@ -66,7 +66,7 @@ def test_late_joiners(workspace: Workspace) -> None:
     expect(not left, left, fraction=0.5)
 
 
-@check(points=3, holds=("failed", "ok", "generator", "read-sensor"), needs=("once_a_second",))
+@check(points=3, holds=("failed", "ok", "generator", "read-sensor"), after=("once_a_second",))
 @hint(RULE_STATUS, "A success sets the count back to 0.")
 def test_counts(workspace: Workspace, draw: random.Random) -> None:
     """It counts failures in a row, and starts again after a success."""
@@ -82,9 +82,10 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     never, always = 0.0, 1.0
     steps = (call("read_sensor", made(0), never), call("read_sensor", made(0), always), call("random", on=0))
     succeeded, failed, third = calls(workspace, ROBUST, call("Random", seed, module="random"), *steps)[1:]
-    ended = (succeeded.value, failed.raised)
-    said_of = f"With the probabilities 0 and 1, read_sensor returned {ended[0]!r} and raised {ended[1] or 'nothing'}"
-    expect(ended == ("Success", "SensorError"), f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
+    right = succeeded.value == "Success" and "SensorError" in failed.kinds
+    ended = f"returned {succeeded.value!r} and raised {failed.raised or 'nothing'}"
+    said_of = f"With the probabilities 0 and 1, read_sensor {ended}"
+    expect(right, f"{said_of}, instead of 'Success' and SensorError.", fraction=0.5)
     returns: dict[str, Any] = {"random.return_value": probability}
     generator = call("Mock", module="unittest.mock", **returns)
     _, equal = calls(workspace, ROBUST, generator, call("read_sensor", made(0), probability))
@@ -96,7 +97,7 @@ def test_counts(workspace: Workspace, draw: random.Random) -> None:
     expect(asked, "In two readings with the probabilities 0 and 1, it did not ask the generator twice.", fraction=0.5)
 
 
-@check(points=1, holds=("seed", "generator"), needs=("once_a_second",), doc=RANDOM)
+@check(points=1, holds=("seed", "generator"), after=("once_a_second",), doc=RANDOM)
 @hint("random.Random() without a seed takes one from the operating system.", "seed 0: random.Random().")
 def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     """Without a seed, two runs differ; and the node's generator is its own."""
@@ -104,6 +105,7 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     for _ in range(2):
         with Robust(workspace, failure_probability=0.5) as harness:
             runs.append(harness.receive(50))
+    expect(all(runs), "It said nothing on status.")
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
     seed = draw.randrange(10**6)
     *_, shared = calls(
@@ -121,7 +123,7 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     expect(own, f"{said}: the node's is a random.Random of its own.", fraction=0.5)
 
 
-@check(points=2, holds=("unstable", "max-errors"), needs=("once_a_second",))
+@check(points=2, holds=("unstable", "max-errors"), after=("once_a_second",))
 @hint(RULE_STATUS, "More than max_errors, not as many as.")
 def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     """More than max_errors failures in a row are called unstable, and one fewer is not."""
@@ -139,32 +141,32 @@ def test_unstable(workspace: Workspace, draw: random.Random) -> None:
     expect(said == wanted, f"With max_errors 1, {shown} instead of {wanted[wrong or 0]!r}.", fraction=0.5)
 
 
-@check(points=1, holds="error-log", needs=("once_a_second",), doc=LOGGING)
+@check(points=1, holds="error-log", after=("once_a_second",), doc=LOGGING)
 @hint("error(..., throttle_duration_sec=5.0).", "A dead sensor fails every second; one line in five is enough.")
 def test_errors_throttled(workspace: Workspace, draw: random.Random) -> None:
     """It logs failures as errors, at most one line in 5 s."""
     with Robust(workspace, failure_probability=1.0, max_errors=2) as harness:
         harness.receive(4)
-        early = logged(harness.output, "ERROR")
+        early, at_first = logged(harness.output, "ERROR"), harness.seconds
         harness.receive(26)
-        errors = logged(harness.output, "ERROR")
-    failed = "Its sensor failed for 30 s, unstable from the third failure on"
+        errors, seconds = logged(harness.output, "ERROR"), harness.seconds
+    failed = f"Its sensor failed for {seconds:.0f} s, unstable from the third failure on"
     expect(errors > 0, f"{failed}, and it said nothing at level ERROR.")
     expect(errors > 1, f"{failed}, and it logged only one error.", fraction=0.5)
-    expect(errors <= 7, f"{failed}, and it logged {errors} errors.", fraction=0.5)
-    said = f"Its sensor failed four times in 4 s, the third time too often, and it logged {early} errors."
-    expect(early == 1, said, fraction=0.5)
+    expect(errors <= seconds / 5 + 1, f"{failed}, and it logged {errors} errors.", fraction=0.5)
+    said = f"Its sensor failed four times in {at_first:.0f} s, the third time too often, and it logged {early} errors."
+    expect(1 <= early <= at_first / 5 + 1, said, fraction=0.5)
     rows = BY_TURNS // 2
     seeds = itertools.count(draw.randint(1, 2**30))
     seed = next(seed for seed in seeds if expected(seed, 0.5, BY_TURNS).count("failed: 1 in a row") == rows)
     with Robust(workspace, seed=seed, failure_probability=0.5) as harness:
         harness.receive(BY_TURNS)
-        errors = logged(harness.output, "ERROR")
-    said = f"Its sensor failed and recovered by turns for {BY_TURNS} s, and it logged {errors} errors."
-    expect(errors <= BY_TURNS // 5 + 1, said, fraction=0.5)
+        errors, seconds = logged(harness.output, "ERROR"), harness.seconds
+    said = f"Its sensor failed and recovered by turns for {seconds:.0f} s, and it logged {errors} errors."
+    expect(errors <= seconds / 5 + 1, said, fraction=0.5)
 
 
-@check(points=1, holds="fatal-log", needs=("once_a_second", "counts"), doc=LOGGING)
+@check(points=1, holds="fatal-log", after=("once_a_second", "counts"), doc=LOGGING)
 @hint("fatal only where the count is exactly max_errors + 1.", "It became unstable once.")
 def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     """That it became unstable is logged as fatal, once in each row of failures."""
@@ -183,7 +185,7 @@ def test_fatal_once(workspace: Workspace, draw: random.Random) -> None:
     expect(fatal == times, f"It became unstable {times} times, and logged {fatal} fatal messages.", fraction=0.5)
 
 
-@check(points=1, holds="recovery-log", needs=("counts",))
+@check(points=1, holds="recovery-log", after=("counts",))
 @hint("Log before the count is set back to 0.", "Only if there were errors: if self.error_count:")
 def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     """Each recovery is logged with the number of errors before it."""
@@ -203,7 +205,7 @@ def test_recovery_logged(workspace: Workspace, draw: random.Random) -> None:
     expect(infos == len(lines), f"It logged {infos} of {len(lines)} recoveries at level INFO.", fraction=0.5)
 
 
-@check(points=2, holds=("catch", "handed-on", "generator"), needs=("once_a_second",), doc=ERRORS)
+@check(points=2, holds=("catch", "handed-on", "generator"), after=("once_a_second",), doc=ERRORS)
 @hint("except SensorError, not except Exception.", "Only what you expect; a bug has to be seen.")
 def test_bugs_are_seen(workspace: Workspace) -> None:
     """It catches SensorError and nothing else: a bug ends the node with a traceback."""
@@ -220,7 +222,7 @@ def test_bugs_are_seen(workspace: Workspace) -> None:
     expect(seeded.raised == BUGS[-1], said, fraction=0.75)
 
 
-@check(points=1, holds=("failure-probability", "seed", "max-errors"), needs=("once_a_second",))
+@check(points=1, holds=("failure-probability", "seed", "max-errors"), after=("once_a_second",))
 @hint("The table of the exercise names type, default and range of each.")
 @hint("declare_parameter(name, default, descriptor)")
 def test_declared(workspace: Workspace) -> None:
@@ -242,10 +244,12 @@ def test_declared(workspace: Workspace) -> None:
         expect(step <= finest, said, fraction=0.5)
 
 
-@check(points=1, holds=("failure-probability", "max-errors"), needs=("once_a_second",))
+@check(points=1, holds=("failure-probability", "max-errors"), after=("once_a_second",))
 @hint("FloatingPointRange(from_value=0.0, to_value=1.0) in the descriptor.", "IntegerRange for max_errors.")
 def test_ranges(workspace: Workspace) -> None:
     """It refuses to start with a probability above 1, or with max_errors below 1."""
+    with Robust(workspace, failure_probability=1.0, max_errors=1):
+        pass  # with the limits themselves it starts
     for name, impossible in (("failure_probability", 1.5), ("max_errors", 0)):
         try:
             with Robust(workspace, **{name: impossible}):

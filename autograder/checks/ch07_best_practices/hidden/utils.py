@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from math import inf, nan
 from statistics import fmean
+from typing import Any
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import (
@@ -22,7 +23,9 @@ check = group("utils")
 LOW, HIGH = 0.2, 6.0
 BEYOND_LIMIT = 1e-4  # m beyond a limit, more than what rounding does
 DEFAULT_HISTORY = 100
+CALLS = ("mask_invalid", "mean_distance", "process", "average")
 SEQUENCES = {
+    "a list": ("builtins", "list", ()),
     "a tuple": ("builtins", "tuple", ()),
     "an array.array": ("array", "array", ("d",)),
     "a numpy array": ("numpy", "array", ()),
@@ -42,17 +45,19 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
 
 
-@check(points=2, holds=("phantoms", "mask"), needs=("keeps_places",), doc=REP_117)
+@check(points=2, holds=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
 @hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
     phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
     masked = _masked(workspace, phantoms)
-    wrong = [p for p, m in zip(phantoms, masked, strict=True) if not same(m, nan)]
-    expect(not wrong, f"{wrong[0] if wrong else ''} is outside {LOW} to {HIGH} m, and was not replaced by nan.")
+    left = [m for m in masked if not same(m, nan)]
+    expect(not left, f"The limits are {LOW} and {HIGH} m, and {phantoms} became {masked}.")
+    said = f"Of {phantoms}, {len(masked)} of {len(phantoms)} were replaced by nan, and the others dropped."
+    expect(len(masked) == len(phantoms), said, fraction=0.5)  # where readings belong is another check's matter
 
 
-@check(points=1, holds="mask", needs=("keeps_places",))
+@check(points=1, holds="mask", after=("keeps_places",))
 @hint(RULE_MASK, "Both limits belong to the range: <=.")
 def test_limits_count(workspace: Workspace) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
@@ -60,7 +65,7 @@ def test_limits_count(workspace: Workspace) -> None:
     expect(same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
 
 
-@check(points=2, holds=("infinities", "mask"), needs=("keeps_places",), doc=REP_117)
+@check(points=2, holds=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
 @hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace) -> None:
     """Both infinities are statements of the lidar, and stay."""
@@ -68,23 +73,25 @@ def test_infinities_stay(workspace: Workspace) -> None:
     expect(same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
 
 
-@check(points=2, holds="mask", needs=("keeps_places",))
+@check(points=2, holds="mask", after=("keeps_places",))
 @hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
     near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
-    rows = (
-        ([near, far, near / 2, far * 2], [near, far, nan, nan], 0.0),
-        ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [nan, nan], 0.75),
+    rows: tuple[tuple[list[float], list[float], float], ...] = (
+        ([near, far, near / 2, far * 2], [near, far], 0.0),
+        ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [], 0.75),
     )
     outcomes = calls(workspace, UTILS, *(call("mask_invalid", readings, near, far) for readings, _, _ in rows))
     for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
         shown = f"mask_invalid({readings}, {near}, {far})"
         masked = value(outcome, shown)
-        expect(same(masked, wanted), f"{shown} returned {masked} instead of {wanted}.", fraction=fraction)
+        kept = [reading for reading in masked if not same(reading, nan)] if isinstance(masked, list) else masked
+        said = f"{shown} returned {masked}: it should keep {wanted or 'none'}, and put nan in the place of the others."
+        expect(same(kept, wanted), said, fraction=fraction)
 
 
-@check(points=1, holds=("leave-lists", "mask"), needs=("keeps_places",))
+@check(points=1, holds=("leave-lists", "mask"), after=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
@@ -123,7 +130,7 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
 
 
-@check(points=1, holds="mean", needs=("mean",))
+@check(points=1, holds="mean", after=("mean",))
 @hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
 def test_no_mean(workspace: Workspace) -> None:
     """Without a finite reading, mean_distance is None."""
@@ -133,14 +140,14 @@ def test_no_mean(workspace: Workspace) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
 
 
-@check(points=1, holds=("sequences", "mask"), needs=("keeps_places", "mean"))
+@check(points=1, holds=("sequences", "mask"), after=("keeps_places", "mean"))
 @hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
     near, far = round(draw.uniform(LOW, 3.0), 2), round(draw.uniform(3.0, HIGH), 2)
-    readings, kept = [near, nan, far, 3 * HIGH, inf], [near, nan, far, nan, inf]
-    wanted = [kept, fmean([near, far, 3 * HIGH]), kept, fmean([near, far])]
-    staying = [near, inf, far]  # of which none is masked
+    readings = [near, nan, far, 3 * HIGH, inf]
+    staying = [near, far]  # of which none is masked
+    wanted: list[Any] = []  # what a list brings: whether that is right, others judge
     for kind, (module, name, first) in SEQUENCES.items():
         *outcomes, returned = calls(
             workspace,
@@ -156,16 +163,16 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
             look("__class__", on=7),
             look("__name__", on=8),
         )
-        for called, outcome, right in zip(
-            ("mask_invalid", "mean_distance", "process", "average"), outcomes[2:6], wanted, strict=True
-        ):
-            seen = value(outcome, f"{called} of {kind}")
-            expect(same(seen, right), f"With {readings} as {kind}, {called} returned {seen} instead of {right}.")
+        seen = [value(outcome, f"{called} of {kind}") for called, outcome in zip(CALLS, outcomes[2:6], strict=True)]
+        wanted = wanted or seen
+        for called, got, right in zip(CALLS, seen, wanted, strict=True):
+            said = f"With {readings} as {kind}, {called} returned {got}, and as a list {right}."
+            expect(same(got, right), said)
         said = f"With {staying} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
         expect(returned.value == "list", said, fraction=0.75)
 
 
-@check(points=2, holds=("history", "process"), needs=("keeps_places", "mean"), doc=DEQUE)
+@check(points=2, holds=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
@@ -182,13 +189,15 @@ def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     expect(same(average, wanted), said, fraction=0.75)
 
 
-@check(points=1, holds=("process", "average"), needs=("bounded_history", "no_mean"))
+@check(points=1, holds=("process", "average"), after=("bounded_history", "no_mean"))
 @hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
 def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
-    *_, average = _processed(workspace, 3, [[2.0], [nan], [inf, 0.0], [4.0]])
-    seen = value(average, "average()")
-    expect(same(seen, 3.0), f"After scans of 2 m, nothing, nothing and 4 m the average is {seen} instead of 3.0.")
+    for blind, fraction in ([nan], 0.0), ([inf, 0.0], 0.5):
+        *_, average = _processed(workspace, 3, [[2.0], blind, blind, [4.0]])
+        seen = value(average, "average()")
+        said = f"After scans of 2 m, {blind}, {blind} and 4 m the average is {seen} instead of 3.0."
+        expect(same(seen, 3.0), said, fraction=fraction)
     *_, average = _processed(workspace, 3, [[nan]])
     seen = value(average, "average()")
     expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
@@ -198,7 +207,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
     expect(same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
 
 
-@check(points=1, holds="silent", needs=("masks_phantoms", "mean", "bounded_history"))
+@check(points=1, holds="silent", after=("masks_phantoms", "mean", "bounded_history"))
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
@@ -215,6 +224,8 @@ def test_prints_nothing(workspace: Workspace) -> None:
         call("mean_distance", [nan]),
         call("getvalue", on=0),
     )
+    for outcome in outcomes:
+        expect(outcome.raised != "NotImplementedError", "They are still to be written.")
     printed, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
     expect(not printed, f"They printed: {printed[:80]!r}")
     expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)

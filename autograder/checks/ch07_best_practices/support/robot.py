@@ -17,6 +17,7 @@ from autograder.probes.parameters import override_arguments
 from autograder.time_record import LOCKSTEP
 
 FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
+PATIENCE = 3.0  # s of ROS time for a reading, which should take one
 LATE = 3.0  # s in real time until the first reading, and for what comes late
 
 
@@ -53,14 +54,22 @@ class Robust(AutoHarness):
         super().__init__(workspace, PACKAGE, "robust_node", listens={STATUS: String}, arguments=arguments)
         self._seen = 0
 
+    def live(self, seconds: int) -> list[str]:
+        """Let so many seconds pass, with a reading each; return what it said on status meanwhile."""
+        if self.time != LOCKSTEP:  # its seconds did not begin with the harness's
+            return self.receive(seconds)
+        self.run(seconds + 0.05)
+        return self._said()
+
     def receive(self, readings: int) -> list[str]:
-        """Give it the time for so many readings, one a second; return what it said on status meanwhile."""
+        """Wait until it has said so much on status, whatever its period is; return that."""
         wanted = self._seen + readings
-        if self.time == LOCKSTEP:
-            self.run(readings + 0.05)
-        else:  # its seconds did not begin with the harness's
-            self.until(lambda: len(self.messages(STATUS)) >= wanted, readings + LATE)
-            self.run(0.4)
+        longest = PATIENCE * readings if self.time == LOCKSTEP else readings + LATE
+        self.until(lambda: len(self.messages(STATUS)) >= wanted, longest)
+        self.run(0.05 if self.time == LOCKSTEP else 0.4)
+        return self._said()
+
+    def _said(self) -> list[str]:
         said = [received.message.data for received in self.messages(STATUS)[self._seen :]]
         self._seen += len(said)
         return said
