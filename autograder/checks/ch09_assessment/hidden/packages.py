@@ -30,7 +30,7 @@ def test_definitions(workspace: Workspace) -> None:
     expect_definitions(workspace)
 
 
-@check(points=2, holds="packages", needs=("definitions",), doc=contract.INTERFACES_DOC)
+@check(points=2, holds="packages", after=("definitions",), doc=contract.INTERFACES_DOC)
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Decision.msg" "msg/Temperature.msg" DEPENDENCIES ...)')
 @hint("find_package for what you use; in package.xml a buildtool_depend on the generators, and member_of_group.")
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -55,7 +55,7 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
         expect(look(workspace.install, INTERFACES).marker, said, fraction=0.5)
 
 
-@check(points=2, holds="packages", needs=("messages_are_generated",), doc=contract.PACKAGES_DOC)
+@check(points=2, holds="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
 @hint("entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}")
 @hint("install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.")
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -68,14 +68,15 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
 @check(
     points=1,
     holds=("dependencies", "licence", "same-facts", "set-up", "test-depends"),
-    needs=("installs",),
+    after=("installs",),
     doc=contract.PACKAGES_DOC,
 )
 @hint("rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.")
 @hint("depend for what the nodes import, exec_depend for what the launch file imports.")
 @hint("setup.py as ros2 pkg create wrote it has the marker, package.xml and pytest: fill in, and leave the rest.")
-def test_dependencies(workspace: Workspace) -> None:
+def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
+    require_built(builds, PACKAGE)
     source = source_of(workspace, PACKAGE)
     found, installed = manifest.read(source), look(workspace.install, PACKAGE)
     missing = imports.missing(source, found)["exec"]

@@ -29,6 +29,7 @@ from autograder.packages import find_packages
 from autograder.probes.parameters import NodeParameters, Value, override_arguments
 from autograder.time_record import LOCKSTEP
 
+FIELDS = {"Temperature": ("stamp", "celsius"), "Decision": ("stamp", "cooling", "celsius")}
 STEP = 0.1  # s between two messages
 NANOSECONDS = 250_000_000  # of each stamp, beside its seconds
 HEAD_START = 0.2  # s for which a node in real time may be up before it is seen
@@ -48,8 +49,13 @@ class Types:
 
     @classmethod
     def of(cls, workspace: Workspace) -> Types:
-        """Read them. Raises as `load_from` does."""
+        """Read them. Raises as `load_from` does, and a CheckFailed where a field is missing."""
         package = load_from(workspace, INTERFACES)
+        for name, fields in FIELDS.items():
+            message = getattr(package.msg, name, None)
+            there = message.get_fields_and_field_types() if message is not None else {}
+            absent = [field for field in fields if field not in there]
+            expect(not absent, f"{name}.msg has no {' and no '.join(absent)}: nobody can talk to the nodes.")
         return cls(package.msg.Temperature, package.msg.Decision)
 
 
@@ -104,13 +110,18 @@ class NodeHarness(AutoHarness):
         self.wait_for_late(lambda: len(self.published(began)) >= len(sent))
         return [received.message for received in self.published(began)]
 
-    def expect_readings(self, count: int, period: float = PERIOD, *shape: float) -> None:
-        """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing."""
+    def expect_readings(
+        self, count: int, period: float = PERIOD, *shape: float, reading: Callable[..., float] = reading
+    ) -> None:
+        """Fail the check unless the first readings are those of the contract, in their time; `shape` is mean, swing.
+
+        Another `reading` than the contract's stands for its formula where that is not judged.
+        """
         began, seconds = self.seconds, (count + 0.5) * period
         self.run(seconds)
         seen = [received.message.celsius for received in self.published()]
         expect(bool(seen), f"In {seconds:.1f} s it published nothing.")
-        for number, celsius in enumerate(seen, self._missed(seen, period, shape)):
+        for number, celsius in enumerate(seen, self._missed(seen, period, shape, reading)):
             wanted = reading(number, *shape)
             if not near(celsius, wanted):
                 raise CheckFailed(f"Reading number {number} was {celsius:.2f} °C, it should have been {wanted:.2f} °C.")
@@ -118,7 +129,7 @@ class NodeHarness(AutoHarness):
         right = abs(published - count) <= 1
         expect(right, f"In {seconds:.1f} s it published {published} readings, instead of {count}.", fraction=0.5)
 
-    def _missed(self, seen: list[float], period: float, shape: tuple[float, ...]) -> int:
+    def _missed(self, seen: list[float], period: float, shape: tuple[float, ...], reading: Callable[..., float]) -> int:
         """Return how many readings were over before the grader listened: in lockstep none."""
         most = 0 if self.time == LOCKSTEP else int((2 * self.discovery_seconds + HEAD_START) / period)
         fits = (n for n in range(most + 1) if all(near(one, reading(m, *shape)) for m, one in enumerate(seen[:2], n)))
@@ -132,7 +143,8 @@ class NodeHarness(AutoHarness):
     def expect_in_graph(self) -> None:
         """Fail the check unless the node has its name and its topics, with their types; name what it has instead."""
         nodes = self.nodes()
-        expect(f"/{self._name}" in nodes, f"The node is called {', '.join(nodes)}, it should be /{self._name}.")
+        said = f"The node is called {', '.join(nodes)}, it should be /{self._name}."
+        expect(f"/{self._name}" in nodes, said, fraction=0.5)
         publishes = dict(self.node.get_publisher_names_and_types_by_node(self._name, "/"))
         subscribes = dict(self.node.get_subscriber_names_and_types_by_node(self._name, "/"))
         told, heard = _TOPICS[self._name]
@@ -202,4 +214,5 @@ def expect_executables(installed: Iterable[str], misplaced: Iterable[str], wante
     absent = ", ".join(name for name in wanted if name not in there)
     if absent and list(misplaced):
         raise CheckFailed(f"{absent} went to bin/, where ros2 run does not look: setup.cfg says where programs go.")
-    expect(not absent, f"The program {absent} is not installed; installed are: {', '.join(sorted(there)) or 'none'}.")
+    said = f"The program {absent} is not installed; installed are: {', '.join(sorted(there)) or 'none'}."
+    expect(not absent, said, fraction=0.5 if there else 0.0)

@@ -31,7 +31,7 @@ def test_definitions(workspace: Workspace) -> None:
     expect_definitions(workspace)
 
 
-@check(points=1, holds="packages", group="packages", needs=("definitions",), doc=contract.PACKAGES_DOC)
+@check(points=1, holds="packages", group="packages", after=("definitions",), doc=contract.PACKAGES_DOC)
 @hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.")
 @hint("console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.")
 def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
@@ -46,7 +46,7 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
 
 
-@check(points=1, holds="formula", group="nodes", needs=("builds",), doc=contract.NODES_DOC)
+@check(points=1, holds="formula", group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint("super().__init__('thermometer'), a publisher and a timer.", "The first reading has the number 0.")
 def test_measures(start: Start) -> None:
     """Question 3: thermometer publishes its readings, also with another period, mean and swing."""
@@ -57,7 +57,7 @@ def test_measures(start: Start) -> None:
         harness.expect_readings(6, 0.25, 10.0, 2.0)
 
 
-@check(points=1, holds=("smoother", "window"), group="nodes", needs=("builds",), doc=contract.NODES_DOC)
+@check(points=1, holds=("smoother", "window"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading that is finite.")
 def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
@@ -75,7 +75,7 @@ def test_smooths(start: Start) -> None:
     )
 
 
-@check(points=1, holds=("hysteresis", "unknown"), group="nodes", needs=("builds",), doc=contract.NODES_DOC)
+@check(points=1, holds=("hysteresis", "unknown"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint(
     "Remember the last decision in self.",
     "Between the two thresholds nothing changes.",
@@ -97,7 +97,7 @@ def test_decides(start: Start) -> None:
     points=1,
     holds=("launch", "hot-argument", "ctrl-c"),
     group="launch",
-    needs=("measures", "smooths", "decides"),
+    after=("builds", "measures", "smooths", "decides"),
     doc=contract.LAUNCH_DOC,
 )
 @hint("Node(package='motor_guard', executable='guard', name='guard', parameters=[{'hot': hot}]), and two more.")

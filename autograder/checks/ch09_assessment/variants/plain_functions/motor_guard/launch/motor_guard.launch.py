@@ -20,7 +20,7 @@ def generate_launch_description():
     """Declare the argument and make the nodes later."""
     return LaunchDescription(
         [
-            DeclareLaunchArgument("hot", default_value="60.0", description="fan on, in degrees Celsius"),
+            DeclareLaunchArgument("hot", default_value="60.0"),
             OpaqueFunction(function=make),
         ]
     )

@@ -11,12 +11,12 @@ from rclpy.node import Node
 
 def resting(celsius, hot, cool):
     """Return the state after this temperature, when the fan was off."""
-    return resting if math.isfinite(celsius) and celsius < hot else running
+    return resting if celsius < hot else running
 
 
 def running(celsius, hot, cool):
     """Return the state after this temperature, when the fan was on."""
-    return resting if math.isfinite(celsius) and celsius <= cool else running
+    return resting if celsius <= cool else running
 
 
 def main(args=None):
@@ -33,8 +33,10 @@ def main(args=None):
 
     def decide(average):
         nonlocal state
-        state = state(average.celsius, hot, cool)
-        publisher.publish(Decision(stamp=average.stamp, cooling=state is running, celsius=average.celsius))
+        known = math.isfinite(average.celsius)
+        state = state(average.celsius, hot, cool) if known else state  # what is not known changes no state
+        cooling = state is running or not known
+        publisher.publish(Decision(stamp=average.stamp, cooling=cooling, celsius=average.celsius))
 
     node.create_subscription(Temperature, "smoothed", decide, 10)
     try:
