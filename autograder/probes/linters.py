@@ -1,7 +1,9 @@
 """What the linters say of a student's package, asked by the grader itself.
 
 A test that is called `test_flake8` need not call flake8. So the tests that `ros2 pkg create` writes take the place of
-the student's, and no conftest.py is read. Then the student's own have to find what is untidy in a copy.
+the student's. They see the package's Python files and nothing else of it, below a folder from which nothing is
+imported: no configuration, no conftest.py, no module with a linter's name. Comments that switch a linter off are
+words like any others. Then the student's own tests have to find what is untidy in a copy.
 """
 
 from __future__ import annotations
@@ -17,6 +19,9 @@ from autograder.probes.student_test_reports import Source, TestRun
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.workspace import Workspace
 
+BELOW = "package"  # the folder of a package's files
+# The comments by which flake8, pycodestyle and pydocstyle pass over a line or a file; as long as what replaces them.
+_SWITCH = re.compile(rb"(#\s*(?:flake8\s*[:=]\s*)?no)(qa|pep8)", re.IGNORECASE)
 # How each linter writes what it found.
 _FINDINGS = {
     "test_flake8": re.compile(r"^\./(\S+:\d+:\d+: [A-Z]+\d+ .*)$", re.MULTILINE),
@@ -39,15 +44,29 @@ def expect_tidy(workspace: Workspace, source: Source, tests: Collection[str], fr
     expect_failures(workspace, source, tests, {f"{source.package}/untidy.py": UNTIDY, "test/untidy.py": UNTIDY})
 
 
+def _switched_on(comment: re.Match[bytes]) -> bytes:
+    return comment[1] + b"x" * len(comment[2])
+
+
 def objections(workspace: Workspace, source: Source) -> dict[str, str]:
-    """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test."""
+    """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test.
+
+    The student's own tests of this name are not looked at.
+    """
     tests = [f"{name}.py" for name in _FINDINGS]
-    files = {**source.files, **{f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}}
-    (report,) = student_test_runs.run(workspace, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
+    own = {f"test/{name}" for name in tests}
+    seen = {name: data for name, data in source.files.items() if name.endswith(".py") and name not in own}
+    files = {f"{BELOW}/{name}": _SWITCH.sub(_switched_on, data) for name, data in seen.items()}
+    files |= {f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}
+    empty = replace(workspace, root=workspace.root.with_name(f"{workspace.root.name}-style"))
+    empty.install.mkdir(parents=True, exist_ok=True)
+    (report,) = student_test_runs.run(empty, replace(source, files=files), [TestRun(tuple(tests), conftest=False)])
     said: dict[str, str] = {}
     for name, finding in _FINDINGS.items():
         test = f"{name}::{name}"
         if test not in report.executed or test in report.failed:
             match = finding.search(report.output)
-            said[name] = match[1] if match else report.claims.messages.get(test, "it did not run")
+            said[name] = (
+                match[1].removeprefix(f"{BELOW}/") if match else report.claims.messages.get(test, "it did not run")
+            )
     return said

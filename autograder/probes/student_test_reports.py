@@ -56,6 +56,7 @@ class TestRun:
     first_failure: bool = False  # whether the run ends with the first test that fails
     sniffed: bool = False  # whether an `RtpsSniffer` listens in the default domain
     conftest: bool = True  # whether pytest reads the conftest.py that is there
+    without: tuple[str, ...] = ()  # tests that do not run, called as in `Claims`
     shown: bool = False  # whether the student may read what it says of `version`: only if the version is no secret
     __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
 
@@ -93,6 +94,13 @@ class Report:
         if self.known is not None and right.known is None:
             right = right.closed(self.known)
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
+
+    def failed_in(self, other: Report) -> tuple[str, ...]:
+        """Return the tests of this report, which is not closed, that fail in another one, which may be."""
+        bad = set(other.failed)
+        if other.known is None:
+            return tuple(name for name in self.claims.verdicts if name in bad)
+        return tuple(name for name in self.claims.verdicts if _closed(name, other.known) in bad)
 
     def closed(self, known: frozenset[str]) -> Report:
         """Return the report without any text of the run, for a run that could read a hidden version.

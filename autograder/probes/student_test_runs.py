@@ -154,6 +154,7 @@ def _arguments(source: Source, folder: Path, wanted: TestRun, launches: bool) ->
     plain += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
     quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
     asked = [*(["-x"] if wanted.first_failure else []), *([] if wanted.conftest else ["--noconftest"])]
+    asked += [f"--deselect=test/{module}.py::{rest}" for module, _, rest in (n.partition("::") for n in wanted.without)]
     return [*plain, *quiet, *asked, *files]
 
 

@@ -39,30 +39,43 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
 
 
 @pytest.mark.parametrize(
-    ("run", "sentence"),
+    ("run", "sentence", "usable"),
     [
-        (None, "There is no test/test_limits.py in the package speed_guard."),
-        (report(ending=Ending.WALL_TIME), "The tests in test_limits.py do not end on the package as it is."),
+        (None, "There is no test/test_limits.py in the package speed_guard.", False),
+        (
+            replace(report(ending=Ending.WALL_TIME), status=None),
+            "The tests in test_limits.py do not end on the package as it is.",
+            False,
+        ),
         (
             report(GOOD, BAD, message="assert 1 == 2"),
             "1 of 2 tests in test_limits.py fail on the package as it is: test_1: assert 1 == 2",
+            True,
         ),
         (
             report(BAD, message="NotImplementedError: this part of the exercise is still to be written"),
             "test_limits.py is still to be written: test_0 raises NotImplementedError.",
+            False,
         ),
-        (report(status=5), "No test in test_limits.py ran on the package as it is."),
-        (report(status=2), "pytest cannot run test_limits.py on the package as it is; it ended with exit status 2."),
+        (report(status=5), "No test in test_limits.py ran on the package as it is.", False),
+        (
+            report(status=2),
+            "pytest cannot run test_limits.py on the package as it is; it ended with exit status 2.",
+            False,
+        ),
         (
             replace(report(ending=Ending.MEMORY), status=None),
             "The tests in test_limits.py ended on the package as it is before pytest could say how they went: memory.",
+            False,
         ),
-        (report(GOOD), "Only 1 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one."),
+        (report(GOOD), "Only 1 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one.", True),
     ],
     ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "stopped", "few"],
 )
-def test_tests_that_do_not_pass_on_the_given_package_are_named(run: Report | None, sentence: str) -> None:
-    assert not is_usable(LIMITS, run)
+def test_tests_that_do_not_pass_on_the_given_package_are_named_and_the_others_are_usable(
+    run: Report | None, sentence: str, usable: bool
+) -> None:
+    assert is_usable(run) is usable
     with pytest.raises(CheckFailed) as failed:
         expect_passed(LIMITS, run)
     assert failed.value.message == sentence
@@ -70,7 +83,7 @@ def test_tests_that_do_not_pass_on_the_given_package_are_named(run: Report | Non
 
 def test_enough_passing_tests_are_usable() -> None:
     expect_passed(LIMITS, ENOUGH)
-    assert is_usable(LIMITS, ENOUGH)
+    assert is_usable(ENOUGH)
 
 
 def test_of_a_closed_report_nothing_but_a_known_name_is_shown() -> None:

@@ -76,3 +76,39 @@ def test_the_linters_ignore_a_conftest_and_check_it_like_any_other_file(workspac
     said = objections(workspace, take(workspace, "half"))
     assert list(said) == ["test_pep257"]
     assert said["test_pep257"].startswith("test/conftest.py:")
+
+
+UNUSED = TIDY.replace("\n\n\ndef", "\n\nimport os{}\n\n\ndef")
+
+
+@pytest.mark.parametrize(
+    ("files", "finding"),
+    [
+        ({"half.py": UNUSED.format("  # noqa")}, "half.py:3:1: F401 'os' imported but unused"),
+        ({"half.py": UNUSED.format("  # NoQA : F401")}, "half.py:3:1: F401 'os' imported but unused"),
+        ({"half.py": UNUSED.format("") + "# flake8: noqa\n"}, "half.py:3:1: F401 'os' imported but unused"),
+        ({"half.py": UNUSED.format(""), "setup.cfg": "[flake8]\nexclude = *\n"}, "half.py:3:1: F401"),
+        ({"half.py": UNUSED.format(""), ".flake8": "[flake8]\nignore = F\n"}, "half.py:3:1: F401"),
+        ({"half.py": UNUSED.format(""), "AMENT_IGNORE": ""}, "half.py:3:1: F401"),
+        ({"half.py": UNUSED.format(""), "test/ament_flake8.py": '"""Nothing."""\n'}, "half.py:3:1: F401"),
+    ],
+)
+def test_flake8_cannot_be_switched_off(workspace: Workspace, files: dict[str, str], finding: str) -> None:
+    for path, text in files.items():
+        (workspace.root / "src/half" / path).write_text(text)
+    assert objections(workspace, take(workspace, "half"))["test_flake8"].startswith(finding)
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"half.py": TIDY.replace('of x."""', 'of x"""  # noqa')},
+        {"half.py": TIDY.replace("half(x):", "half(x):  # noqa: D400").replace("of x.", "of x")},
+        {"half.py": TIDY.replace("of x.", "of x"), ".pydocstyle": "[pydocstyle]\nadd-ignore = D400\n"},
+        {"half.py": TIDY.replace("of x.", "of x"), "tox.ini": "[pydocstyle]\nadd-ignore = D400\n"},
+    ],
+)
+def test_pep257_cannot_be_switched_off(workspace: Workspace, files: dict[str, str]) -> None:
+    for path, text in files.items():
+        (workspace.root / "src/half" / path).write_text(text)
+    assert "D400" in objections(workspace, take(workspace, "half"))["test_pep257"]

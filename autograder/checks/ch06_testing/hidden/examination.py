@@ -1,15 +1,17 @@
 """All runs of one student's tests: first on a right version, then on many, right and faulty, in a drawn order.
 
 Right versions and faulty ones are mixed and run alike, so that neither the time nor the circumstances of a run tell
-which it has. What does not pass on the first right version meets no other.
+which it has. A test that does not pass on the first right version meets no other. If others object to another right
+version, all runs are made once more without these, on versions that are made anew: what is left has to pass on all
+right ones there, and then says something of the faulty ones.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from autograder.checks import CheckFailed, CheckRow, expect
@@ -31,9 +33,11 @@ FILES = {
     **dict.fromkeys(("guard_pass", "alone", "nothing_left", "name", "first_distance", "newest", "turn"), GUARD),
     **dict.fromkeys(("one_answer", "parameters", "sensor_qos", "stale", "watchdog"), GUARD),
     **dict.fromkeys(("launch_pass", "configuration", "runs"), LAUNCH),
+    **dict.fromkeys(("as_given", "colcon", "linters"), LIMITS),
+    "no_sleep": GUARD,
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
-SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
+RIGHTS = SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
 BRIEF = frozenset({"believes_distances_too_long"})  # faults that end within a second: a run that is held up misses them
 ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
 
@@ -63,6 +67,7 @@ class Examination:
         self._workspace = workspace
         self._seed = seed
         self._checks = checks
+        self._again: dict[str, dict[str, Report]] = {}
 
     @cached_property
     def source(self) -> Source:
@@ -85,8 +90,8 @@ class Examination:
         """The other runs: by file, and what is special about the version or the run."""
         wanted: dict[tuple[str, str], TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
-            mine = self._wanted(name)
+        for name in (name for name in reversed(MIN_TESTS) if is_usable(self.trial.get(name))):
+            mine = self._wanted(name, self.trial[name].failed)
             whats = sorted(mine)
             self._draw(name, "order").shuffle(whats)
             wanted |= {(name, what): mine[what] for what in whats}
@@ -102,9 +107,14 @@ class Examination:
 
     def expect_right(self, name: str, *whats: str) -> None:
         """Fail the check unless a file's tests pass on right versions in other words, and, if asked, backwards."""
+        self.expect_usable(name)
         for what in (SECOND, REWORDED, *whats):
             if not self.runs[name, what].passed:
                 raise CheckFailed(describe_failure(name, self.runs[name, what], _WHERE[what]))
+
+    def expect_usable(self, name: str) -> None:
+        """Fail the check unless one of a file's tests passes on the package as it is."""
+        expect(is_usable(self.trial.get(name)), f"No test in {name} passes on the package as it is.")
 
     def expect_objection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests of its file object to every fault that belongs to it.
@@ -112,6 +122,7 @@ class Examination:
         A run that has to be stopped objects, too; that it does not end by itself is another check's matter.
         """
         name = FILES[check]
+        self.expect_usable(name)
         mine = [fault for fault in faults() if fault.check == check]
         found = [fault for fault in mine if self._detects(name, fault)]
         expect(
@@ -127,28 +138,63 @@ class Examination:
         return sorted({n for (n, what), r in self.runs.items() if what in ids and r.ending is Ending.WALL_TIME})
 
     def _detects(self, name: str, fault: Fault) -> bool:
-        if self._reports(name, self.runs[name, fault.id]):
+        if self._reports(name, self._judging(name)[fault.id]):
             return True
-        return fault.id in BRIEF and any(self._reports(name, r) for r in self._run([self._wanted(name)[fault.id]]))
+        return fault.id in BRIEF and any(
+            self._reports(name, r) for r in self._run([self._wanted(name, self.trial[name].failed)[fault.id]])
+        )
+
+    def _judging(self, name: str) -> dict[str, Report]:
+        """Return the runs of a file by which its tests are judged: those of all tests, or of those that are right.
+
+        Raises:
+            CheckFailed: they object to right versions, whatever is left of them.
+        """
+        runs = {what: report for (file, what), report in self.runs.items() if file == name}
+        if _objects_to_right(runs):
+            runs = self._again[name] = self._again.get(name) or self._run_again(name)
+        said = f"Tests in {name} fail on a right {PACKAGE}, too, so that it says nothing if they fail on a faulty one."
+        expect(not _objects_to_right(runs), said)
+        return runs
+
+    def _run_again(self, name: str) -> dict[str, Report]:
+        """Run a file once more without the tests that object to right versions, on other versions than before."""
+        trial = self.trial[name]
+        failed = trial.failed
+        first = self._wanted(name, failed)
+        reports = self._run([replace(first[what], first_failure=False) for what in RIGHTS if what in first])
+        bad = tuple(sorted({*failed, *(test for report in reports for test in trial.failed_in(report))}))
+        said = f"No test in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
+        expect(bool(set(trial.executed) - set(bad)), said)
+        wanted = self._wanted(name, bad, "again")
+        whats = sorted(wanted)
+        self._draw(name, "order", "again").shuffle(whats)
+        return dict(zip(whats, self._run([wanted[what] for what in whats]), strict=True))
 
     def _reports(self, name: str, report: Report) -> bool:
         return report.ending is Ending.WALL_TIME or report.detects_fault(self.trial[name])
 
-    def _wanted(self, name: str) -> dict[str, TestRun]:
-        """Return the runs of a file that are asked for, by what is special about each."""
+    def _wanted(self, name: str, without: tuple[str, ...], *salt: str) -> dict[str, TestRun]:
+        """Return the runs of a file that are asked for, by what is special about each.
+
+        Args:
+            name: the file.
+            without: tests that do not run.
+            salt: another one makes other versions.
+        """
         wanted: dict[str, TestRun] = {}
         if RIGHT[name] in self._checks:
-            wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND)), first_failure=True)
+            wanted[SECOND] = TestRun((name,), right(STYLES[1], self._draw(name, SECOND, *salt)), first_failure=True)
             # As much like the first version as faulty ones are: who objects to any other text is found out.
-            wanted[REWORDED] = TestRun((name,), reworded(self._draw(name, REWORDED)), first_failure=True)
+            wanted[REWORDED] = TestRun((name,), reworded(self._draw(name, REWORDED, *salt)), first_failure=True)
             if name in ORDERED:
-                version = right(STYLES[0], self._draw(name, BACKWARDS))
+                version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
                 wanted[BACKWARDS] = TestRun((name,), version, backwards=True, first_failure=True)
         for fault in faults():
             if FILES[fault.check] == name and self._checks & {fault.check, ENDS}:
-                draw = self._draw(name, fault.id)
+                draw = self._draw(name, fault.id, *salt)
                 wanted[fault.id] = TestRun((name,), broken(fault, draw.choice(STYLES), draw), first_failure=True)
-        return wanted
+        return {what: replace(run, without=without) for what, run in wanted.items()}
 
     def _draw(self, *what: str) -> random.Random:
         """Return what is drawn from for one purpose: the same, whatever else is run."""
@@ -156,6 +202,10 @@ class Examination:
 
     def _run(self, wanted: Sequence[TestRun]) -> list[Report]:
         return student_test_runs.run(self._workspace, self.source, wanted)
+
+
+def _objects_to_right(runs: Mapping[str, Report]) -> bool:
+    return any(not runs[what].passed for what in RIGHTS if what in runs)
 
 
 _OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"

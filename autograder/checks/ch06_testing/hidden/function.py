@@ -19,7 +19,7 @@ def test_limits_pass(examination: Examination) -> None:
     expect_passed(LIMITS, examination.trial.get(LIMITS))
 
 
-@check(points=1, holds=("limits-pass", "approx"), needs=("limits_pass",), doc=contract.APPROX)
+@check(points=1, holds=("limits-pass", "approx"), after=("limits_pass",), doc=contract.APPROX)
 @hint("Other people may write safe_speed in other words: only the contract in its docstring is sure.")
 @hint("Floats that are worked out in another order differ in the last digit: pytest.approx.")
 def test_limits_right(examination: Examination) -> None:
@@ -126,7 +126,7 @@ LINES = (
 )
 
 
-@check_each_row(group("function", needs=RIGHT), LINES)
+@check_each_row(group("function", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -19,7 +19,7 @@ def test_launch_pass(examination: Examination) -> None:
     expect_passed(LAUNCH, examination.trial.get(LAUNCH))
 
 
-@check(points=1, holds=("write-launch-test", "launch-promise"), needs=("launch_pass",))
+@check(points=1, holds=("write-launch-test", "launch-promise"), after=("launch_pass",))
 @hint("Find the launch file in the package's share folder, by FindPackageShare or get_package_share_directory.")
 @hint("Ask over topics; what the program prints may be worded otherwise tomorrow.")
 def test_launch_right(examination: Examination) -> None:
@@ -57,7 +57,7 @@ LINES = (
 )
 
 
-@check_each_row(group("launch", needs=RIGHT), LINES)
+@check_each_row(group("launch", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -19,7 +19,7 @@ def test_guard_pass(examination: Examination) -> None:
     expect_passed(GUARD, examination.trial.get(GUARD))
 
 
-@check(points=1, holds=("guard-pass", "over-topics"), needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, holds=("guard-pass", "over-topics"), after=("guard_pass",), doc=contract.PYTEST)
 @hint("Ask over topics, as another robot would; attributes of the node may have other names tomorrow.")
 @hint("Each test starts its own guard and leaves nothing behind.")
 def test_guard_right(examination: Examination) -> None:
@@ -27,22 +27,24 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, BACKWARDS)
 
 
-@check(points=2, holds="own-domain", needs=RIGHT, doc=contract.DOMAIN)
+@check(points=2, holds="own-domain", after=RIGHT, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
     """They meet in a domain of their own, where no other robot takes part."""
+    examination.expect_usable(GUARD)
     expect(
         not examination.trial[GUARD].joined_domain,
         f"While the tests in {GUARD} ran, a node of theirs appeared in the default domain, in which other robots are.",
     )
 
 
-@check(points=1, holds="guard-pass", needs=RIGHT, doc=contract.FIXTURES)
+@check(points=1, holds="guard-pass", after=RIGHT, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
     """They leave no node and no context behind."""
+    examination.expect_usable(GUARD)
     left = examination.trial[GUARD].left
     expect(left == 0, f"After the last test in {GUARD}, {left} network sockets of ROS contexts were still open.")
 
@@ -159,7 +161,7 @@ LINES = (
 )
 
 
-@check_each_row(group("node", needs=RIGHT), LINES)
+@check_each_row(group("node", after=RIGHT), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
     """The tests of the file object to every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

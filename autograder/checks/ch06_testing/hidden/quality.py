@@ -7,7 +7,7 @@ from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
-from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
@@ -22,11 +22,12 @@ LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
 
-@check(points=1, holds="as-given", needs=("limits_pass",), doc=contract.PYTEST)
+@check(points=1, holds="as-given", after=("limits_pass",), doc=contract.PYTEST)
 @hint("The package is right. Where a test fails on it, change the test.")
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
+    examination.expect_usable(LIMITS)
     given = style(STYLES[0]).files
     texts = {name: text.encode() for name, text in given.items()}
     changed = changed_files(examination.source.files, texts, GIVEN)
@@ -42,28 +43,32 @@ def test_as_given(workspace: Workspace, examination: Examination) -> None:
     )
 
 
-@check(points=1, holds="no-sleep", needs=("guard_pass",), doc=contract.PYTEST)
+@check(points=1, holds="no-sleep", after=("guard_pass",), doc=contract.PYTEST)
 @hint(*contract.NO_SLEEP)
 def test_no_sleep(examination: Examination) -> None:
     """No test waits with time.sleep."""
+    examination.expect_usable(GUARD)
     expect_no_sleep(examination.source)
 
 
-@check(points=1, holds="no-sleep", needs=("guard_right", "launch_right"), doc=contract.PYTEST)
+@check(points=1, holds="no-sleep", after=("guard_right", "launch_right"), doc=contract.PYTEST)
 @hint("Each loop that waits needs a deadline, after which the test fails.")
 @hint("spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.")
 def test_ends(examination: Examination) -> None:
     """The tests end by themselves on a node that never answers."""
+    for name in (GUARD, LAUNCH):
+        examination.expect_usable(name)
     endless = examination.endless()
     expect(
         not endless, f"On a faulty version, the tests in {' and '.join(endless)} did not end, and had to be stopped."
     )
 
 
-@check(points=2, holds="colcon-finds", needs=("limits_pass",), doc=contract.CLI)
+@check(points=2, holds="colcon-finds", after=("limits_pass",), doc=contract.CLI)
 @hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
+    examination.expect_usable(LIMITS)
     report = examination.colcon
     verdicts = report.claims.verdicts
     expect_ended(report)
@@ -73,12 +78,13 @@ def test_colcon(examination: Examination) -> None:
     expect(not missing, f"`colcon test` ran {len(verdicts)} tests, but none in {', '.join(missing)}.", fraction=0.5)
 
 
-@check(points=2, holds="linters", needs=("colcon",), doc=contract.CLI)
+@check(points=2, holds="linters", after=("colcon",), doc=contract.CLI)
 @hint("A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.")
 @hint("A test that calls no linter, or asserts nothing, finds nothing: take it as `ros2 pkg create` writes it.")
 @hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")
 def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
+    examination.expect_usable(LIMITS)
     verdicts = examination.colcon.claims.verdicts
     ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
     names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.SKIPPED}
