@@ -25,7 +25,8 @@ check = group("step_2")
 @check(
     points=2,
     holds=("sector", "processor", "clearance-header", "front", "left", "right"),
-    needs=("processor",),
+    needs=("build",),
+    after=("processor",),
     doc=contract.SCAN_DOC,
 )
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
@@ -60,7 +61,8 @@ def test_sectors(seeing: System, draw: random.Random) -> None:
 @check(
     points=3,
     holds=("readings", "no-reading", "valid-field", "sector", "processor", "clearance-header"),
-    needs=("sectors",),
+    needs=("build",),
+    after=("sectors",),
     doc=contract.REP_117,
 )
 @hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")
@@ -79,11 +81,16 @@ def test_readings(seeing: System, draw: random.Random) -> None:
         ("-inf from a few beams", (*hole, -math.inf), -math.inf),
     )
     wrong = []
-    for number, (what, (first, last, reading), wanted) in enumerate(cases):
-        aside = (3.0, math.inf)[number % 2]
-        newest = newest_clearance(seeing, scan(Part(-25.0, 25.0, wall), Part(first, last, reading), fill=aside))
+    for what, (first, last, reading), wanted in cases:
+        newest = newest_clearance(seeing, scan(Part(-25.0, 25.0, wall), Part(first, last, reading)))
         if not (newest.valid and (newest.front == wanted or abs(newest.front - wanted) <= TOLERANCE)):
             wrong.append(f"With {what} at {wall:.2f} m, front was {newest.front:.2f} and valid {newest.valid}.")
+    newest = newest_clearance(seeing, scan(Part(-25.0, 25.0, wall), fill=math.inf))
+    if not newest.valid:
+        wrong.append("With a wall ahead, and +inf from every beam on the left and on the right, valid was false.")
+    elif not newest.left == newest.right == math.inf:
+        sides = f"left was {newest.left:.2f} and right {newest.right:.2f}"
+        wrong.append(f"With a wall ahead, and +inf from every beam on the left and on the right, {sides}.")
     blind = (("ahead", (-35.0, 35.0)), ("on the left", (55.0, 125.0)), ("on the right", (-125.0, -55.0)))
     phantoms = draw.sample((math.nan, 0.0, RANGE_MAX + 1.0), len(blind))
     for (where, (first, last)), reading in zip(blind, phantoms, strict=True):
@@ -98,5 +105,5 @@ def test_readings(seeing: System, draw: random.Random) -> None:
     wrong += sector_edge_errors(seeing) + range_limit_errors(seeing) + empty_scan_errors(seeing)
     wrong += other_lidar_errors(seeing, draw)
     if wrong:
-        total = len(cases) + len(blind) + len(edges) + 4 + OTHER_LIDARS
+        total = len(cases) + len(blind) + len(edges) + 5 + OTHER_LIDARS
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
+from autograder.checks.ch08_capstone.hidden import judges
 from autograder.checks.ch08_capstone.hidden.drives import Drives
-from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PROCESSOR
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 from autograder.harness import Workspace
 
@@ -32,6 +34,20 @@ def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
     shared = SharedSystem(workspace, SLOW)
     yield shared
     shared.close()
+
+
+@pytest.fixture(scope="session")
+def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
+    """Keeps the controller alone, to which right clearances are sent."""
+    shared = SharedSystem(workspace, absent=(PROCESSOR, MONITOR), stands_in=True)
+    yield shared
+    shared.close()
+
+
+@pytest.fixture
+def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) -> judges.JudgeDriving:
+    """Judges the controller: behind the student's processor and, if that fails, by right clearances."""
+    return partial(judges.judge_driving, shared_system, lone_controller)
 
 
 @pytest.fixture(scope="session")

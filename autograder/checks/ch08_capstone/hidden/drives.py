@@ -12,12 +12,17 @@ import numpy as np
 
 from autograder.checks.ch02_nodes.hidden import world_generation
 from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS
 from autograder.checks.ch08_capstone.support.system import System
 from autograder.harness import ReceivedMessage, drive
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
 RADIUS = 0.18  # m
 ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
+SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
+TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
+STILL = 0.02  # m/s, rad/s: who is slower stands
+SLOWEST = 0.1  # of the contract's speeds: who is slower has no more time than this one
 DARK = LidarFault("dead", 3.0, 7.0)
 BLOCKED = LidarFault("blocked", 9.5, 11.5)
 
@@ -46,14 +51,20 @@ class Drives:
 
     @cached_property
     def corridor(self) -> Driven:
-        """A short corridor with one bend to the left or to the right, until the robot is round it."""
+        """A short corridor with one bend to the left or to the right, until the robot is round it.
+
+        Who drives or turns slower than the contract's speeds, which are the greatest, has as much more time.
+        """
         draw = random.Random(f"{self._seed}:corridor")
+        pace = Pace()
 
-        def arrived(state: State) -> bool:
+        def over(state: State) -> bool:
             pose = state.robots[0].pose
-            return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
+            arrived = self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0
+            pace.see(state)
+            return bool(arrived) or state.time_ns / 1e9 >= CORRIDOR_SECONDS / pace.share
 
-        return self._drive(self._bend.world, CORRIDOR_SECONDS, draw, until=arrived)
+        return self._drive(self._bend.world, CORRIDOR_SECONDS / SLOWEST, draw, until=over)
 
     @cached_property
     def faulty(self) -> Driven:
@@ -77,6 +88,24 @@ class Drives:
         began = system.seconds
         done = drive(system.harness, simulation, seconds, **options)
         return Driven(done.recording, system.seconds - began, began, tuple(system.messages(began).commands))
+
+
+class Pace:
+    """How fast a robot drives and turns where it is fastest, as a share of the contract's speeds."""
+
+    def __init__(self) -> None:
+        self._speed = self._rate = 0.0
+
+    def see(self, state: State) -> None:
+        """Look at one more state of its drive."""
+        velocity = state.robots[0].velocity
+        self._speed, self._rate = max(self._speed, velocity.linear), max(self._rate, abs(velocity.angular))
+
+    @property
+    def share(self) -> float:
+        """The lesser of both shares, from `SLOWEST` to 1; what it has not done yet counts as 1."""
+        shares = (done / most for done, most in ((self._speed, SPEED), (self._rate, TURN)) if done > STILL)
+        return max(SLOWEST, min(1.0, *shares, 1.0))
 
 
 @dataclass(frozen=True)

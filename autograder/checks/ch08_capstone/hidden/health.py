@@ -42,7 +42,8 @@ PHASE, PHASE_END = 0.25, 0.35
 @check(
     points=3,
     holds=("monitor", "level", "silent", "silent-field", "health-header"),
-    needs=("processor", "controller", "monitor"),
+    needs=("build",),
+    after=("processor", "controller", "monitor", "readings"),
     doc=contract.NODES_DOC,
 )
 @hint("A topic that was never heard is silent, too, from the first report on: start with None for each.")
@@ -77,7 +78,9 @@ def test_health_levels(system: System, lone_monitor: SharedSystem) -> None:
     _expect_reports(half_blind, DEGRADED, set(), situation, fraction=0.85)
 
 
-@check(points=3, holds=("silent", "silent-field", "monitor", "health-header"), needs=("health_levels",))
+@check(
+    points=3, holds=("silent", "silent-field", "monitor", "health-header"), needs=("build",), after=("health_levels",)
+)
 @hint("Remember when each topic was last heard, by self.get_clock().now(), and compare in the timer's callback.")
 @hint("A callback of the dead topic cannot tell that it is dead: only a timer can.")
 def test_dead_sensor(system: System, slow_system: SharedSystem, lone_monitor: SharedSystem) -> None:

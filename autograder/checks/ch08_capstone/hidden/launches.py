@@ -28,8 +28,8 @@ from autograder.probes import launch_probe
 from autograder.probes.files import read_plain
 
 check = group("step_4", doc=contract.LAUNCH_DOC)
-SHARED = ("shares", "interface_package")
-STARTS = ("executables", *SHARED)
+SHARED = ("shares",)
+STARTS = ("executables", "shares", "interface_package")
 OTHER_CONFIG = "config/of_another_robot.yaml"
 MAX_SCRIPT = 64 * 1024  # bytes; setuptools writes about a thousand
 SHOWN_SECONDS = 5.0  # real time until a line of a program that runs is shown
@@ -93,7 +93,7 @@ def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
         yield Launched(harness, values, {name: lines[name] for name in scripts})
 
 
-@check(points=1, holds="launch-arguments", needs=SHARED)
+@check(points=1, holds="launch-arguments", needs=("build",), after=SHARED)
 @hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
 @hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
 def test_launch_arguments(workspace: Workspace) -> None:
@@ -123,7 +123,7 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
     expect(begun, f"Without {name}:=..., the launch starts nothing: the argument has no default. {why}", fraction=0.5)
 
 
-@check(points=2, holds="launches", needs=STARTS)
+@check(points=2, holds="launches", needs=("build",), after=STARTS)
 @hint(*HINTS)
 def test_launch_starts(launched: Launched) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
@@ -134,12 +134,14 @@ def test_launch_starts(launched: Launched) -> None:
     expect(len(programs) <= len(PROGRAMS), said, fraction=0.5)
 
 
-@check(points=2, holds=("launch-arguments", "launches", "relative"), needs=("launch_starts",))
+@check(points=2, holds=("launch-arguments", "launches", "relative"), needs=("build",), after=("launch_starts",))
 @hint(*HINTS)
 @hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
 def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
     """What params_file and use_sim_time say reaches all three nodes, and all names stay in their namespace."""
-    for node, values in launched.values.items():
+    there = {node: values for node, values in launched.values.items() if name_of(node) in launched.harness.nodes()}
+    expect(bool(there), "None of the three nodes runs under its name.")
+    for node, values in there.items():
         launch_probe.expect_parameters(launched.harness, name_of(node), {"use_sim_time": True})
         declared = launched.harness.parameters(name_of(node), list(values)) or {}
         # Which parameters a node declares is judged by itself: here it counts that the file's values arrive.
@@ -153,11 +155,12 @@ def test_launch_configures(launched: Launched, workspace: Workspace) -> None:
     expect(not absolute, said, fraction=0.75)
 
 
-@check(points=2, holds="launch-ctrl-c", needs=("launch_starts",))
+@check(points=2, holds="launch-ctrl-c", needs=("build",), after=("launch_starts",))
 @hint("Each program's main goes through run(...), which ends without a traceback.")
 @hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
 def test_launch_stops(launched: Launched) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
+    expect(bool(launched.harness.nodes()), "No node runs that Ctrl-C could end.")
     launch_probe.expect_clean_stop(launched.harness)
 
 

@@ -13,35 +13,37 @@ from autograder.harness import Workspace
 from autograder.probes.namespaces import missing_in_namespace
 
 check = group("step_2")
-BUILT = ("build", "clearance_message", "interface_package")
+MESSAGES = ("clearance_message", "interface_package")
 ENDS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
     "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
 )
 
 
-@check(points=1, holds="processor-name", needs=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="processor-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness.node, PROCESSOR)
 
 
-@check(points=1, holds="controller-name", needs=BUILT, doc=contract.NODES_DOC)
+@check(points=1, holds="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness.node, CONTROLLER)
 
 
-@check(points=1, holds="monitor-name", needs=(*BUILT, "health_message"), doc=contract.NODES_DOC)
+@check(points=1, holds="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
 @hint(*ENDS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(MONITOR).harness.node, MONITOR)
 
 
-@check(points=1, holds="relative", needs=("processor", "controller", "monitor"), doc=contract.NODES_DOC)
+@check(
+    points=1, holds="relative", needs=("build",), after=("processor", "controller", "monitor"), doc=contract.NODES_DOC
+)
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
@@ -52,15 +54,20 @@ def test_relative(workspace: Workspace) -> None:
     expect(not left, " ".join(left))
 
 
-@check(points=2, holds=("processor", "late-joiner"), needs=("processor", "monitor"), doc=contract.QOS_DOC)
+@check(
+    points=2, holds=("processor", "late-joiner"), needs=("build",), after=("processor", "monitor"), doc=contract.QOS_DOC
+)
 @hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
 def test_qos(shared_system: SharedSystem) -> None:
     """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
     graph = shared_system.get(PROCESSOR, MONITOR).harness.node
-    for peer in graph.get_subscriptions_info_by_topic("/scan"):
+    listeners, reporters = graph.get_subscriptions_info_by_topic("/scan"), graph.get_publishers_info_by_topic("/health")
+    expect(bool(listeners), "Nobody subscribes to scan.")
+    expect(bool(reporters), "Nobody publishes health.", fraction=0.5)
+    for peer in listeners:
         reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
         expect(not reliable, f"{peer.node_name} asks for reliable scans: it would get none from a lidar.", fraction=0.5)
-    for peer in graph.get_publishers_info_by_topic("/health"):
+    for peer in reporters:
         durable = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         expect(durable, f"{peer.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)

@@ -36,7 +36,8 @@ check = group("step_5", doc=contract.PARAMETERS_DOC)
         "data_timeout",
         "silence_timeout",
     ),
-    needs=("processor", "controller", "monitor"),
+    needs=("build",),
+    after=("processor", "controller", "monitor"),
 )
 @hint("ros2 param list /navigation_controller shows what a node declares.")
 @hint("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...'): name and default as in the table.")
@@ -61,7 +62,8 @@ def test_declared(system: System) -> None:
         "data_timeout",
         "silence_timeout",
     ),
-    needs=("declared",),
+    needs=("build",),
+    after=("declared",),
 )
 @hint("ros2 param describe /navigation_controller safety_distance shows the range.")
 @hint("floating_point_range=[FloatingPointRange(from_value=0.3, to_value=2.0)] in the ParameterDescriptor.")
@@ -82,7 +84,7 @@ def test_ranges(system: System) -> None:
             expect(refused, f"{node}: {name} can be set to {bounds.highest * 2:g}.")
 
 
-@check(points=3, holds="declares", needs=("declared", "drives", "turns", "sectors", "dead_sensor"))
+@check(points=3, holds="declares", needs=("build",), after=("declared", "drives", "turns", "sectors", "dead_sensor"))
 @hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
 @hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
 def test_used(system: System) -> None:
@@ -93,7 +95,7 @@ def test_used(system: System) -> None:
         raise CheckFailed(" ".join(wrong[:2]), fraction=round(1.0 - len(wrong) / (len(_CASES) + 1), 2))
 
 
-@check(points=2, holds="config", needs=("shares",))
+@check(points=2, holds="config", needs=("build",), after=("shares",))
 @hint("By node, then ros__parameters, then name and value, each level indented by two blanks.")
 @hint("A name that no node declares is ignored without a word: compare letter by letter.")
 def test_config(workspace: Workspace) -> None:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import pytest
 
+from autograder import layout
 from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import colcon_test, expect_ended
+from autograder.probes.given_files import changed_files
 from autograder.probes.student_test_reports import ClaimedOutcome, Report
 from autograder.probes.student_test_runs import take
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
 SHOWN = 5
+GIVEN = ("test/test_integration.py", "test/conftest.py")
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +27,7 @@ def tested(workspace: Workspace) -> Report:
     return colcon_test(workspace, PACKAGE)
 
 
-@check(points=2, holds="pytest", needs=("build", "interface_package"))
+@check(points=2, holds="pytest", needs=("build",), after=("interface_package",))
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 @hint("test_flake8.py, test_pep257.py and test_integration.py are in test/, too.")
 def test_colcon_finds_tests(tested: Report) -> None:
@@ -41,7 +44,7 @@ def test_colcon_finds_tests(tested: Report) -> None:
         )
 
 
-@check(points=2, holds="linters", needs=("colcon_finds_tests",))
+@check(points=2, holds="linters", needs=("build",), after=("colcon_finds_tests",))
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("The linters name a file, a line and a rule: fix them one by one.")
 def test_linters_pass(workspace: Workspace, tested: Report) -> None:
@@ -55,7 +58,8 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
 @check(
     points=2,
     holds=("integration", "sector-tests"),
-    needs=(
+    needs=("build",),
+    after=(
         "colcon_finds_tests",
         "qos",
         "readings",
@@ -69,9 +73,13 @@ def test_linters_pass(workspace: Workspace, tested: Report) -> None:
 )
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("test_integration.py launches your launch file: a robot that drives while it sees, and stops when it is blind.")
-def test_tests_pass(tested: Report) -> None:
-    """Every test of the package passes, the one that launches the whole system, too."""
+def test_tests_pass(workspace: Workspace, tested: Report) -> None:
+    """Every test of the package passes, the one that launches the whole system, too, which is as it was given."""
+    expect(any(name not in LINTERS for name in tested.executed), "colcon test ran no test but those of the linters.")
     bad = [name for name in tested.failed if name not in LINTERS]
     messages = tested.claims.messages
     shown = "; ".join(f"{name}: {messages.get(name, '')}" for name in bad[:SHOWN])
     expect(not bad, f"{len(bad)} of {len(tested.executed)} tests fail: {shown}")
+    kept, solution = take(workspace, PACKAGE).files, layout.SOLUTIONS / PACKAGE
+    changed = changed_files(kept, {name: (solution / name).read_bytes() for name in GIVEN}, ("test",))
+    expect(not changed, f"{' and '.join(changed)} should be as given, and was changed.", fraction=0.5)

@@ -58,7 +58,7 @@ def test_sector_tests_pass(examined: Examined) -> None:
     expect(len(report.executed) >= MIN_TESTS, few, fraction=0.5)
 
 
-@check(points=4, holds="sector-tests", needs=("sector_tests_pass",), doc=contract.REP_117)
+@check(points=4, holds="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)
 @hint("One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
 @hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
 def test_sector_tests_find_faults(examined: Examined) -> None:

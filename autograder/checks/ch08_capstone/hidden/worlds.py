@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
@@ -19,7 +21,6 @@ from sim import clearance
 from sim.rows import row_at, state_at
 
 check = group("step_2")
-DRIVES = ("drives",)  # not on turning: a collision shows more than a failed reaction, and earns its share
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
 STEADY = "changes < 3.5"  # turns that followed one to the other side, in the newest MEMORY seconds
 MEMORY = 6.0  # s
@@ -27,13 +28,15 @@ STOPPING = 0.3  # m: 0.5 s until the data are stale, and what a chain at 10 Hz a
 BLIND_STOPPING = 0.15  # m: a blocked lidar says so at once
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 STANDS = 0.01  # m/s
+ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed: it turns, too
+DROVE = 0.1  # of the way that the contract's speed allows: who has not come so far did not drive
 BACK_WITHIN = 2.0  # s
 BESIDE = 0.15  # m, little more than range_min
 SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
 PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
-@check(points=3, holds=("turn", "starts-turn"), needs=DRIVES)
+@check(points=3, holds=("turn", "starts-turn"), needs=("build",), after=("drives", "turns"))
 @hint(*PICTURE)
 def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
@@ -47,26 +50,31 @@ def test_touches_nothing(drives: Drives, driving: System, gallery: Gallery) -> N
         _fail(gallery, driven, f"It touched {what} at t = {when:.1f} s.", when, "touches", when / driven.seconds, rules)
     metres = float(tracks.path(recording)[-1])
     _keep(gallery, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
-    expect(metres >= 2.0, f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s.")
+    fastest = min(SPEED, float(tracks.speeds(recording).max()))
+    said = f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s, at {fastest:.2f} m/s at most."
+    expect(fastest > STANDS and metres >= ROOM_SHARE * fastest * driven.seconds, said)
     _expect_no_touch(driving)
 
 
-@check(points=2, holds=("more-room", "ends-turn"), needs=("drives", "turns"))
+@check(points=2, holds=("more-room", "ends-turn"), needs=("build",), after=("drives", "turns"))
 @hint("A turn that has begun keeps its direction until the way is clear.")
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, gallery: Gallery) -> None:
     """It does not swing to and fro between left and right."""
+    turned = False
     for driven in (drives.room, drives.corridor):
         times = [command.seconds - driven.began for command in driven.commands]
         rates = [command.message.angular.z for command in driven.commands]
+        turned = turned or any(abs(rate) > tracks.TURNS for rate in rates)
         verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_mind(times, rates, MEMORY)})
         if verdict.violated_at is not None:
             when, rules = verdict.violated_at, {f"at most three changes of mind in {MEMORY:.0f} s": verdict}
             sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
             _fail(gallery, driven, sentence, when, "to and fro", when / driven.seconds, rules)
+    expect(turned, "It never turned, neither in a room nor in a corridor with a bend.")
 
 
-@check(points=3, holds=("drive", "more-room"), needs=DRIVES)
+@check(points=3, holds=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
 @hint("At the bend it has to turn towards the side with more room, and then drive on.")
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
@@ -80,12 +88,15 @@ def test_gets_on(drives: Drives, driving: System, gallery: Gallery) -> None:
     _expect_drive_between(driving)
 
 
-@check(points=3, holds="untrusted", needs=("stops",))
+@check(points=3, holds="untrusted", needs=("build",), after=("drives", "stops"))
 @hint("Data older than data_timeout mean stop: how far does the robot get until it sees that they are old?")
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     driven, rules = drives.faulty, {}
+    metres = float(np.interp(DARK.start, driven.recording.times, tracks.path(driven.recording)))
+    said = f"In the {DARK.start:.0f} s before its lidar died it drove {metres:.2f} m: who stops has driven before."
+    expect(metres >= DROVE * SPEED * DARK.start, said)
     for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
         times = driven.recording.times
         there = (times >= trouble.start) & (times < trouble.end)
@@ -104,7 +115,7 @@ def test_stops_in_time(drives: Drives, driving: System, gallery: Gallery) -> Non
     _expect_half_blind_stop(driving)
 
 
-@check(points=2, holds="drive", needs=("stops_in_time",))
+@check(points=2, holds="drive", needs=("build",), after=("drives", "stops_in_time"))
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, gallery: Gallery) -> None:
     """Within 2 s of its lidar's return it drives again."""

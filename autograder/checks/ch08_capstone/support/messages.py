@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from autograder.checks import expect
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
 from autograder.harness import Workspace
 from autograder.interfaces import load_from
@@ -36,6 +37,7 @@ HEALTH = Message(
     {**HEADER, "level": "uint8", "silent": "sequence<string>"},
     {name: value for value, name in enumerate(LEVELS)},
 )
+_LIKE = {"float": ("float", "double"), "uint8": ("uint8", "int8", "uint16", "int16", "uint32", "int32")}
 # rosidl's names of types, in the words of a .msg file.
 _WORDS = {"boolean": "bool", "float": "float32", "double": "float64", "sequence<string>": "string[]"}
 
@@ -46,7 +48,18 @@ def load_messages(workspace: Workspace) -> Any:
 
 
 def types(package: Any) -> Types:
-    """Return the two messages of a package in which both are as they must be."""
+    """Return the two messages of a package; whether they are exactly as they must be is for other checks to say.
+
+    Raises:
+        CheckFailed: one is missing, or lacks a field of a kind with which the nodes could be understood.
+    """
+    for wanted in (CLEARANCE, HEALTH):
+        message = getattr(package.msg, wanted.name, None)
+        fields = message.get_fields_and_field_types() if message is not None else {}
+        absent = [name for name, kind in wanted.fields.items() if fields.get(name) not in _LIKE.get(kind, (kind,))]
+        expect(
+            not absent, f"{wanted.name}.msg has no {', '.join(absent)} as step 3 says: nobody understands the nodes."
+        )
     return Types(package.msg.Clearance, package.msg.Health)
 
 

@@ -22,7 +22,7 @@ from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe, student_test_runs
+from autograder.probes import launch_probe, linters, student_test_runs
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
@@ -126,6 +126,8 @@ def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     expect(report.passed, f"The linters object: {shown or report.output.strip()[-300:]}")
     ran = {f"{test.partition('::')[0]}.py" for test in report.executed}
     expect(ran >= set(LINTERS), f"{' and '.join(sorted({*LINTERS} - ran))}: each test in it was skipped.")
+    hidden = linters.objections(workspace, student_test_runs.take(workspace, PACKAGE))
+    expect(not hidden, "; ".join(f"{name} passes, and its linter finds {what}" for name, what in hidden.items()))
 
 
 def _absent(workspace: Workspace, files: tuple[str, ...]) -> list[str]:
