@@ -16,7 +16,7 @@ from autograder.checks.ch06_testing.support.assertions import (
     expect_passed,
     is_usable,
 )
-from autograder.checks.ch06_testing.support.contract import LIMITS, MIN_TESTS
+from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, LIMITS, MIN_TESTS
 from autograder.harness import Workspace
 from autograder.probes.colcon_test import expect_ended
 from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source
@@ -48,13 +48,18 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
             False,
         ),
         (
-            report(GOOD, BAD, message="assert 1 == 2"),
-            "1 of 2 tests in test_limits.py fail on the package as it is: test_1: assert 1 == 2",
+            report(*[GOOD] * 5, BAD, message="assert 1 == 2"),
+            "1 of 6 tests in test_limits.py fail on the package as it is: test_5: assert 1 == 2",
             True,
         ),
         (
             report(BAD, message="NotImplementedError: this part of the exercise is still to be written"),
             "test_limits.py is still to be written: test_0 raises NotImplementedError.",
+            False,
+        ),
+        (
+            report(*[GOOD] * GIVEN_TESTS[LIMITS], BAD, message="assert 1 == 2"),
+            "1 of 5 tests in test_limits.py fail on the package as it is: test_4: assert 1 == 2",
             False,
         ),
         (report(status=5), "No test in test_limits.py ran on the package as it is.", False),
@@ -68,14 +73,18 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
             "The tests in test_limits.py ended on the package as it is before pytest could say how they went: memory.",
             False,
         ),
-        (report(GOOD), "Only 1 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one.", True),
+        (
+            report(*[GOOD] * 5),
+            "Only 5 of at least 6 tests in test_limits.py ran: a case of parametrize counts as one.",
+            True,
+        ),
     ],
-    ids=["missing", "endless", "failing", "unwritten", "none", "unreadable", "stopped", "few"],
+    ids=["missing", "endless", "failing", "unwritten", "given", "none", "unreadable", "stopped", "few"],
 )
 def test_tests_that_do_not_pass_on_the_given_package_are_named_and_the_others_are_usable(
     run: Report | None, sentence: str, usable: bool
 ) -> None:
-    assert is_usable(run) is usable
+    assert is_usable(LIMITS, run) is usable
     with pytest.raises(CheckFailed) as failed:
         expect_passed(LIMITS, run)
     assert failed.value.message == sentence
@@ -83,7 +92,7 @@ def test_tests_that_do_not_pass_on_the_given_package_are_named_and_the_others_ar
 
 def test_enough_passing_tests_are_usable() -> None:
     expect_passed(LIMITS, ENOUGH)
-    assert is_usable(ENOUGH)
+    assert is_usable(LIMITS, ENOUGH)
 
 
 def test_of_a_closed_report_nothing_but_a_known_name_is_shown() -> None:

@@ -83,7 +83,7 @@ Verdict = Callable[[TestRun, str], bool]  # whether a test, by its name, fails i
 
 
 def examine(monkeypatch: pytest.MonkeyPatch, workspace: Workspace, fails: Verdict) -> tuple[Examination, list[TestRun]]:
-    """Return an examination of tests named a to f, and all runs of it as they are made."""
+    """Return an examination of a test with parameters a to f, and all runs of it as they are made."""
     made: list[TestRun] = []
 
     def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
@@ -96,11 +96,12 @@ def examine(monkeypatch: pytest.MonkeyPatch, workspace: Workspace, fails: Verdic
 
 def _report(wanted: TestRun, fails: Verdict) -> Report:
     ran: dict[str, ClaimedOutcome] = {}
-    for name in (f"test_limits::{letter}" for letter in "abcdef"):
+    for name in (f"test_limits::test[{letter}]" for letter in "abcdef"):
         if name in wanted.without or (wanted.first_failure and ClaimedOutcome.FAILED in ran.values()):
             continue
-        ran[name] = ClaimedOutcome.FAILED if fails(wanted, name[-1]) else ClaimedOutcome.PASSED
-    return Report(None, int(ClaimedOutcome.FAILED in ran.values()), Claims(ran), 0, "")
+        ran[name] = ClaimedOutcome.FAILED if fails(wanted, name[-2]) else ClaimedOutcome.PASSED
+    report = Report(None, int(ClaimedOutcome.FAILED in ran.values()), Claims(ran), 0, "")
+    return report if wanted.shown else report.closed(frozenset({"test_limits::test"}))
 
 
 def _kind(examination: Examination, wanted: TestRun) -> str:
@@ -122,7 +123,7 @@ def test_a_test_that_fails_on_the_given_package_costs_no_line_that_the_others_se
     )
     examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert {wanted.without for wanted in made[1:]} == {("test_limits::b",)}
+    assert {wanted.without for wanted in made[1:]} == {("test_limits::test[b]",)}
 
 
 def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
@@ -133,10 +134,12 @@ def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
         return (test == "b" and kind != "trial") or (test == "c" and kind in {"step", "smooth"})
 
     examination, made = examine(monkeypatch, workspace, fails)
-    with pytest.raises(CheckFailed, match="fail on a right speed_guard that is written differently"):
+    with pytest.raises(
+        CheckFailed, match=r"test in test_limits\.py fails on a right speed_guard that is written differently"
+    ):
         examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert made[-1].without == ("test_limits::b",)
+    assert made[-1].without == ("test_limits::test[b]",)
 
 
 def test_tests_that_object_to_every_other_version_earn_no_line(

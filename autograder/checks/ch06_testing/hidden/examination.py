@@ -17,7 +17,15 @@ from functools import cached_property
 from autograder.checks import CheckFailed, CheckRow, expect
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, PYTEST
+from autograder.checks.ch06_testing.support.contract import (
+    GIVEN_TESTS,
+    GUARD,
+    LAUNCH,
+    LIMITS,
+    MIN_TESTS,
+    PACKAGE,
+    PYTEST,
+)
 from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.colcon_test import colcon_test
@@ -90,7 +98,7 @@ class Examination:
         """The other runs: by file, and what is special about the version or the run."""
         wanted: dict[tuple[str, str], TestRun] = {}
         # What takes long comes first. Which file it is, a test knows anyway.
-        for name in (name for name in reversed(MIN_TESTS) if is_usable(self.trial.get(name))):
+        for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
             mine = self._wanted(name, self.trial[name].failed)
             whats = sorted(mine)
             self._draw(name, "order").shuffle(whats)
@@ -113,8 +121,9 @@ class Examination:
                 raise CheckFailed(describe_failure(name, self.runs[name, what], _WHERE[what]))
 
     def expect_usable(self, name: str) -> None:
-        """Fail the check unless one of a file's tests passes on the package as it is."""
-        expect(is_usable(self.trial.get(name)), f"No test in {name} passes on the package as it is.")
+        """Fail the check unless one of the student's tests in a file passes on the package as it is."""
+        said = f"No test of yours in {name} passes on the package as it is."
+        expect(is_usable(name, self.trial.get(name)), said)
 
     def expect_objection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests of its file object to every fault that belongs to it.
@@ -164,8 +173,10 @@ class Examination:
         first = self._wanted(name, failed)
         reports = self._run([replace(first[what], first_failure=False) for what in RIGHTS if what in first])
         bad = tuple(sorted({*failed, *(test for report in reports for test in trial.failed_in(report))}))
-        said = f"No test in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
-        expect(bool(set(trial.executed) - set(bad)), said)
+        said = (
+            f"No test of yours in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
+        )
+        expect(len(set(trial.executed) - set(bad)) > GIVEN_TESTS[name], said)
         wanted = self._wanted(name, bad, "again")
         whats = sorted(wanted)
         self._draw(name, "order", "again").shuffle(whats)

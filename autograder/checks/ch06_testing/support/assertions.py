@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder.checks import CheckFailed, expect
-from autograder.checks.ch06_testing.support.contract import MIN_TESTS, PACKAGE
+from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
 from autograder.probes.student_test_reports import Report, Source, shown_name
 from autograder.sandbox import Ending
@@ -14,11 +14,11 @@ UNFINISHED = "still to be written"
 MAX_FAILED = 50  # tests: who has more that fail has nothing to judge others by
 
 
-def is_usable(report: Report | None) -> bool:
-    """Whether tests of a file pass on a right version, so that they say something of others."""
+def is_usable(name: str, report: Report | None) -> bool:
+    """Whether more tests of a file than the given ones pass on a right version, so that they tell others apart."""
     if report is None or report.status not in (0, 1) or len(report.failed) > MAX_FAILED:
         return False
-    return bool(set(report.executed) - set(report.failed))
+    return len(set(report.executed) - set(report.failed)) > GIVEN_TESTS[name]
 
 
 def expect_passed(name: str, report: Report | None) -> None:
