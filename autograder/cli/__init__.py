@@ -6,23 +6,42 @@ Exit status: 0 success, 1 a requirement is not met or an error occurred, 2 wrong
 from __future__ import annotations
 
 import importlib
+import io
 import os
 import sys
+import traceback
 from pathlib import Path
+from typing import Any
 
 import click
 
 from autograder import __version__
+from autograder.cli.terminal import echo
 from autograder.exceptions import AutograderError, UsageError
+
+INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
 
 class Verbs(click.Group):
     """The verbs, a module each, imported when it is called: the students' bundle has fewer."""
 
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run a verb, and exit. What click says of a wrong call, which may name a student's file, is cleaned."""
+        try:
+            status = super().main(*args, **{**extra, "standalone_mode": False})
+        except click.ClickException as error:
+            error.show(said := io.StringIO())
+            echo(said.getvalue(), err=True, nl=False)
+            status = error.exit_code
+        except click.Abort:
+            echo("Aborted!", err=True)
+            status = INTERRUPTED
+        sys.exit(status if isinstance(status, int) else 0)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the verbs."""
         modules = {path.stem for path in Path(__file__).parent.glob("*.py")}
-        return sorted(modules - {"__init__", "options", "text_tables"})
+        return sorted(modules - {"__init__", "options", "terminal", "text_tables"})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a verb."""
@@ -56,5 +75,8 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         group(args=arguments, prog_name="autograder")
     except AutograderError as error:
-        click.echo(f"autograder: {error}", err=True)
+        echo(f"autograder: {error}", err=True)
         sys.exit(2 if isinstance(error, UsageError) else 1)
+    except Exception:  # a fault of the grader; what it says may hold a student's text
+        echo(traceback.format_exc(), err=True, nl=False)
+        sys.exit(1)

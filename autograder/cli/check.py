@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.checking import check as run_checks
 from autograder.result import write_json
@@ -24,7 +25,7 @@ def check(assignment: str, workspace: Path | None, json_file: Path | None) -> No
     PATH is by default the first of ./ws, ./ID/ws and ./chapters/ID/ws that exists.
     """
     report = run_checks(assignment, workspace or _workspace(assignment))
-    click.echo(repr(report))
+    echo(repr(report))
     if json_file is not None:
         write_json(json_file, dataclasses.asdict(report))
     sys.exit(0 if isinstance(report, CheckReport) and report.passed else 1)

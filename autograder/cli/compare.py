@@ -10,6 +10,7 @@ import click
 
 from autograder import export
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo, on_line
 from autograder.export.changes import Change, CheckChange, changes
 from autograder.result import write_json
 
@@ -27,7 +28,7 @@ def compare(old: Path, new: Path, json_file: Path | None) -> None:
     found = changes(export.load(old), export.load(new))
     print_changes(found)
     students = f"{len(found)} {'student' if len(found) == 1 else 'students'}"
-    click.echo(f"{students} with another result" if found else "No result has changed.")
+    echo(f"{students} with another result" if found else "No result has changed.")
     if json_file is not None:
         write_json(json_file, [asdict(change) for change in found])
 
@@ -36,9 +37,9 @@ def print_changes(found: Iterable[Change]) -> None:
     """Print the students with another result, their marks, and the checks that differ."""
     for change in found:
         marks = f"{_number(change.before)} -> {_number(change.after)}"
-        click.echo(f"{change.student} ({change.assignment}): {marks}{_note(change)}")
+        echo(f"{on_line(change.student)} ({on_line(change.assignment)}): {marks}{_note(change)}")
         for check in change.checks:
-            click.echo(f"    {check.id}: {_points(check)}")
+            echo(f"    {on_line(check.id)}: {_points(check)}")
 
 
 def _note(change: Change) -> str:

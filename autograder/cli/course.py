@@ -7,6 +7,7 @@ import sys
 import click
 
 from autograder.checks import suites
+from autograder.cli.terminal import echo
 from autograder.course.cells import is_graded
 from autograder.course.contract_rules import broken_contract
 from autograder.course.findings import Finding
@@ -30,7 +31,7 @@ def sync(names: tuple[str, ...]) -> None:
     """Write the text of the reference into notebooks, and the points of the suites into grade cells."""
     for chapter in chapters(names):
         changed = len(sync_chapter(chapter))
-        click.echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
+        echo(f"{chapter.assignment}: " + (f"{changed} brought up to date" if changed else "as it was"))
 
 
 @course.command()
@@ -39,7 +40,7 @@ def check(names: tuple[str, ...]) -> None:
     """Say what is stale and which rules for notebooks are broken. If there is anything, the exit status is 1."""
     found = [finding for chapter in chapters(names) for finding in findings(chapter)]
     for finding in found:
-        click.echo(str(finding))
+        echo(str(finding))
     sys.exit(1 if found else 0)
 
 
@@ -58,6 +59,6 @@ def tables() -> None:
     """Write the pages for instructors, and for students the titles of the checks that judge after handing in."""
     page, problems = course_page()
     for finding in problems:
-        click.echo(str(finding))
+        echo(str(finding))
     for path, text in {**titles(), PAGE: page, checks_page.PAGE: checks_page.checks_page()}.items():
         path.write_text(text, encoding="utf-8")

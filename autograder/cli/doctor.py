@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo
 from autograder.doctor import System, examine, healthy, render, security
 from autograder.doctor.finding import VERDICTS, Finding
 from autograder.result import write_json
@@ -24,7 +25,7 @@ from autograder.result import write_json
 def doctor(try_escapes: bool, json_file: Path | None) -> None:
     """Say what this machine has, what it lacks, and the one command that fixes it."""
     findings = security.examine() if try_escapes else examine(System())
-    click.echo(render(findings, verdicts=security.VERDICTS if try_escapes else VERDICTS))
+    echo(render(findings, verdicts=security.VERDICTS if try_escapes else VERDICTS))
     if json_file is not None:
         write_json(json_file, [_plain(finding) for finding in findings])
     sys.exit(0 if healthy(findings) else 1)

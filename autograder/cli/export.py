@@ -9,6 +9,7 @@ import click
 
 from autograder import export as exporters
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import UsageError
 from autograder.lms.collect import COLLECTION_REPORT
 from autograder.lms.marks import SYSTEMS, write_marks
@@ -57,11 +58,11 @@ def export(
         table = read_roster(roster)
         unmatched_students = write_marks(stored, name, table, out, late=_late(results), late_penalty=late_penalty)
         if unmatched_students:
-            click.echo(f"Not in {roster}: {', '.join(unmatched_students)}", err=True)
+            echo(f"Not in {roster}: {', '.join(map(on_line, unmatched_students))}", err=True)
         written = out
     else:
         written = exporters.write(stored, name, out)
-    click.echo(f"{len(stored)} results: {written}")
+    echo(f"{len(stored)} results: {written}")
     if json_file is not None:
         write_json(json_file, {"results": len(stored), "format": name, "written": str(written)})
 

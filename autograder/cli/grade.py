@@ -20,6 +20,7 @@ from autograder.cli.options import (
     json_option,
     seed_option,
 )
+from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
 from autograder.export.earlier import EarlierMarks
@@ -28,7 +29,6 @@ from autograder.grading.store import LOG
 from autograder.intake import read_submission
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
-from autograder.plain_text import clean
 from autograder.result import Result, Status, write_json
 from autograder.sandbox import Tier
 
@@ -118,11 +118,11 @@ def grade(
                 )
         except KeyboardInterrupt:
             message = f"Stopped. What is graded is in {out}: the same command with --resume grades the rest."
-            click.echo(f"\n{message}", err=True)
+            echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
     if resume and (changed := earlier.changed(results)):
-        click.echo("\nWhat a change of the suite or of the submission changed:")
+        echo("\nWhat a change of the suite or of the submission changed:")
         print_changes(changed)
     earlier.forget(results)
     sys.exit(0 if all_fit and all(result.status is Status.GRADED for result in results) else 1)
@@ -133,20 +133,21 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
     for result in results:
         feedback.write(result, out / result.student)
     summary = feedback.write_summary(results, out)
-    click.echo(
+    echo(
         "\n" + table([(r.student, score_text(r), failure_summary(r)) for r in results], ("submission", "marks", "why"))
     )
     for result in results:
         for note in filter(None, (*result.notices, _not_used(result.unused))):
-            click.echo(f"{clean(result.student)}: {clean(note)}")
+            echo(f"{on_line(result.student)}: {on_line(note)}")
     for result in results:
         if result.status is Status.UNCLEAR:
-            click.echo(f"Unclear: {clean(result.student)}: {clean(result.diagnosis.sentence)}", err=True)
-    click.echo(f"\nFeedback: {summary}")
+            echo(f"Unclear: {on_line(result.student)}: {on_line(result.diagnosis.sentence)}", err=True)
+    echo(f"\nFeedback: {summary}")
     for result in results:
         if result.unjudged:
             checks, log = ", ".join(result.unjudged), out / result.student / LOG
-            click.echo(f"{result.student}: {checks} failed, because the check raised an error: read {log}.", err=True)
+            said = f"{checks} failed, because the check raised an error: read {on_line(log)}."
+            echo(f"{on_line(result.student)}: {said}", err=True)
     if json_file is not None:
         write_json(json_file, [result.to_json() for result in results])
 
@@ -168,7 +169,7 @@ def _find_submissions(
         _print_others(found.unmatched)
         for title, names in (("Nothing handed in", found.missing), ("Late", found.late), ("Older ones", found.older)):
             if names:
-                click.echo(f"{title}: {', '.join(names)}")
+                echo(f"{title}: {', '.join(map(on_line, names))}")
         if write:
             lists = {name: getattr(found, name) for name in ("late", "older", "unmatched", "missing")}
             write_json(out / COLLECTION_REPORT, lists)
@@ -177,7 +178,7 @@ def _find_submissions(
 
 def _print_others(others: Sequence[tuple[str, str]]) -> None:
     for name, why in others:
-        click.echo(f"Not graded: {clean(name)}: {clean(why)}.", err=True)
+        echo(f"Not graded: {on_line(name)}: {on_line(why)}.", err=True)
 
 
 def _preview(entries: Sequence[Entry], assignment: str) -> bool:
@@ -187,12 +188,12 @@ def _preview(entries: Sequence[Entry], assignment: str) -> bool:
         try:
             submission = read_submission(entry.path, assignment)
         except StudentError as error:
-            rows.append((entry.student, "unclear", clean(str(error))))
+            rows.append((entry.student, "unclear", on_line(str(error))))
             all_clear = False
             continue
         runs = "the notebook has to run" if submission.packages is None else f"{len(submission.packages)} files count"
-        rows.append((entry.student, runs, clean(" ".join((*submission.notices, _not_used(submission.unused))))))
-    click.echo(table(rows, ("submission", "what counts", "notes")))
+        rows.append((entry.student, runs, on_line(" ".join((*submission.notices, _not_used(submission.unused))))))
+    echo(table(rows, ("submission", "what counts", "notes")))
     return all_clear
 
 
@@ -214,7 +215,7 @@ def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Ite
             raise
         raise UsageError("--scheduler needs Dask, which is not installed here: run `make cluster`") from None
     with connected(scheduler, jobs, certificates) as client:
-        yield partial(grade_on, client, report=partial(click.echo, err=True))
+        yield partial(grade_on, client, report=partial(echo, err=True))
 
 
 class Progress:
@@ -235,4 +236,4 @@ class Progress:
         """Count one more result. A line names it by `name`, or else by its student."""
         self._bar.update(1)
         if self._plain:
-            click.echo(f"[{self._bar.pos}/{self._total}] {name or result.student}: {score_text(result)}")
+            echo(f"[{self._bar.pos}/{self._total}] {on_line(name or result.student)}: {score_text(result)}")

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import isolation_option
+from autograder.cli.terminal import echo
 from autograder.lms.gradescope_autograder import write_autograder
 from autograder.sandbox import Tier
 
@@ -26,4 +27,4 @@ def gradescope(assignment: str, out: Path, isolation: str) -> None:
     It holds the hidden checks and the reference. Gradescope builds an image of it, and runs it for each submission.
     """
     write_autograder(assignment, out, Tier(isolation))
-    click.echo(f"{out}: upload it at Gradescope, under Configure Autograder")
+    echo(f"{out}: upload it at Gradescope, under Configure Autograder")

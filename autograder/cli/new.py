@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from autograder.cli.terminal import echo
+
 
 @click.group()
 def new() -> None:
@@ -22,9 +24,9 @@ def chapter(assignment: str) -> None:
     from autograder.course.new import write_chapter
 
     for folder in write_chapter(assignment):
-        click.echo(folder)
-    click.echo(f"\nProve it:        autograder verify --assignment {assignment}")
-    click.echo(f"After a change:  autograder course sync {assignment}, and autograder course tables")
+        echo(folder)
+    echo(f"\nProve it:        autograder verify --assignment {assignment}")
+    echo(f"After a change:  autograder course sync {assignment}, and autograder course tables")
 
 
 @new.command()
@@ -34,4 +36,4 @@ def course(folder: Path) -> None:
     from autograder.course.new import write_course
 
     write_course(folder.resolve())
-    click.echo(f"{folder}\n\nIts first chapter: autograder --course {folder} new chapter 01_first")
+    echo(f"{folder}\n\nIts first chapter: autograder --course {folder} new chapter 01_first")

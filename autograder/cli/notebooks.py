@@ -10,6 +10,7 @@ import click
 
 from autograder import layout
 from autograder.cli.options import jobs_option, json_option
+from autograder.cli.terminal import echo
 from autograder.result import write_json
 
 if TYPE_CHECKING:
@@ -60,6 +61,6 @@ def notebooks(
 
 
 def _print_result(run: Execution) -> None:
-    click.echo(f"{run.chapter} ({run.form.value}): {'ok' if run.ok else 'failed'} in {run.seconds:.1f} s")
+    echo(f"{run.chapter} ({run.form.value}): {'ok' if run.ok else 'failed'} in {run.seconds:.1f} s")
     if run.failure is not None:
-        click.echo(run.failure)
+        echo(run.failure)

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo
 from autograder.course.release import write_bundle
 from autograder.result import write_json
 
@@ -31,6 +32,6 @@ def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | No
     release.
     """
     written = write_bundle(out, names, newest)
-    click.echo(f"{out}: {', '.join(written)}")
+    echo(f"{out}: {', '.join(written)}")
     if json_file is not None:
         write_json(json_file, {"out": str(out), "assignments": written})

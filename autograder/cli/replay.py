@@ -14,6 +14,7 @@ import click
 from autograder import feedback
 from autograder.checks import suites
 from autograder.cli.options import isolation_option
+from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
 from autograder.export.stored import Stored, load
 from autograder.grading.job import Scope
@@ -56,9 +57,9 @@ def replay(stored: Path, check: str, submission: Path | None, mcap: bool, show: 
             found = _grade_again(found.result, check, submission, Path(scratch), Tier(isolation), mcap)
         result = found.result.only(check) if found.result.status is Status.GRADED else found.result
         page = feedback.write(result, folder, artifacts=found.folder)
-        click.echo(f"The run of {check!r}: {page}")
+        echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):
-            click.echo(f"Its messages: {bag}")
+            echo(f"Its messages: {bag}")
     if show if show is not None else bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         webbrowser.open(page.resolve().as_uri())
 
@@ -83,7 +84,7 @@ def _grade_again(result: Result, check: str, submission: Path, out: Path, tier: 
         scope=Scope(only=needed, recordings=recordings),
     )
     if graded.status is Status.GRADED and graded.submission_sha256 != result.submission_sha256:
-        click.echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
+        echo(f"Note: {submission} is not what was graded then; the run may differ.", err=True)
     return Stored(graded, out)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.options import json_option
+from autograder.cli.terminal import echo, on_line
 from autograder.course.release import write_bundle
 from autograder.exceptions import StudentError, UsageError
 from autograder.grading.batch import discover
@@ -35,11 +36,15 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
     A pair is a hint to read both texts, and no verdict. No mark changes.
     """
     try:
-        from autograder.lms.similar import code, pairs, write_pairs
+        from autograder.lms.similar import MAX_PAIRS, code, pairs, write_pairs
     except ModuleNotFoundError as error:
         if error.name != "copydetect":
             raise
         raise UsageError("this needs copydetect: run `.venv/bin/pip install copydetect`") from None
+
+    def skip(student: str, why: str) -> None:
+        echo(f"Not compared: {on_line(student)}: {why}", err=True)
+
     codes = {}
     with tempfile.TemporaryDirectory() as name:
         write_bundle(Path(name) / "given", (assignment,))
@@ -48,11 +53,13 @@ def similar(paths: tuple[Path, ...], assignment: str, out: Path, least: float, j
         try:
             codes[entry.student] = code(read_submission(entry.path, assignment))
         except StudentError as error:
-            click.echo(f"Not compared: {entry.student}: {error}", err=True)
-    found = pairs(codes, given, least / 100)
+            skip(entry.student, on_line(error))
+    found = pairs(codes, given, least / 100, skip)
     for pair in found:
         shares = " and ".join(f"{100 * share:.0f} %" for share in pair.shares)
-        click.echo(f"{pair.names[0]} and {pair.names[1]}: {shares} of their own text alike")
-    click.echo(f"{len(found)} pairs to read, no verdict: {write_pairs(found, out)}")
+        echo(f"{on_line(pair.names[0])} and {on_line(pair.names[1])}: {shares} of their own text alike")
+    if len(found) == MAX_PAIRS:
+        echo(f"These are the {MAX_PAIRS} most alike. There may be more.")
+    echo(f"{len(found)} pairs to read, no verdict: {write_pairs(found, out)}")
     if json_file is not None:
         write_json(json_file, [{"students": pair.names, "shares": pair.shares} for pair in found])

@@ -8,6 +8,7 @@ import textwrap
 
 from autograder.causes import causes, dearest
 from autograder.checks import Outcome
+from autograder.plain_text import visible
 from autograder.result import Result, Status
 
 
@@ -22,7 +23,8 @@ def failure_summary(result: Result) -> str:
 
 
 def table(rows: list[tuple[str, str, str]], headings: tuple[str, str, str]) -> str:
-    """Return a table of three columns; the last one is wrapped."""
+    """Return a table of three columns; the last one is wrapped. No text of a row can begin a line of its own."""
+    rows = [(visible(name, line=True), visible(mark, line=True), visible(text)) for name, mark, text in rows]
     first = max(len(row[0]) for row in [headings, *rows])
     second = max(len(row[1]) for row in [headings, *rows])
     width = max(40, shutil.get_terminal_size((120, 24)).columns - first - second - 4)

@@ -8,6 +8,7 @@ import click
 
 from autograder import layout
 from autograder.bundle import read_manifest, update_bundle
+from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
 
 
@@ -24,7 +25,7 @@ def update(release: Path | None) -> None:
         raise UsageError("this release does not say where a newer one is: unpack it somewhere and name the folder")
     done = update_bundle(layout.ROOT, release or Path(course))
     for name in done.kept:
-        click.echo(f"Kept as you have it: {name}")
+        echo(f"Kept as you have it: {name}")
     for name, copy in done.set_aside.items():
-        click.echo(f"You had changed {name}: your version is {copy} now.")
-    click.echo(f"{len(done.written)} files updated. This is the release of {read_manifest(layout.ROOT).version} now.")
+        echo(f"You had changed {name}: your version is {copy} now.")
+    echo(f"{len(done.written)} files updated. This is the release of {read_manifest(layout.ROOT).version} now.")

@@ -15,6 +15,7 @@ from autograder.checks import suites
 from autograder.checks.contract import counts
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
+from autograder.cli.terminal import echo
 from autograder.cli.text_tables import score_text, table
 from autograder.proof.cases import cases
 from autograder.proof.claims import CaseKind, Claim
@@ -111,12 +112,12 @@ def verify(
             for name, each in populations.items()
             if mutants[name]
         ]
-    click.echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
+    echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     if record:
         for chapter in dict.fromkeys(claim.assignment for claim in claims):
-            click.echo(record_failures(chapter, claims), err=True)
+            echo(record_failures(chapter, claims), err=True)
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
-    click.echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
+    echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     plain = {
         "summary": counted,
         "claims": [_plain(claim) for claim in claims],
@@ -126,7 +127,7 @@ def verify(
         write_json(path, plain)
     write_atomically(out / "mutants.md", report(chapter_results).encode())
     for fault in (found := faults(chapter_results)):
-        click.echo(fault, err=True)
+        echo(fault, err=True)
     sys.exit(0 if all(claim.holds for claim in claims) and not found else 1)
 
 
@@ -142,7 +143,7 @@ def _run_mutants(
 
     def show(result: MutantResult) -> None:
         if not result.killed:
-            click.echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
+            echo(f"{chapter.assignment} mutant {result.id} {result.killer or 'survives'}")
 
     kept = out / chapter.assignment / "mutants.jsonl"
     excused = {} if named else chapter.reasons
@@ -151,9 +152,7 @@ def _run_mutants(
     survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in excused)
     found = replace(chapter, results=results + survivors)
     killed = sum(result.killed for result in found.results)
-    click.echo(
-        f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(found.unexplained)} without a reason"
-    )
+    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {len(found.unexplained)} without a reason")
     return found
 
 

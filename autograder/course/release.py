@@ -27,7 +27,7 @@ STUDENT_FILES = layout.ROOT / "assets" / "students"  # the README and the Makefi
 # The entries of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
 # The modules of the command line that students get: their verbs, and what these need.
-STUDENT_CLI = frozenset({"__init__.py", "options.py", "check.py", "doctor.py", "ros.py", "update.py"})
+STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py", "doctor.py", "ros.py", "update.py"})
 WITHHELD = ("proof", "cluster", "course", "nbgrader", "export", "feedback", "lms")  # parts for instructors only
 
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import os
 from collections.abc import Sequence
 from functools import cache
 from html import escape
 from pathlib import Path
 from statistics import mean
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 import jinja2
 from markupsafe import Markup
@@ -123,7 +124,8 @@ def write_summary(results: Sequence[Result], folder: Path) -> Path:
 def _link(result: Result, folder: Path) -> str | None:
     if (folder / result.student).resolve().parent != folder.resolve():
         return None
-    return f"{result.student}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
+    # The name of a folder may be no UTF-8, as that of a zip's member.
+    return f"{quote(os.fsencode(result.student))}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
 
 
 def _reason(result: Result) -> str:

@@ -11,6 +11,7 @@ from nbformat.v4 import new_notebook
 from autograder import intake
 from autograder.exceptions import StudentError
 from autograder.grading import submitted_notebook
+from autograder.plain_text import visible
 
 
 class SubmissionExporter(NotebookExporter):
@@ -23,10 +24,10 @@ class SubmissionExporter(NotebookExporter):
 
     def _read(self, data: bytes, name: str) -> NotebookNode:
         if len(data) > intake.MAX_WRAPPED_BYTES:
-            self.log.warning("%s is larger than %d MiB", name, intake.MAX_WRAPPED_BYTES // 2**20)
+            self.log.warning("%s is larger than %d MiB", visible(name, line=True), intake.MAX_WRAPPED_BYTES // 2**20)
             return new_notebook()
         try:
             return submitted_notebook.read(data, name)
         except StudentError as error:
-            self.log.warning("%s", error)
+            self.log.warning("%s", visible(str(error), line=True))
             return new_notebook()

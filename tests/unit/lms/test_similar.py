@@ -10,6 +10,7 @@ import pytest
 
 from autograder.cli import main
 from autograder.intake import SubmittedFile, detect_layout
+from autograder.lms import similar
 from autograder.lms.similar import code, pairs, write_pairs
 
 GIVEN = "\n".join(f"def given_{n}(a, b):\n    return [a * {n} + b, (a - b) / {n + 1}]" for n in range(9))
@@ -82,3 +83,22 @@ def test_similar_compares_a_class_and_names_unreadable_submissions(
     assert "alice and bob: 100 % and 100 % of their own text alike" in told.out
     assert "carol" not in told.out
     assert "Not compared: dave: dave.zip is not a folder" in told.err
+
+
+def test_a_text_that_is_too_long_or_takes_too_long_is_not_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(similar, "MAX_SECONDS", 0.5)
+    slow = "\n " * 50_000  # Pygments takes a time that grows with the square of it
+    codes = {"alice": OWN, "bob": RENAMED, "long": OWN * 2_000, "slow": slow}
+    skipped: dict[str, str] = {}
+    (found,) = pairs(codes, "", 0.5, skipped.__setitem__)
+    assert found.names == ("alice", "bob")
+    assert skipped == {
+        "long": f"its code has {len(OWN * 2_000):,} characters, more than 200,000",
+        "slow": "its code took more than 0.5 s to be read: look at it yourself",
+    }
+
+
+def test_the_most_alike_of_many_pairs_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(similar, "MAX_PAIRS", 3)
+    codes = {name: OWN + OTHER for name in "abcdef"} | {"g": OWN}
+    assert [pair.names for pair in pairs(codes, "", 0.0)] == [("a", "b"), ("a", "c"), ("a", "d")]
