@@ -180,7 +180,8 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
             if not outer or any(file.path.is_relative_to(package) for package in outer)
         }
         trees.append(Tree(home, root, tuple(outer), inside, _tree_answers(inside, exercises)))
-    return trees
+    own = exercises.packages if exercises is not None else frozenset()
+    return [tree for tree in trees if own.intersection(path.parts[0] for path in tree.files)] or trees
 
 
 def _home(parts: tuple[str, ...]) -> PurePosixPath | None:

@@ -48,6 +48,11 @@ class Exercises:
     given: Mapping[PurePosixPath, SubmittedFile]
     beside: frozenset[PurePosixPath]
 
+    @property
+    def packages(self) -> frozenset[str]:
+        """The folders of `src` that the chapter gives or its exercises fill."""
+        return frozenset(path.parts[0] for path in (*self.targets, *self.makes, *self.given))
+
     def grade_id(self, cell: Cell) -> str:
         """Return the grade id of a submitted cell, or an empty string."""
         return grade_id(cell) or self.ids.get(cell["id"], "")

@@ -1,0 +1,109 @@
+"""Real gradings of one right answer in several envelopes: each has all points, or is unclear and has no mark."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.answers import BOOK, CHAPTER, TARGET, Answer, filled, make_answer, tarred, write, zipped
+
+
+@pytest.fixture(scope="module")
+def answer(tmp_path_factory: pytest.TempPathFactory) -> Answer:
+    return make_answer(tmp_path_factory.mktemp("release"))
+
+
+def grade(folder: Path, *options: str) -> tuple[subprocess.CompletedProcess[str], dict[str, dict[str, object]]]:
+    """Grade what lies in `folder`; return what the command said, and the results by student."""
+    out = folder.parent / "results"
+    command = [sys.executable, "-m", "autograder", "grade", str(folder), "--assignment", CHAPTER, "--out", str(out)]
+    done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    return done, {path.parent.name: json.loads(path.read_text()) for path in out.glob("*/result.json")}
+
+
+def marks(results: dict[str, dict[str, object]]) -> dict[str, object]:
+    return {name: r["score"] if r["status"] == "graded" else r["status"] for name, r in results.items()}
+
+
+@pytest.fixture(scope="module")
+def a_class(answer: Answer, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("class") / "submissions"
+    write(folder / "renamed", {**answer.released, "02_nodes (1).ipynb": answer.files[BOOK]})
+    write(folder / "moodle", {"X.ZIP": zipped(answer.files), "readme.txt": b"see zip"})
+    write(folder / "environment", {**answer.files, ".venv/x": b""})
+    (folder / "environment" / ".venv" / "python").symlink_to("/usr/bin/python3")
+    write(folder / "draft", {**answer.files, BOOK: filled(answer.released[BOOK], "draft = True\n")})
+    write(folder / "two", {**answer.cells, "02_nodes (1).ipynb": filled(answer.released[BOOK], "other = True\n")})
+    files = {
+        "tar.tar.gz": tarred(answer.files, f"{CHAPTER}/", "w:gz"),
+        "upper.ZIP": zipped(answer.files),
+        "minor.ipynb": answer.notebook(lambda book: book.update(nbformat_minor=4)),
+        "seven.7z": b"7z\xbc\xaf\x27\x1c",
+        "notes.txt": b"",
+    }
+    write(folder, files)
+    return folder
+
+
+def test_each_envelope_has_all_points_or_is_unclear(a_class: Path) -> None:
+    done, results = grade(a_class)
+    full = results["draft"]["max_score"]
+    clear = ("renamed", "moodle", "environment", "draft", "tar", "upper", "minor")
+    assert marks(results) == {**dict.fromkeys(clear, full), "two": "unclear", "seven": "unclear"}
+    assert done.returncode == 1
+    assert "Unclear: two: The submission is unclear: it holds 2 notebooks with different answers" in done.stderr
+    assert "Unclear: seven: seven.7z is a 7z archive, which the grader does not open: unpack it" in done.stderr
+    assert "Not graded: notes.txt: it is not a folder, an archive or a notebook." in done.stderr
+    assert "moodle: Not used: readme.txt." in done.stdout
+    assert f"renamed: Not used: {BOOK}." in done.stdout
+    notice = f"{TARGET} differs from the cell that writes it. The file counts"
+    assert f"draft: {notice}" in done.stdout
+    assert notice in (a_class.parent / "results" / "draft" / "feedback.html").read_text(encoding="utf-8")
+    assert notice not in (a_class.parent / "results" / "tar" / "feedback.html").read_text(encoding="utf-8")
+    assert "notebook" not in results["draft"]["phases"]  # type: ignore[operator]
+
+
+def test_a_dry_run_names_what_counts_and_what_is_not_used(a_class: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "autograder", "grade", str(a_class), "--assignment", CHAPTER, "--dry-run"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=a_class,
+    )
+    assert done.returncode == 1
+    told = " ".join((done.stdout + done.stderr).split())
+    for words in ("Not used: readme.txt.", "unclear seven.7z is a 7z archive", "Not graded: notes.txt", "files count"):
+        assert words in told
+    assert not (a_class / "results").exists()
+
+
+def test_all_files_of_a_canvas_attempt_and_all_members_of_a_gradescope_group_count(
+    answer: Answer, tmp_path: Path
+) -> None:
+    canvas = {
+        "smithbob_340934_208490284_work.zip": zipped(answer.files),
+        "smithbob_340934_208490285_screenshot.png": b"\x89PNG",
+    }
+    write(tmp_path / "canvas" / "down", canvas)
+    roster = tmp_path / "canvas" / "roster.csv"
+    roster.write_text("Student,ID,SIS User ID,SIS Login ID,Section\nTwo,340934,S1,two,A\n")
+    done, results = grade(tmp_path / "canvas" / "down", "--roster", str(roster))
+    assert (done.returncode, marks(results)) == (0, {"two": results["two"]["max_score"]}), done.stderr
+    assert "two: Not used: screenshot.png." in done.stdout
+
+    write(tmp_path / "group" / "down" / "submission_1", answer.files)
+    (tmp_path / "group" / "down" / "submission_metadata.yml").write_text(
+        "---\nsubmission_1:\n  :submitters:\n  - :name: Pair One\n    :sid: '200'\n  - :name: Pair Two\n"
+        "    :sid: '201'\n  :created_at: 2026-01-03 09:00:00 Z\n"
+    )
+    roster = tmp_path / "group" / "roster.csv"
+    roster.write_text("Name,SID,Email\nPair One,200,one@example.edu\nPair Two,201,two@example.edu\n")
+    done, results = grade(tmp_path / "group" / "down", "--roster", str(roster))
+    assert done.returncode == 0, done.stderr
+    assert marks(results) == dict.fromkeys(("200", "201"), results["200"]["max_score"])
+    assert "Nothing handed in" not in done.stdout
