@@ -10,6 +10,7 @@ _NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on conditi
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = ("Valid choices are: ", "One of: ")  # what stands before a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
+_TEXTS = re.compile(r"'[^']*'(?: \+ '[^']*')*")  # one text, or several in a row
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Argument:
     description: str  # what is said of it; empty if nothing is
     default: str | None  # the text of its default, None if it has to be given or its default is worked out
     choices: tuple[str, ...]  # the values that are allowed; empty if any is
+    is_worked_out: bool = False  # whether it has a default whose text is known only when the launch runs
 
 
 def parse_arguments(text: str) -> dict[str, Argument]:
@@ -38,16 +40,17 @@ def _argument(name: str, lines: Sequence[str]) -> Argument:
     """Return an argument of the lines below its name."""
     said: list[str] = []
     default: str | None = None
+    is_worked_out = False
     choices: tuple[str, ...] = ()
     for line in lines:
         words = line.strip()
         if match := _DEFAULT.match(line):
-            quoted = _QUOTED.fullmatch(match["default"])
-            default = quoted[1] if quoted else None
+            is_worked_out = not _TEXTS.fullmatch(match["default"])
+            default = None if is_worked_out else "".join(_QUOTED.findall(match["default"]))
             continue
         for phrase in _CHOICES:
             before, found, listed = words.rpartition(phrase)
             if found and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
                 words, choices = before.strip(), tuple(_QUOTED.findall(listed))
         said += [words] if words and words != "no description given" else []
-    return Argument(name, " ".join(said), default, choices)
+    return Argument(name, " ".join(said), default, choices, is_worked_out)

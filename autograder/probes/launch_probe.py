@@ -55,12 +55,16 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
 
 
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, *, described: bool = True) -> None:
-    """Fail the check unless an argument of `shown_arguments` has this default's text and, if asked, a description."""
+    """Fail the check unless an argument of `shown_arguments` has this default's text and, if asked, a description.
+
+    A default that is worked out passes: what comes of it, a launch without arguments shows.
+    """
     there = ", ".join(arguments) or "none"
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
     found = arguments[name]
     shown = "no default" if found.default is None else f"the default {found.default!r}"
-    expect(found.default == default, f"The argument {name} has {shown}, instead of {default!r}.", fraction=0.5)
+    right = found.default == default or found.is_worked_out
+    expect(right, f"The argument {name} has {shown}, instead of {default!r}.", fraction=0.5)
     expect(
         bool(found.description) or not described,
         f"The argument {name} has no description: `ros2 launch -s` would not say what it is for.",

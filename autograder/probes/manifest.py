@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,6 +43,31 @@ class Manifest:
 
 def read(package: Path) -> Manifest:
     """Read the manifest of the package in a folder; a CheckFailed says why there is none that ROS would take."""
+    return parse(_text(package), _where(package))
+
+
+def read_leniently(package: Path) -> Manifest:
+    """Read a manifest's tags, also where ROS refuses the whole of it; a CheckFailed says why there are none.
+
+    One that ROS takes is read as by `read`. Otherwise no condition counts.
+    """
+    text, where = _text(package), _where(package)
+    try:
+        return parse(text, where)
+    except CheckFailed:
+        _refuse_unsafe(text, where)
+        try:
+            root = ElementTree.fromstring(text)
+        except ElementTree.ParseError as error:
+            raise CheckFailed(f"{where} is no well-formed XML: {error}") from None
+        return _of_tags(root)
+
+
+def _where(package: Path) -> str:
+    return f"{package.name}/{MANIFEST}"
+
+
+def _text(package: Path) -> str:
     path = package / MANIFEST
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(f"{package.name} has no {MANIFEST}.")
@@ -49,19 +75,14 @@ def read(package: Path) -> Manifest:
     if data is None:
         raise CheckFailed(f"{package.name}/{MANIFEST} is far larger than a manifest.")
     try:
-        text = data.decode()
+        return data.decode()
     except UnicodeDecodeError:
         raise CheckFailed(f"{package.name}/{MANIFEST} is not UTF-8 text.") from None
-    return parse(text, f"{package.name}/{MANIFEST}")
 
 
 def parse(text: str, where: str = MANIFEST) -> Manifest:
     """Read a manifest's text; `where` names it in a CheckFailed, which says why ROS would refuse it."""
-    if STILL_TO_BE_WRITTEN in text:
-        raise CheckFailed(f"{where} is still to be written.")
-    # No manifest needs a document type, and one can make a small file huge.
-    if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
+    _refuse_unsafe(text, where)
     try:
         found = parse_package_string(text, where)
     except InvalidPackage as error:
@@ -88,6 +109,38 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
             for kind in KINDS
         },
         groups=frozenset(each.name for each in found.member_of_groups if each.evaluated_condition),
+    )
+
+
+def _refuse_unsafe(text: str, where: str) -> None:
+    if STILL_TO_BE_WRITTEN in text:
+        raise CheckFailed(f"{where} is still to be written.")
+    # No manifest needs a document type, and one can make a small file huge.
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
+
+
+def _of_tags(root: ElementTree.Element) -> Manifest:
+    def texts(tag: str) -> tuple[str, ...]:
+        return tuple(" ".join("".join(each.itertext()).split()) for each in root.findall(tag))
+
+    plain = ("build", "build_export", "exec")  # what a <depend> is
+    told = root.get("format", "1")
+    return Manifest(
+        name="".join(texts("name")[:1]),
+        version="".join(texts("version")[:1]),
+        description="".join(texts("description")[:1]),
+        format=int(told) if told in ("1", "2", "3") else 0,
+        licences=texts("license"),
+        maintainers=tuple(
+            ("".join(each.itertext()).strip(), each.get("email", "")) for each in root.findall("maintainer")
+        ),
+        build_type="".join(texts("export/build_type")[:1]),
+        depends={
+            kind: frozenset(texts(f"{kind}_depend")) | frozenset(texts("depend") if kind in plain else ())
+            for kind in KINDS
+        },
+        groups=frozenset(texts("member_of_group")),
     )
 
 

@@ -45,7 +45,7 @@ def test_shown_arguments_are_read_with_description_default_and_choices() -> None
         "robot_name": Argument("robot_name", "who reports", "robot1", ()),
         "mode": Argument("mode", "What to do.", "drive", ("drive", "park")),
         "rest": Argument("rest", "", None, ()),
-        "topic": Argument("topic", "", None, ("a",)),
+        "topic": Argument("topic", "", None, ("a",), is_worked_out=True),
     }
 
 
@@ -92,6 +92,18 @@ def test_a_wrong_argument_is_named(name: str, default: str, sentence: str) -> No
     with pytest.raises(CheckFailed) as caught:
         launch_probe.expect_argument(parse_arguments(SHOWN), name, default)
     assert caught.value.message == sentence
+
+
+@pytest.mark.parametrize("shown", ["'rob' + 'ot1'", "'robot' + LaunchConfig('number')", "'' + 'robot1'"])
+def test_a_default_of_several_substitutions_in_a_row_is_a_default(shown: str) -> None:
+    arguments = parse_arguments(SHOWN.replace("'robot1'", shown))
+    launch_probe.expect_argument(arguments, "robot_name", "robot1")
+
+
+def test_a_default_of_several_texts_in_a_row_is_compared_as_one() -> None:
+    arguments = parse_arguments(SHOWN.replace("'robot1'", "'rob' + 'ot2'"))
+    with pytest.raises(CheckFailed, match="has the default 'robot2', instead of 'robot1'"):
+        launch_probe.expect_argument(arguments, "robot_name", "robot1")
 
 
 def test_an_argument_without_a_description_earns_half_the_points() -> None:

@@ -107,3 +107,39 @@ def test_a_link_is_not_followed(tmp_path: Path) -> None:
     (tmp_path / "package.xml").symlink_to(SOLUTIONS / "square_dance" / "package.xml")
     with pytest.raises(CheckFailed, match=r"has no package\.xml"):
         manifest.read(tmp_path)
+
+
+REFUSED = """<package format="3">
+  <name>dance</name><version>1.0.0</version><description>Two
+    lines</description>
+  <maintainer email="not an address">Ada</maintainer>
+  <license>Apache-2.0</license>
+  <depend>rclpy</depend><exec_depend>launch</exec_depend><test_depend>python3-pytest</test_depend>
+  <export><build_type>ament_python</build_type></export>
+</package>"""
+
+
+def test_what_a_manifest_says_is_read_also_where_ros_refuses_it(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(REFUSED)
+    with pytest.raises(CheckFailed, match="ROS refuses"):
+        manifest.read(tmp_path)
+    found = manifest.read_leniently(tmp_path)
+    assert (found.name, found.format, found.build_type) == ("dance", 3, "ament_python")
+    assert (found.description, found.licences) == ("Two lines", ("Apache-2.0",))
+    assert found.needs("exec") == {"rclpy", "launch"}
+    assert found.needs("test") == {"python3-pytest"}
+
+
+def test_a_manifest_that_ros_takes_is_read_leniently_as_it_is_read_strictly(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(REFUSED.replace("not an address", "ada@example.com"))
+    assert manifest.read_leniently(tmp_path) == manifest.read(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("<package", "no well-formed XML"), (f"<!DOCTYPE p>{REFUSED}", "DOCTYPE"), (CODE_STUB, "still to be written")],
+)
+def test_what_is_no_manifest_is_refused_leniently_too(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "package.xml").write_text(text)
+    with pytest.raises(CheckFailed, match=words):
+        manifest.read_leniently(tmp_path)

@@ -8,6 +8,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_declared,
     expect_licence,
     expect_manifest,
+    read_manifest,
     source_of,
 )
 from autograder.harness import Workspace
@@ -29,42 +30,42 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", needs=("manifest",), doc=contract.REP_149)
+@check(points=1, holds="licence", after=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="description", needs=("manifest",), doc=contract.CREATE)
+@check(points=1, holds="description", after=("manifest",), doc=contract.CREATE)
 @hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
-    said = expect_manifest(workspace, contract.SQUARE_DANCE).description
+    said = read_manifest(workspace, contract.SQUARE_DANCE).description
     expect(len(said.split()) >= 3 and PLACEHOLDER not in said, f"The description is {said!r}.")
 
 
-@check(points=2, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
+@check(points=2, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
     needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
-    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
     needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
-    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
-@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""
     source = source_of(workspace, contract.SQUARE_DANCE)
     runs = {each.module for each in imports.imported(source, without=("test",))}
     needed = [each for each in imports.imported(source, within=("test",)) if each.module not in runs]
-    expect_declared(needed, expect_manifest(workspace, contract.SQUARE_DANCE).needs("exec", "test"))
+    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec", "test"))

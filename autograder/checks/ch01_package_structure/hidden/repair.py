@@ -12,9 +12,9 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_built,
     expect_declared,
     expect_executable,
-    expect_manifest,
     expect_modules,
     expect_shared,
+    read_manifest,
     source_of,
 )
 from autograder.diagnosis import Diagnosis
@@ -63,7 +63,7 @@ def test_alarm_config(workspace: Workspace, installed_alarm: Installed) -> None:
 @hint("The launch file imports three packages; each is an <exec_depend>.")
 def test_alarm_dependencies(workspace: Workspace) -> None:
     """package.xml declares what its modules and its launch file import."""
-    manifest = expect_manifest(workspace, contract.WALL_ALARM)
+    manifest = read_manifest(workspace, contract.WALL_ALARM)
     needed = imports.imported(source_of(workspace, contract.WALL_ALARM), without=("test",))
     expect_declared(needed, manifest.needs("exec"), MISSING_AT_FIRST)
     said = "package.xml declares numpy, a key that rosdep does not know: the key is python3-numpy alone."
@@ -74,7 +74,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 @hint("Two files name the licence. Do they agree?", "license='Apache-2.0' in setup.py.")
 def test_alarm_licence(workspace: Workspace, installed_alarm: Installed) -> None:
     """Both files name the licence Apache-2.0."""
-    licences = expect_manifest(workspace, contract.WALL_ALARM).licences
+    licences = read_manifest(workspace, contract.WALL_ALARM).licences
     said = licence(installed_alarm)
     expect(
         licences == (contract.LICENCE,) and said == contract.LICENCE,
@@ -98,7 +98,8 @@ def test_alarm_names_pytest(workspace: Workspace, installed_alarm: Installed) ->
 @check(
     points=2,
     holds=("alarm-runs", "alarm-given"),
-    needs=("alarm_executable", "alarm_subpackages"),
+    needs=("alarm_executable",),
+    after=("alarm_subpackages",),
     doc=contract.CREATE,
 )
 @hint("ros2 run wall_alarm alarm in a new shell, after source install/setup.bash: what does it print?")
@@ -110,7 +111,13 @@ def test_alarm_sounds(workspace: Workspace, draw: random.Random) -> None:
         robots.expect_alarm(harness, round(draw.uniform(0.52, 0.54), 3), False)
 
 
-@check(points=1, holds=("alarm-config", "alarm-given"), needs=("alarm_sounds", "alarm_config"), doc=contract.DEVELOP)
+@check(
+    points=1,
+    holds=("alarm-config", "alarm-given"),
+    needs=("alarm_executable", "alarm_config"),
+    after=("alarm_sounds",),
+    doc=contract.DEVELOP,
+)
 @hint("The configuration was right from the start: install it as it was given.", "distance: 0.8 is in metres.")
 def test_alarm_configured(workspace: Workspace, installed_alarm: Installed, draw: random.Random) -> None:
     """With the installed configuration it goes off from 0.8 m on."""

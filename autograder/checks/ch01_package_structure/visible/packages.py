@@ -34,14 +34,14 @@ def test_manifest(workspace: Workspace) -> None:
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="licence", needs=("manifest",), doc=contract.REP_149)
+@check(points=1, holds="licence", after=("manifest",), doc=contract.REP_149)
 @hint("A licence is named by its SPDX identifier.", "<license>Apache-2.0</license>")
 def test_licence(workspace: Workspace) -> None:
     """package.xml names the licence Apache-2.0."""
     expect_licence(workspace, contract.SQUARE_DANCE)
 
 
-@check(points=1, holds="dependencies", needs=("manifest",), doc=contract.ROSDEP)
+@check(points=1, holds="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint("Read the import lines of each file in square_dance: all that is neither Python's own nor the package's.")
 @hint("<depend> for what the node imports, <exec_depend> for the launch file, <test_depend> for test/.")
 def test_dependencies(workspace: Workspace) -> None:
@@ -79,7 +79,7 @@ def test_shared(workspace: Workspace, installed_dance: Installed) -> None:
         expect_shared(installed_dance, source_of(workspace, contract.SQUARE_DANCE), name)
 
 
-@check(points=1, holds=("same-facts", "pytest"), needs=("builds", "manifest"), doc=contract.DEVELOP)
+@check(points=1, holds=("same-facts", "pytest"), needs=("builds",), after=("manifest",), doc=contract.DEVELOP)
 @hint("Compare version, license and maintainer_email in setup.py with package.xml, letter by letter.")
 @hint("extras_require={'test': ['pytest']} tells colcon that pytest runs the tests.")
 def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
@@ -88,7 +88,7 @@ def test_facts(workspace: Workspace, installed_dance: Installed) -> None:
     expect_pytest(workspace, installed_dance)
 
 
-@check(points=1, holds=("modules", "files"), needs=("dancer", "shared"), doc=contract.SUBPACKAGES)
+@check(points=1, holds=("modules", "files"), needs=("builds",), after=("dancer", "shared"), doc=contract.SUBPACKAGES)
 @hint("A list of names that you wrote does not hold a file that is added later.")
 @hint("find_packages(exclude=['test']), glob('launch/*.launch.py') and glob('config/*.yaml').")
 def test_grows(workspace: Workspace) -> None:
@@ -130,7 +130,8 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 @check(
     points=1,
     holds=("alarm-licence", "alarm-config", "alarm-pytest"),
-    needs=("alarm_builds", "alarm_dependencies"),
+    needs=("alarm_builds",),
+    after=("alarm_dependencies",),
     doc=contract.DEVELOP,
 )
 @hint("<license> in package.xml and license= in setup.py both say Apache-2.0.")

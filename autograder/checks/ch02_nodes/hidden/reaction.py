@@ -78,7 +78,7 @@ def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) 
             robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead"
         )
     for side in (-1.0, 1.0):
-        (inside, right, left), (outside, first, last) = (_at_edge(side, off) for off in (-EDGE, EDGE))
+        (inside, right, left), (outside, first, last) = (at_edge(side, off) for off in (-EDGE, EDGE))
         edge = robot.see(scan(Part(right, left, near)))
         own.expect_turn(edge, f"With something {near:.2f} m away, up to {inside:.0f}°, inside the forward sector")
         edge = robot.see(scan(Part(first, last, near)))
@@ -117,7 +117,7 @@ def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None
         expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)
 
 
-def _at_edge(side: float, off: float) -> tuple[float, float, float]:
+def at_edge(side: float, off: float) -> tuple[float, float, float]:
     """Return a bearing beside the sector's edge at a side, and the bearings of `WIDE` beams that end there; in degrees.
 
     Several: whether one alone counts is for another check.

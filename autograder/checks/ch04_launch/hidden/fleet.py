@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 
 from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
-from autograder.checks.ch04_launch.support.contract import FIRST, FLEET, PACKAGE, SECOND, SHARED, in_spaces
-from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
+from autograder.checks.ch04_launch.support.contract import (
+    DRIVER,
+    FIRST,
+    FLEET,
+    PACKAGE,
+    REPORTER,
+    SECOND,
+    SHARED,
+    in_spaces,
+)
+from autograder.checks.ch04_launch.support.status import HEAR_SECONDS
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
@@ -26,7 +36,7 @@ def test_two_robots(launches: Launches) -> None:
     launch_probe.expect_nodes(launches.fleet(), in_spaces(FIRST, SECOND))
 
 
-@check(points=2, holds="included", needs=("two_robots",), doc=contract.LARGE)
+@check(points=2, holds="included", after=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
 @hint("path leads to launch/robot.launch.py in the package's share folder.")
 @hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
@@ -34,11 +44,12 @@ def test_includes(launches: Launches) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
     wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
     nodes = launch_probe.settle(launches.renamed_fleet(), wanted)
-    expect(
-        nodes == wanted,
+    included = [name for name in nodes if name.endswith("/wheels")]  # whether the namespaces are right, others ask
+    said = (
         "The checks put a robot.launch.py with one node, wheels, and report:=false beside your file; it started "
-        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(wanted)}.",
+        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(wanted)}."
     )
+    expect(len(included) == len(nodes) == 2, said, fraction=0.5 if nodes and included == nodes else 0.0)
 
 
 @check(points=1, holds=("first", "second", "fleet-speed", "fleet-described"), doc=contract.SUBSTITUTIONS)
@@ -53,76 +64,83 @@ def test_fleet_arguments(launches: Launches) -> None:
         launch_probe.expect_argument(arguments, name, default)
 
 
-@check(points=2, holds=("first", "second"), needs=("two_robots",), doc=contract.SUBSTITUTIONS)
+@check(points=2, holds=("first", "second"), after=("two_robots",), doc=contract.SUBSTITUTIONS)
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
     launch_probe.expect_nodes(_renamed(launches, inputs), in_spaces(*inputs.names))
 
 
-@check(points=2, holds=("first", "second"), needs=("spaces",), doc=contract.LARGE)
+@check(points=2, holds=("first", "second"), after=("spaces",), doc=contract.LARGE)
 @hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
 @hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
     harness = _renamed(launches, inputs)
-    for name in inputs.names:
-        launch_probe.expect_parameters(harness, f"/{name}/reporter", {"robot_name": name})
+    reporters = _both(harness, inputs.names, REPORTER)
+    named = {node: (harness.parameters(node, ["robot_name"]) or {}).get("robot_name") for node in reporters}
+    own = {f"/{name}{REPORTER}": name for name in inputs.names}
+    right = named == own if named.keys() == own.keys() else sorted(map(str, named.values())) == sorted(inputs.names)
+    said = "; ".join(f"{node} has robot_name = {name!r}" for node, name in named.items())
+    expect(right, f"With first:={inputs.names[0]} and second:={inputs.names[1]}, {said}.")
 
 
-@check(points=2, holds="fleet-speed", needs=("spaces",), doc=contract.LARGE)
+@check(points=2, holds="fleet-speed", after=("spaces",), doc=contract.LARGE)
 @hint("The included file has an argument of its own called speed: hand yours on to it.")
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
     harness = _renamed(launches, inputs)
-    for name in inputs.names:
-        launch_probe.expect_parameters(harness, f"/{name}/driver", {"speed": inputs.speed})
+    for node in _both(harness, inputs.names, DRIVER):
+        launch_probe.expect_parameters(harness, node, {"speed": inputs.speed})
 
 
-@check(points=3, holds="fleet-status", needs=("two_robots",), doc=contract.LARGE)
+@check(points=3, holds="fleet-status", after=("two_robots",), doc=contract.LARGE)
 @hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
 @hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
 def test_status(launches: Launches, inputs: Inputs) -> None:
     """Both robots report on /fleet/status."""
-    harness = launches.fleet()
-    wanted = [f"/{FIRST}/reporter", f"/{SECOND}/reporter"]
-    harness.wait_for(lambda: harness.publishers(SHARED) == wanted, MATCH_SECONDS)
-    on = {topic: harness.publishers(topic) for topic in (SHARED, f"/{FIRST}/status", f"/{SECOND}/status", "/status")}
-    seen = "; ".join(f"{topic}: {', '.join(names)}" for topic, names in on.items() if names)
-    share = len(set(wanted) & set(on[SHARED])) / 2
-    expect(on[SHARED] == wanted, f"Reports are published on {seen or 'no topic'}.", fraction=min(share, 0.5))
-    harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
-    heard = sorted(reporting_robots(harness))
-    said = f"On {SHARED}, {' and '.join(heard) or 'nobody'} was heard within {HEAR_SECONDS:.0f} s."
-    expect(len(heard) == 2, said, fraction=0.5)
-    renamed = _renamed(launches, inputs)
-    if _starts(renamed, *inputs.names):
-        wanted = sorted(f"/{name}/reporter" for name in inputs.names)
-        alike = renamed.wait_for(lambda: renamed.publishers(SHARED) == wanted, MATCH_SECONDS)
-        said = f"{', '.join(renamed.publishers(SHARED)) or 'nobody'}, instead of {' and '.join(wanted)}"
-        expect(alike, f"With other names of the robots, reports on {SHARED} come from {said}.", fraction=0.8)
+    for names, harness, fraction in (
+        ((FIRST, SECOND), launches.fleet(), 0.0),
+        (inputs.names, _renamed(launches, inputs), 0.8),
+    ):
+        wanted = _both(harness, names, REPORTER)
+        harness.wait_for(partial(_publish, harness, wanted), MATCH_SECONDS)
+        topics = (SHARED, *(f"/{name}/status" for name in names), "/status")
+        on = {topic: harness.publishers(topic) for topic in topics}
+        seen = "; ".join(f"{topic}: {', '.join(others)}" for topic, others in on.items() if others)
+        share = len(set(wanted) & set(on[SHARED])) / 2
+        said = f"The robots are called {' and '.join(names)}, and reports are published on {seen or 'no topic'}."
+        expect(on[SHARED] == wanted, said, fraction=max(fraction, min(share, 0.5)))
+        heard = harness.wait_for(partial(_is_heard, harness), HEAR_SECONDS)
+        said = f"On {SHARED}, nothing was heard within {HEAR_SECONDS:.0f} s."
+        expect(heard, said, fraction=max(fraction, 0.5))
 
 
-@check(points=2, holds="fleet-status", needs=("two_robots",), doc=contract.LARGE)
+@check(points=2, holds="fleet-status", after=("two_robots", "spaces"), doc=contract.LARGE)
 @hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
-    for name in (FIRST, SECOND):
-        _expect_own_commands(launches.fleet(), name, "")
+    looked = 0
     for harness, names, where in (
+        (launches.fleet(), (FIRST, SECOND), ""),
         (_renamed(launches, inputs), inputs.names, "With other names of the robots, "),
         (launches.own_fleet(), (FIRST, SECOND), "With your robot.launch.py, "),
     ):
         for name in names if _starts(harness, *names) else ():
-            _expect_own_commands(harness, name, where, fraction=0.75)
+            _expect_own_commands(harness, name, where, fraction=0.75 if looked else 0.0)
+            looked += name == names[-1]
+    expect(looked > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
 
 
-@check(points=1, holds="fleet-ctrl-c", needs=("two_robots",))
+@check(points=1, holds="fleet-ctrl-c", after=("two_robots",))
 @hint("What Node(...) starts, the launch ends.")
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
+    launch_probe.settle(launches.fleet(), in_spaces(FIRST, SECOND))
+    running = launches.fleet().programs()
+    expect(bool(running), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
     launch_probe.expect_clean_stop(launches.fleet())
 
 
@@ -143,6 +161,27 @@ def _starts(harness: LaunchHarness, *names: str) -> bool:
     with suppress(StudentError):
         return launch_probe.settle(harness, in_spaces(*names)) == in_spaces(*names)
     return False
+
+
+def _both(harness: LaunchHarness, names: tuple[str, str], which: str) -> list[str]:
+    """Return the names of both drivers or both reporters, in whichever namespace; fail the check if there is one alone.
+
+    Whether the namespaces are right is for other checks.
+    """
+    nodes = launch_probe.settle(harness, in_spaces(*names))
+    found = sorted(name for name in nodes if name.endswith(which))
+    said = f"The graph holds {', '.join(nodes) or 'no node'}, and not two that are called {which[1:]}."
+    expect(len(found) == 2, f"{said} {launch_probe.failure(harness.output)}".strip())
+    return found
+
+
+def _publish(harness: LaunchHarness, nodes: list[str]) -> bool:
+    """Return whether these nodes alone publish on the topic that the robots share."""
+    return harness.publishers(SHARED) == nodes
+
+
+def _is_heard(harness: LaunchHarness) -> bool:
+    return bool(harness.messages(SHARED))
 
 
 def _renamed(launches: Launches, inputs: Inputs) -> LaunchHarness:

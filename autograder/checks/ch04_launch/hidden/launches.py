@@ -8,14 +8,24 @@ from contextlib import ExitStack
 from std_msgs.msg import String
 
 from autograder.checks.ch04_launch.hidden import included
+from autograder.checks.ch04_launch.hidden.given import given_parameters, given_programs
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, with_values
-from autograder.checks.ch04_launch.support.contract import FLEET, PACKAGE, ROBOT, SAFE, SHARED
+from autograder.checks.ch04_launch.support.contract import (
+    CONFIG,
+    FIRST,
+    FLEET,
+    PACKAGE,
+    ROBOT,
+    SAFE,
+    SECOND,
+    SHARED,
+    SPEED,
+)
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes.launch_arguments import Argument
 from autograder.probes.launch_probe import hangs, shown_arguments, with_files
 
-CONFIG = "config/robot.yaml"
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
 ON_STDERR = {**ON_STDOUT, "RCUTILS_LOGGING_USE_STDOUT": "0"}  # as nodes log by themselves
@@ -29,12 +39,15 @@ SCRIPTS = {
 }
 STILL = {"driver": "#!/bin/sh\nexec sleep 600\n"}  # for a check of the reporter: it saves the start of a node
 PROGRAMS = {"scripts": SCRIPTS, "still": STILL, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
+# Of two_robots.launch.py, given to it: whether it has them by itself is asked once.
+DEFAULTS = {"first": FIRST, "second": SECOND, "speed": SPEED}
 INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
 class Launches:
     """Starts each launch once, when it is first asked for, and ends all at the end.
 
+    Each starts the programs as they were given, and reads the parameters file as it was given but for its numbers.
     One robot is launched with other numbers and one parameter more in its parameters file. Two robots include a
     robot.launch.py of the grader's own, so that a mistake in the student's counts once; `own_fleet` includes that one.
     """
@@ -68,11 +81,11 @@ class Launches:
 
     def renamed_fleet(self) -> LaunchHarness:
         """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
-        return self._harness(FLEET, {}, {}, robot="wheels")
+        return self._harness(FLEET, DEFAULTS, {}, robot="wheels")
 
     def own_fleet(self) -> LaunchHarness:
         """Return two_robots.launch.py, above the student's robot.launch.py."""
-        return self._harness(FLEET, {}, {})
+        return self._harness(FLEET, DEFAULTS, {})
 
     def safe(self, **arguments: object) -> LaunchHarness:
         """Return safe_start.launch.py as it runs with these arguments."""
@@ -126,8 +139,8 @@ class Launches:
             files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
-                text = with_values(config.read_text(errors="replace"), self._inputs.file)
+                text = with_values(given_parameters(), self._inputs.file)
                 files[CONFIG] = with_sim_time(text) if file == ROBOT else text
-            texts = PROGRAMS[programs] if programs else {}
+            texts = {**given_programs(), **(PROGRAMS[programs] if programs else {})}
             self._copies[name] = with_files(self._workspace, name, PACKAGE, files, texts)
         return self._copies[name]

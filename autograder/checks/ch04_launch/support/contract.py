@@ -8,6 +8,7 @@ PACKAGE = "my_robot_bringup"
 ROBOT = "robot.launch.py"
 FLEET = "two_robots.launch.py"
 SAFE = "safe_start.launch.py"
+CONFIG = "config/robot.yaml"
 
 DRIVER, REPORTER = "/driver", "/reporter"
 SHARED = "/fleet/status"

@@ -64,7 +64,7 @@ def test_arguments(workspace: Workspace) -> None:
     points=1,
     holds=("driver", "reporter", "speed", "robot-name", "file", "ctrl-c"),
     group="robot",
-    needs=("arguments",),
+    after=("arguments",),
     doc=contract.LAUNCH,
 )
 @hint("Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
@@ -77,7 +77,7 @@ def test_robot(launches: Launches) -> None:
     launch_probe.expect_clean_stop(launches.robot)
 
 
-@check(points=1, holds="report", group="robot", needs=("robot",), doc=contract.SUBSTITUTIONS)
+@check(points=1, holds="report", group="robot", after=("robot",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 def test_quiet(launches: Launches) -> None:
     """With report:=false, robot.launch.py starts the driver alone."""
@@ -113,14 +113,14 @@ def test_safe_start(launches: Launches) -> None:
     expect(ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
-@check(points=1, holds="safe-reporter", group="safe_start", needs=("safe_start",), doc=contract.LAUNCH)
+@check(points=1, holds="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
 @hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
 def test_respawn(launches: Launches) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.full)
 
 
-@check(points=1, holds="safe-driver", group="safe_start", needs=("respawn",), doc=contract.EVENTS)
+@check(points=1, holds="safe-driver", group="safe_start", after=("respawn",), doc=contract.EVENTS)
 @hint("RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))")
 def test_driver_stops(launches: Launches) -> None:
     """When the driver gets SIGTERM and ends, everything shuts down."""
