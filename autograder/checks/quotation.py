@@ -10,6 +10,7 @@ import html
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import mistune
@@ -85,10 +86,11 @@ def _quote_of(piece: str | Row, sought: str) -> str | None:
     return plain[start:end].strip()
 
 
-def _pieces(source: str) -> Iterator[str | Row]:
-    """Yield the paragraphs, bullets and rows of Markdown, with marks."""
+@cache
+def _pieces(source: str) -> tuple[str | Row, ...]:
+    """Return the paragraphs, bullets and rows of Markdown, with marks."""
     tokens, _ = _markdown.parse(source)
-    yield from _blocks(tokens)  # type: ignore[arg-type]
+    return tuple(_blocks(tokens))  # type: ignore[arg-type]
 
 
 def _blocks(tokens: Iterable[Token]) -> Iterator[str | Row]:

@@ -13,7 +13,7 @@ from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
-from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result
+from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result, remove_unfinished
 from autograder.intake.exercises import exercises_of
 from autograder.intake.ignored import is_ignored
 from autograder.intake.names import is_archive, is_notebook, stem
@@ -189,6 +189,7 @@ def grade_all(
     ]
     equal: dict[str, list[GradingRequest]] = {}
     for request in requests:
+        remove_unfinished(request.out)
         submission = request.submission()
         equal.setdefault(submission.graded_sha256 if submission else f"of {request.student}", []).append(request)
     first = {group[0].student: group for group in equal.values()}

@@ -28,7 +28,12 @@ def new_result(out: Path) -> Iterator[Path]:
         yield folder
         _replace(folder, out)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_unfinished(out)
+
+
+def remove_unfinished(out: Path) -> None:
+    """Remove from the folder of a result what a grading left there that was killed."""
+    shutil.rmtree(out / UNFINISHED, ignore_errors=True)
 
 
 def empty(folder: Path) -> None:
