@@ -7,7 +7,6 @@ import json
 import os
 import zipfile
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 from typing import Any
@@ -24,6 +23,8 @@ from autograder.harness.launch import LaunchHarness
 from autograder.harness.matching import connected
 from autograder.harness.stepped import _sum
 from autograder.harness.steps import next_instant, tick_of
+from autograder.intake.notebooks import read_cells
+from autograder.intake.writefile import written_file
 from autograder.interfaces import definitions
 from autograder.lockstep import failures, protocol, tracebacks
 from autograder.probes import (
@@ -38,6 +39,8 @@ from autograder.probes import (
     student_test_reports,
 )
 from autograder.sandbox import Ending
+from tests.unit.reading import chapter_doors, ros_doors
+from tests.unit.reading.door import Door
 from tests.unit.reading.made_up import JSON, altered, altered_json, texts
 from tests.unit.reading.samples import (
     CALLS,
@@ -54,23 +57,6 @@ from tests.unit.reading.samples import (
     SHOWN_ARGUMENTS,
     TRACEBACK,
 )
-
-
-@dataclass(frozen=True)
-class Door:
-    """A way by which data of a student's enter the worker.
-
-    Attributes:
-        read: reads a value as the worker does, and makes the use of it that every caller makes; gets an empty folder.
-        made_up: values to try it with.
-        known: values that once made a submission "not graded", or are of their kind.
-        refuses: what it may raise besides: its one caller turns these into the student's fault.
-    """
-
-    read: Callable[[Any, Path], object]
-    made_up: st.SearchStrategy[Any]
-    known: tuple[Any, ...] = ()
-    refuses: tuple[type[Exception], ...] = ()
 
 
 def _written(name: str, read: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
@@ -289,6 +275,11 @@ DOORS: dict[str, Door] = {
         altered_json(NOTEBOOK),
         ({**NOTEBOOK, "nbformat_minor": 10**400}, {**NOTEBOOK, "metadata": []}, {**NOTEBOOK, "cells": {"a": 1}}),
     ),
+    "cells of a notebook": Door(
+        lambda value, place: [written_file(cell["source"]) for cell in read_cells(json.dumps(value).encode())],
+        altered_json(NOTEBOOK),
+        refuses=(ValueError,),
+    ),
     "bytes of a notebook": Door(_parse_notebook, altered(json.dumps(NOTEBOOK).encode())),
     "outputs of a notebook": Door(
         lambda lines, place: read_answer(b"\n".join(json.dumps(line).encode() for line in lines)),
@@ -315,4 +306,6 @@ DOORS: dict[str, Door] = {
         ),
         (["ws/src/a", "ws/src/a/b"], [""], ["src"], ["/"]),
     ),
+    **ros_doors.DOORS,
+    **chapter_doors.DOORS,
 }

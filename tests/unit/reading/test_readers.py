@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 from autograder.checks import CheckFailed
 from autograder.exceptions import StudentError
-from tests.unit.reading.doors import DOORS, Door
+from tests.unit.reading.door import Door
+from tests.unit.reading.doors import DOORS
 
 # How a door says that the data are at fault; `doors` has those that the door's only caller turns into one of these.
 THEIRS = (StudentError, CheckFailed)

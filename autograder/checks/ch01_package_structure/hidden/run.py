@@ -13,6 +13,7 @@ from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.harness import SteppedHarness, Workspace
 from autograder.probes.installed import Installed
+from autograder.reading import reading
 
 check = group("run")
 HINTS = (
@@ -67,10 +68,11 @@ def test_configured(workspace: Workspace, installed_dance: Installed) -> None:
 
 
 def _side(text: bytes) -> float:
-    try:
-        side = yaml.safe_load(text)["dancer"]["ros__parameters"]["side"]
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
-        side = None
+    with reading("The configuration"):
+        try:
+            side = yaml.safe_load(text)["dancer"]["ros__parameters"]["side"]
+        except (yaml.YAMLError, KeyError, TypeError):
+            side = None
     usable = isinstance(side, float) and 0.1 <= side <= 5.0
     expect(usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5.")
     return float(side or 0.0)
