@@ -36,6 +36,7 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     """
     notebook = submitted_notebook.restore(submitted, released)
     ids: set[str] = set()
+    notebook.cells = [_as_text(cell) if cell.cell_type == "raw" else cell for cell in notebook.cells]
     for cell in notebook.cells:
         cell.source = clean(cell.source)
         if not submitted_notebook.grade_id(cell):
@@ -46,3 +47,9 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
             cell.id = nbformat.v4.new_raw_cell().id
         ids.add(cell.id)
     return notebook
+
+
+def _as_text(cell: NotebookNode) -> NotebookNode:
+    """Return a raw cell as Markdown that shows its text; a template would take the text for HTML."""
+    shown = "\n".join(f"    {line}" for line in clean(cell.source).split("\n"))
+    return nbformat.v4.new_markdown_cell(shown, metadata=cell.metadata)

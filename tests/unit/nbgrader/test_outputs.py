@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Callable
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +13,14 @@ import nbformat
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from nbformat.v4 import new_code_cell, new_notebook
+from nbconvert import HTMLExporter
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_raw_cell
 from nbgrader.utils import determine_grade
 
 from autograder.checks import Check, Outcome
 from autograder.feedback.model import PageView, page_view
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
+from autograder.nbgrader.restore import restored
 from autograder.nbgrader.sanitizing import sanitized_markdown
 from autograder.result import Artifact, CheckResult, Result
 
@@ -124,6 +128,20 @@ def test_the_first_verdict_also_shows_the_diagnosis(broken_result: Result) -> No
         ("![a track](track.png)", 'alt="a track"', "&lt;"),
         ("<script>x</script>", "&lt;script&gt;", "<script"),
         ("a <img src=x onerror=y()>", '<img src="x">', "onerror"),
+        ("![x](http://host.example/x.png)", '<img alt="x">', "host.example"),
+        ("a <img src='http://host.example/x' alt=b>", '<img alt="b">', "host.example"),
+        ("a <img src='//host.example/x'>", "<img>", "host.example"),
+        ("a <img src='\\\\host.example/x'>", "<img>", "host.example"),
+        ("a <img src='h\tttp://host.example/x'>", "<img>", "host.example"),
+        ("a <img src='/hub/logout'>", "<img>", "logout"),
+        ("a <img src='../../x?y'>", "<img>", "src="),
+        ("a <img srcset='http://host.example/x'>", "<img>", "host.example"),
+        ("<link rel=stylesheet href=http://host.example/x>", "&lt;link", "<link"),
+        ("<style>@import 'http://host.example/x'</style>", "&lt;style", "<style"),
+        ("<video src=http://host.example/x></video>", "&lt;video", "<video"),
+        ("<table background=http://host.example/x><tr><td>y</td></tr></table>", "<table>", "host.example"),
+        (r"$\style{background:url(http://host.example/x)}{y}$", "y", r"\style"),
+        (r"$\csname style\endcsname{y}$", "y", r"\csname"),
         ("[x](javascript:y)", "<a>x</a>", "javascript"),
         ("<iframe src=x></iframe>", "&lt;iframe", "<iframe"),
         ("<form action=x><button>ok</button></form>", "&lt;form", "<form"),
@@ -135,3 +153,37 @@ def test_markdown_keeps_its_form_and_loses_what_could_run(markdown: str, kept: s
     html = sanitized_markdown(None, markdown)  # type: ignore[arg-type]
     assert kept in html
     assert gone not in html
+
+
+class Loaded(HTMLParser):
+    """Collects what a page loads by itself."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Keep each attribute that may hold an address; a link waits for a click."""
+        self.found += [
+            f"{tag} {name}={value}" for name, value in attrs if tag != "a" and "host.example" in (value or "")
+        ]
+
+
+@pytest.mark.parametrize("template", ["classic", "lab"])
+def test_a_page_of_a_students_cells_asks_no_other_host(template: str) -> None:
+    attack = "<img src=http://host.example/1><style>@import 'http://host.example/2'</style>"
+    cells = [new_markdown_cell(attack), new_raw_cell(attack, metadata={"raw_mimetype": "text/html"})]
+    notebook = restored(new_notebook(cells=[*cells, new_code_cell(f"'{attack}'")]), new_notebook())
+    notebook.cells[-1].outputs = sanitized_outputs(
+        [
+            {"output_type": "stream", "name": "stdout", "text": attack},
+            {"output_type": "display_data", "data": {"text/html": attack, "text/plain": attack}},
+        ]
+    )
+    exporter = HTMLExporter(template_name=template, filters={"markdown2html": sanitized_markdown})
+    html, _ = exporter.from_notebook_node(notebook)
+    assert html.count("host.example") > 5
+    page = Loaded()
+    page.feed(html)
+    assert page.found == []
+    assert not re.search(r"<style>[^<]*host\.example", html)
