@@ -6,11 +6,12 @@ import json
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
-from autograder import intake
 from autograder.checks import suites
 from autograder.exceptions import AutograderError, UsageError
+from autograder.grading.digests import Digests, read_digests
 from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.grading.store import LOG, NOTEBOOK, RESULT, new_result, remove_unfinished
@@ -54,12 +55,10 @@ class GradingRequest:
     out: Path
     resume: bool = False
 
-    def submission(self) -> intake.Submission | None:
-        """Return what was handed in, None if it cannot be read."""
-        try:
-            return intake.read_submission(self.path, self.assignment)
-        except (OSError, AutograderError):
-            return None
+    @cached_property
+    def digests(self) -> Digests | None:
+        """The digests of what was handed in, None if it cannot be read."""
+        return read_digests(self.path, self.assignment, self.isolation)
 
     def stored(self) -> Result | None:
         """Return the stored result if it may be kept: its submission, suite, seed and isolation are the same."""
@@ -69,8 +68,7 @@ class GradingRequest:
             result = from_json(json.loads((self.out / RESULT).read_text()), source=str(self.out / RESULT))
         except (OSError, ValueError, AutograderError):
             return None
-        submission = self.submission()
-        digest = submission and submission.sha256
+        digest = self.digests and self.digests.sha256
         suite = suites.hidden(self.assignment)
         found = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
         same = found == (self.student, digest, suite.version, self.seed, self.isolation.value)
@@ -90,12 +88,11 @@ class GradingRequest:
     def store_copy(self, result: Result, folder: Path) -> Result:
         """Store the result of an equal submission, whose files lie in `folder`, as that of this one."""
         shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run)}
-        submission = self.submission()
-        digest = submission.sha256 if submission and result.status is Status.GRADED else result.submission_sha256
-        own = replace(result, student=self.student, submission_sha256=digest)
-        if submission is not None:  # what counts is equal; what lies around it may differ
-            notices = result.notices if submission.packages is None else submission.notices
-            own = replace(own, notices=notices, unused=submission.unused)
+        own = replace(result, student=self.student)
+        if (found := self.digests) is not None:  # what counts is equal; what lies around it may differ
+            digest = found.sha256 if result.status is Status.GRADED else result.submission_sha256
+            notices = result.notices if found.notices is None else found.notices
+            own = replace(own, submission_sha256=digest, notices=notices, unused=found.unused)
         with new_result(self.out) as new:
             for path in (folder / name for name in (NOTEBOOK, LOG, *shown - {""})):
                 if path.is_file():
@@ -190,8 +187,8 @@ def grade_all(
     equal: dict[str, list[GradingRequest]] = {}
     for request in requests:
         remove_unfinished(request.out)
-        submission = request.submission()
-        equal.setdefault(submission.graded_sha256 if submission else f"of {request.student}", []).append(request)
+        found = request.digests
+        equal.setdefault(found.graded_sha256 if found else f"of {request.student}", []).append(request)
     first = {group[0].student: group for group in equal.values()}
     results: dict[str, Result] = {}
 

@@ -55,6 +55,8 @@ CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
 # A whole cell: a trusted worker and all that it starts, for a grading or for a notebook's request.
 GRADING_CELL = Limits(wall_seconds=900.0, memory=6 * GIB, threads=2048, output=4 * MIB)
 NOTEBOOK_CELL = replace(GRADING_CELL, wall_seconds=300.0)
+# A cell in which a submission is read, and nothing of it is run.
+READING_CELL = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
 # A cell of the proof, which lives while there is work; each of its jobs has the wall time of GRADING_CELL.
 PROOF_CELL = replace(GRADING_CELL, wall_seconds=24 * 3600.0)
 CELL_SCRATCH = 512 * MIB  # bytes of a cell's file system

@@ -1,0 +1,38 @@
+"""A submission whose programs let the grader wait uses its own time up: it has a result, once, with a sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autograder.checks import Outcome
+from autograder.diagnosis import Kind
+from autograder.grading import grade_submission, own_cell
+from autograder.grading.job import Job
+from autograder.proof.mutants import write_reference
+from autograder.result import Status
+from autograder.sandbox.cell import CellReport
+
+SLOW = "import rclpy.publisher, time\n_publish = rclpy.publisher.Publisher.publish\n" + (
+    "rclpy.publisher.Publisher.publish = lambda self, message: (time.sleep(2.5), _publish(self, message))[1]\n"
+)
+
+
+def test_a_node_that_sleeps_in_each_publish_gets_a_result_within_one_budget(tmp_path: Path) -> None:
+    write_reference(("my_robot_package",), tmp_path / "alice")
+    node = next((tmp_path / "alice").rglob("robot_controller.py"))
+    lines = node.read_text().splitlines(keepends=True)
+    at = next(number for number, line in enumerate(lines) if line.startswith("class "))
+    node.write_text("".join([*lines[:at], SLOW, "\n\n", *lines[at:]]))
+    budgets = []
+
+    def run(job: Job, seconds: float) -> CellReport:
+        budgets.append(seconds)
+        return own_cell.in_own_cell(job, seconds)
+
+    asked = {"student": "alice", "seed": 3, "out": tmp_path / "out"}
+    result = grade_submission(tmp_path / "alice", "02_nodes", run_job=run, seconds=30.0, **asked)  # type: ignore[arg-type]
+    assert budgets == [30.0]
+    assert (result.status, result.diagnosis.kind) == (Status.GRADED, Kind.TIMED_OUT)
+    assert "Your programs, tests and launches took" in result.diagnosis.sentence
+    assert result.seconds < 30.0
+    assert any(check.outcome is not Outcome.PASSED for check in result.checks)
