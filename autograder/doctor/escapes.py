@@ -15,6 +15,7 @@ from autograder.sandbox.limits import GIB, MIB
 
 CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
 LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)
+_LONG = replace(LIMITS, wall_seconds=120.0)
 _SHORT, _HUGE = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
 _MORE_MEMORY = replace(LIMITS, memory=600 * MIB)  # what its processes have mapped is less
 
@@ -107,6 +108,62 @@ for folder in ("/", "/usr", "/etc", "/dev", "/proc", "/proc/sys/kernel", {str(la
         print("OUT", folder)
     except OSError:
         pass
+"""
+_SETTINGS = """
+import os
+own = {os.getcwd(), "/tmp", "/dev/shm", "/dev/pts"}
+own |= {f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "tty", "console", "ptmx")}
+made = {os.stat(folder).st_dev for folder in ("/", "/dev")}  # of the folders in which single files are mounted
+pending = ["/"]
+while pending:
+    folder = pending.pop()
+    try:
+        entries = list(os.scandir(folder))
+        plain_is_closed = os.statvfs(folder).f_flag & os.ST_RDONLY and os.stat(folder).st_dev not in made
+    except OSError:
+        continue
+    for entry in entries:
+        if entry.path in own or entry.is_symlink():
+            continue
+        if entry.is_dir():
+            pending.append(entry.path)
+        elif not (plain_is_closed and entry.is_file()):
+            try:
+                os.close(os.open(entry.path, os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY))
+                print("OUT", entry.path)
+            except OSError:
+                pass
+for path in ("/proc/sys/kernel/core_pattern", "/proc/sys/vm/overcommit_memory", "/proc/self/oom_score_adj"):
+    try:
+        value = open(path).read()
+        with open(path, "w") as setting:
+            setting.write(value)
+        print("OUT wrote", path)
+    except OSError:
+        pass
+"""
+_INOTIFY = """
+import ctypes
+libc, count = ctypes.CDLL(None), 0
+while libc.inotify_init() >= 0: count += 1
+if count > 32:
+    print("OUT", count)
+"""
+_IN_FLIGHT = """
+import array, os, socket
+def fill():
+    pairs = [socket.socketpair() for _ in range(60)]
+    sent, some = 0, array.array("i", [0] * 250)
+    try:
+        for near, _ in pairs:
+            near.sendmsg([b"x"], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, some)])
+            sent += len(some)
+    except OSError:
+        pass
+    return sent, pairs
+total, kept = fill()
+if total > 900:
+    print("OUT", total)
 """
 _CALLS = f"""
 import ctypes
@@ -203,6 +260,9 @@ ESCAPES = (
     Escape("network", "reach a network or the machine's own ports", _NETWORK),
     Escape("loopback", "reach more than the grader where it has a network", _NETWORK, network=True),
     Escape("writing", "write to the system, to settings of the kernel or to the grader", _WRITE),
+    Escape("settings", "open what exists outside of its folders for writing", _SETTINGS, _LONG),
+    Escape("inotify", "take the machine's user all instances of inotify", _INOTIFY),
+    Escape("descriptors", "have so many descriptors on their way that others can pass none", _IN_FLIGHT),
     Escape("calls", "make namespaces or mounts, use keys, trace, load programs into the kernel", _CALLS),
     Escape("disk", "fill more than its own /tmp and /dev/shm", _FILL),
     Escape("inodes", "make files without end", _FILES, endings=(Ending.FILES, Ending.MEMORY)),

@@ -9,7 +9,7 @@ from pathlib import Path
 from autograder import layout
 from autograder.ros import RosError, find
 from autograder.sandbox import warm_caches
-from autograder.sandbox.limits import CELL_SCRATCH, CELL_TMP, INOTIFY_INSTANCES, INOTIFY_WATCHES, Limits
+from autograder.sandbox.limits import CELL_SCRATCH, CELL_TMP, INOTIFY_INSTANCES, INOTIFY_WATCHES, SIGNALS, Limits
 from autograder.sandbox.spec import Mount, Sandbox, View
 
 # Of /etc, only what the dynamic linker, compilers and fonts read: no accounts, no keys, no host's own settings.
@@ -36,6 +36,7 @@ def resources(limits: Limits) -> dict[str, tuple[int, int]]:
         "RLIMIT_NPROC": (limits.tasks, limits.tasks),
         "RLIMIT_FSIZE": (limits.file_size, limits.file_size),
         "RLIMIT_NOFILE": (limits.open_files, limits.open_files),
+        "RLIMIT_SIGPENDING": (SIGNALS, SIGNALS),
         "RLIMIT_CORE": (0, 0),
     }
 

@@ -19,7 +19,9 @@ class Limits:
     threads: int = 256  # threads in the whole tree
     file_size: int = 64 * MIB  # bytes of the largest file written
     files: int = 50_000  # new files on the file systems that it can write to
-    open_files: int = 1024  # descriptors of each process
+    # Descriptors of each process. The kernel lets a user of the machine have no more on their way than the sender may
+    # have open, and nearly all others may have 1,024.
+    open_files: int = 512
     output: int = 1 * MIB  # bytes written to stdout and stderr together
     scratch: int = 64 * MIB  # bytes of the private /tmp
 
@@ -63,6 +65,7 @@ CELL_SCRATCH = 512 * MIB  # bytes of a cell's file system
 CELL_TMP = 64 * MIB  # bytes of a cell's /tmp, where nothing of a student's is kept
 INOTIFY_INSTANCES = 16  # of a whole cell; the kernel gives a user of the machine 128
 INOTIFY_WATCHES = 4096  # of a whole cell
+SIGNALS = 1024  # queued to each sandbox; the kernel counts them for the machine's user, too
 INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
 SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
 RESULT_FILES = TreeLimits(names=200, depth=1)  # what a worker leaves: the result, its notebook, the pictures

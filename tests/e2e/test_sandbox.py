@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import shutil
 import signal
 import socket
@@ -96,7 +97,28 @@ def test_no_file_process_or_memory_of_the_grader_can_be_read() -> None:
 
 
 def test_the_system_is_read_only_and_what_is_writable_is_limited() -> None:
-    assert _out("writing", "disk") == []
+    assert _out("writing", "settings", "disk") == []
+
+
+def test_what_the_kernel_counts_for_the_machine_s_user_is_left_for_others() -> None:
+    assert _out("inotify", "descriptors") == []
+
+
+def passes_while_it_is_filled(scratch: Path) -> bool:
+    """Let sandboxed programs have as many descriptors on their way as they can; say whether one can be passed here."""
+    resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))  # as most have
+    code = "import signal\n" + next(escape.code for escape in ESCAPES if escape.id == "descriptors")
+    spec = Sandbox(scratch, mounts=(Mount(scratch, writable=True),))
+    with run(f"{code}\nprint('full', flush=True)\n{ENDLESS}", spec) as process:
+        _until(lambda: "full" in process.output)
+        near, far = socket.socketpair()
+        with near, far:
+            socket.send_fds(near, [b"x"], [0])
+            return socket.recv_fds(far, 1, 1)[0] == b"x"
+
+
+def test_a_worker_can_pass_descriptors_while_a_program_has_all_it_can_on_their_way() -> None:
+    assert in_cell(passes_while_it_is_filled)
 
 
 def test_a_large_file_is_cut_off() -> None:
