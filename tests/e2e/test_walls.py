@@ -1,0 +1,210 @@
+"""A worker that was taken over: any code in its place, in its own cell, harms its own submission's result alone."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.building import keeper
+from autograder.grading import grade_submission, own_cell
+from autograder.result import Result, Status
+from autograder.sandbox import Tier
+from autograder.sandbox.limits import SOURCES
+from autograder.sandbox.trees import read_tree
+
+ASSIGNMENT = "02_nodes"
+SECRET = "a secret of bob's"
+BEGIN = """
+import ctypes, json, os, sys
+from multiprocessing.connection import Connection
+from pathlib import Path
+from autograder.grading.job import Job
+job, line = Job.from_json(sys.argv[1]), Connection(int(sys.argv[2]))
+def out(*what): print("OUT", *what, flush=True)
+"""
+LOOK = """
+for path in SECRETS:
+    if os.path.exists(path): out("sees", path)
+for folder, _, names in os.walk("/"):
+    if folder.startswith(("/proc", "/usr", sys.prefix)): continue
+    for name in names:
+        try:
+            if SECRET[:6].encode() + SECRET[6:].encode() in open(f"{folder}/{name}", "rb").read(): out("reads", name)
+        except OSError: pass
+others = [pid for pid in os.listdir("/proc") if pid.isdigit() and int(pid) != os.getpid()]
+if others: out("sees processes", others)
+if any(name in os.environ for name in ("A_KEY", "SSH_AUTH_SOCK")): out("sees the environment")
+if os.getuid() == 0 or "0" in open("/proc/self/uid_map").read().split()[:2]: out("is root")
+if int(open("/proc/self/status").read().split("CapEff:")[1].split()[0], 16): out("has rights")
+"""
+WRITE = """
+os.environ["PATH"] = "/usr/bin:/bin"
+own = {str(job.scratch), "/tmp", "/dev/shm", "/dev/pts", "/proc", *GROUPS}
+own |= {f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "tty", "console", "ptmx")}
+pending = ["/"]
+while pending:
+    folder = pending.pop()
+    if os.access(folder, os.W_OK): out("may write to", folder)
+    try: entries = list(os.scandir(folder))
+    except PermissionError: continue
+    for entry in entries:
+        if entry.path in own or entry.is_symlink(): continue
+        if entry.is_dir(): pending.append(entry.path)
+        elif not folder.startswith("/usr") and os.access(entry.path, os.W_OK): out("may write to", entry.path)
+for folder, _, names in os.walk("/proc/sys"):
+    for name in {*names} - {"ns_last_pid"}:  # of the cell's own process ids
+        if os.access(f"{folder}/{name}", os.W_OK) and "/sys/user" not in folder: out("may write to", folder, name)
+for path in Path("/proc/sys/user").iterdir():
+    try:
+        value = path.read_text()
+        path.write_text(value)
+        out("wrote", path)
+    except OSError: pass
+"""
+FORGE = """
+from autograder.sandbox.parcel import send_message, send_tree
+from autograder.sandbox.trees import Entry
+send_message(line, {"do": "result"})
+answer = json.loads(RESULT)
+answer["student"] = "bob"
+send_tree(line, {Entry("result.json", "file", False, 10**6): json.dumps(answer).encode()})
+"""
+LIE = """
+line.send_bytes(b"[" * 100_000)
+"""
+FLOOD = """
+while True: line.send_bytes(bytes(3 << 20))
+"""
+CLIMB = """
+from autograder.sandbox.parcel import send_message, send_tree
+from autograder.sandbox.trees import Entry
+send_message(line, {"do": "result"})
+send_tree(line, {Entry("../bob/result.json", "file", False, 4): b"mine"})
+"""
+
+
+@pytest.fixture
+def classroom(tmp_path: Path) -> Path:
+    """Submissions of two students; bob has a result."""
+    for student in ("alice", "bob"):
+        (tmp_path / student / "src" / "pkg").mkdir(parents=True)
+        (tmp_path / student / "src" / "pkg" / "package.xml").write_text(f"<package>{SECRET}</package>")
+    (tmp_path / "alice" / "src" / "pkg" / "package.xml").write_text("<package/>")
+    grade(tmp_path, "bob")
+    return tmp_path
+
+
+def grade(folder: Path, student: str) -> Result:
+    out = folder / "results" / student
+    return grade_submission(folder / student, ASSIGNMENT, student=student, seed=1, out=out, seconds=60.0)
+
+
+def taken_over(monkeypatch: pytest.MonkeyPatch, code: str, **names: object) -> None:
+    given = "".join(f"{name} = {value!r}\n" for name, value in names.items())
+    program = f"{BEGIN}{given}{code}"
+    monkeypatch.setattr(
+        own_cell, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
+    )
+
+
+def test_a_worker_that_is_taken_over_sees_its_submission_and_its_chapter_and_nothing_else(
+    classroom: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("A_KEY", "secret")
+    others = [folder for folder in layout.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
+    hidden = [folder / part for folder in others for part in ("hidden", "mutants.yaml", "variants", "attacks.py")]
+    own = [layout.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
+    chapters = [folder for folder in layout.CHAPTERS.iterdir() if folder.name != ASSIGNMENT]
+    homes = ["/root", "/home", "/var", "/run", "/etc/passwd", "/etc/shadow", Path.home() / ".cache"]
+    secrets = [*hidden, *own, *chapters, *homes, layout.SOLUTIONS, layout.ROOT / "tests", layout.ROOT / ".git"]
+    secrets += [classroom / "bob", classroom / "results", classroom / "alice" / ".." / "bob"]
+    seen = [path for path in map(str, secrets) if not str(sys.prefix).startswith(path)]  # a Python may lie in a home
+    taken_over(monkeypatch, LOOK, SECRETS=seen, SECRET=SECRET)
+    assert grade(classroom, "alice").status is Status.NOT_GRADED
+    log = (classroom / "results" / "alice" / "grader.log").read_text()
+    assert "OUT" not in log
+    assert "Traceback" not in log
+
+
+def test_a_worker_that_is_taken_over_can_write_to_its_own_scratch_folder_alone(
+    classroom: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken_over(monkeypatch, WRITE, GROUPS=["/sys/fs/cgroup"])
+    before = (classroom / "results" / "bob" / "result.json").read_bytes()
+    assert grade(classroom, "alice").status is Status.NOT_GRADED
+    log = (classroom / "results" / "alice" / "grader.log").read_text()
+    assert "OUT" not in log
+    assert "Traceback" not in log
+    assert (classroom / "results" / "bob" / "result.json").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("code", "logged"),
+    [
+        pytest.param(FORGE, "a worker graded", id="the result of another student"),
+        pytest.param(LIE, "a message is no JSON", id="no message"),
+        pytest.param(FLOOD, "a message is no JSON", id="a flood"),
+        pytest.param(CLIMB, "paths that lead out of it", id="a path that leads out"),
+    ],
+)
+def test_what_a_worker_that_is_taken_over_says_harms_nobody_else(
+    classroom: Path, monkeypatch: pytest.MonkeyPatch, code: str, logged: str
+) -> None:
+    stored = classroom / "results" / "bob" / "result.json"
+    before = stored.read_bytes()
+    taken_over(monkeypatch, code, RESULT=json.dumps(json.loads(before)))
+    result = grade(classroom, "alice")
+    assert (result.status, result.student, result.score) == (Status.NOT_GRADED, "alice", 0.0)
+    assert logged in (classroom / "results" / "alice" / "grader.log").read_text()
+    assert stored.read_bytes() == before
+    assert sorted(os.listdir(classroom / "results")) == ["alice", "bob"]
+
+
+PACKAGE = """<package format="3"><name>forged_msgs</name><version>0.0.1</version><description>x</description>
+<maintainer email="a@b.c">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>
+<member_of_group>rosidl_interface_packages</member_of_group><export><build_type>ament_cmake</build_type></export>
+</package>"""
+CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(forged_msgs NONE)\ninstall(FILES package.xml DESTINATION share)\n"
+ASK = """
+from autograder.building import keeper
+from autograder.sandbox.limits import SOURCES
+from autograder.sandbox.trees import read_tree
+for name, text in FILES.items():
+    path = job.scratch / "mine" / "forged_msgs" / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+keeper.ask(line, read_tree(job.scratch / "mine", SOURCES), job.scratch / "built")
+print("BUILT", [str(path.relative_to(job.scratch)) for path in (job.scratch / "built").rglob("package.xml")])
+"""
+
+
+def test_what_is_kept_for_others_is_what_an_untouched_worker_makes_of_the_sources_that_it_is_kept_under(
+    classroom: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(classroom / "cache"))
+    files = {"package.xml": PACKAGE, "CMakeLists.txt": CMAKE}
+    taken_over(monkeypatch, ASK, FILES=files)
+    grade(classroom, "alice")
+    log = (classroom / "results" / "alice" / "grader.log").read_text()
+    assert "BUILT ['built/install/forged_msgs/share/package.xml']" in log
+    mine = classroom / "mine" / "forged_msgs"
+    mine.mkdir(parents=True)
+    for name, text in files.items():
+        (mine / name).write_text(text)
+    kept = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
+    assert kept == {keeper.key(read_tree(mine.parent, SOURCES))}
+
+
+@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("setpriv"), reason="only root can be somebody else")
+def test_root_grades_what_root_alone_can_read(classroom: Path) -> None:
+    for path in (classroom / "alice", *(classroom / "alice").rglob("*")):
+        path.chmod(0o700 if path.is_dir() else 0o600)
+    result = grade(classroom, "alice")
+    assert (result.status, result.isolation) == (Status.GRADED, Tier.BUBBLEWRAP.value)
+    assert "is not a package's name" in result.diagnosis.sentence
