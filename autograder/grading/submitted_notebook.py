@@ -7,6 +7,7 @@ id. Points, cell types and grade ids come from the source notebook, never from t
 from __future__ import annotations
 
 import copy
+from itertools import pairwise
 
 import nbformat
 from nbformat import NotebookNode
@@ -55,14 +56,10 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     comment that says so.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
-    ids = {cell.get("id"): name for name, cell in originals.items()}  # which tools keep that drop metadata
     notebook = copy.deepcopy(submitted)
-    claimed = {grade_id(cell) for cell in notebook.cells}
+    names = _names(notebook.cells, source.cells)
     seen: set[str] = set()
-    for cell in notebook.cells:
-        name = grade_id(cell)
-        if not name and ids.get(cell.get("id")) not in claimed:
-            name = ids.get(cell.get("id"), "")
+    for cell, name in zip(notebook.cells, names, strict=True):
         cell.metadata.pop("nbgrader", None)
         if name in originals and name not in seen:
             seen.add(name)
@@ -72,6 +69,32 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     notebook.cells += [_restored_cell(cell) for name, cell in originals.items() if name not in seen]
     notebook.metadata = copy.deepcopy(source.metadata)
     return notebook
+
+
+def _names(cells: list[NotebookNode], source: list[NotebookNode]) -> list[str]:
+    """Return the grade ids of submitted cells, also of those whose metadata a tool has dropped.
+
+    Such a cell is known by its own id, or an answer by the beginning of the cell above it, which asks the question.
+    """
+    names = [grade_id(cell) for cell in cells]
+    ids = {cell.get("id"): grade_id(cell) for cell in source}
+    below = {
+        (_first_line(above), cell.cell_type): grade_id(cell)
+        for above, cell in pairwise(source)
+        if cell.metadata.get("nbgrader", {}).get("solution")
+    }
+    aboves = [None, *cells[:-1]] if cells else []
+    for index, (above, cell) in enumerate(zip(aboves, cells, strict=True)):
+        if not names[index] and (name := ids.get(cell.get("id"), "")) not in names:
+            names[index] = name
+        if not names[index] and above is not None and "nbgrader" not in cell.metadata:
+            name = below.get((_first_line(above), cell.cell_type), "")
+            names[index] = name if name not in names else ""
+    return names
+
+
+def _first_line(cell: NotebookNode) -> str:
+    return str(cell.source).strip().partition("\n")[0].strip()
 
 
 def _restored_cell(original: NotebookNode) -> NotebookNode:

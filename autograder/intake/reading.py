@@ -94,11 +94,14 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
 
 def _open_archives(contents: Contents, nesting: int) -> None:
     """Put the files of archives in the place of these."""
-    packed = [file for file in contents.files if _is_wrapping(file.path)] if nesting else []
+    packed = [file for file in contents.files if _is_wrapping(file.path)]
     for file in packed:
         contents.take(file)
-        _unpack(io.BytesIO(file.data), file.path, contents)
-    if packed:
+        if nesting:
+            _unpack(io.BytesIO(file.data), file.path, contents)
+        else:
+            contents.omit(file.path, f"lies in {MAX_NESTING} archives or more: hand in the folder as one zip")
+    if packed and nesting:
         _open_archives(contents, nesting - 1)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from typing import Any
 
@@ -109,6 +110,23 @@ def test_outputs_and_the_notebook_s_own_metadata_are_dropped() -> None:
     restored = submitted_notebook.restore(submitted, _source())
     assert _cells(restored)["grade-graph"].outputs == []
     assert restored.metadata == _source().metadata
+
+
+def test_an_answer_whose_metadata_was_dropped_is_known_by_its_id_or_the_question_above_it() -> None:
+    for keep_ids in (True, False):
+        source = _source()
+        source.cells[2:2] = [
+            new_markdown_cell("## Why?\n\nSay it."),
+            _marked(new_markdown_cell(""), "why", solution=True),
+        ]
+        submitted = copy.deepcopy(source)
+        submitted.cells[1].source, submitted.cells[3].source = "answer = 42", "Because."
+        submitted.cells[2].source = "## Why?"  # as released, without its mark scheme
+        for cell in submitted.cells:
+            cell.metadata = {}
+            cell.id = cell.id if keep_ids else f"other-{cell.id}"
+        answers = _cells(submitted_notebook.restore(submitted, source))
+        assert (answers["exercise"].source, answers["why"].source) == ("answer = 42", "Because.")
 
 
 def test_neither_notebook_is_changed_in_place() -> None:

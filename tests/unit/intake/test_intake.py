@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import os
 import stat
 import struct
+import tarfile
 import zipfile
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 import pytest
 from hypothesis import event, given
@@ -16,7 +19,16 @@ from hypothesis import strategies as st
 from autograder import intake
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError, UsageError
-from autograder.intake import SubmittedFile, detect_layout, read_packages, read_submission, write_tree
+from autograder.intake import (
+    SubmittedFile,
+    archives,
+    detect_layout,
+    read_packages,
+    read_submission,
+    reading,
+    write_tree,
+)
+from autograder.intake.notebooks import without_outputs
 
 CHAPTER = "02_nodes"
 NOTEBOOK = b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": []}'
@@ -254,6 +266,78 @@ def test_an_encrypted_archive_is_unreadable(tmp_path: Path) -> None:
     kind, sentence = _refused(tmp_path / "locked.zip")
     assert kind is Kind.UNREADABLE
     assert "password" in sentence
+
+
+def _tar(path: Path, *infos: tarfile.TarInfo, mode: Any = "w:gz") -> Path:
+    with tarfile.open(path, mode) as archive:
+        for info in infos:
+            archive.addfile(info, io.BytesIO(bytes(info.size)) if info.isreg() else None)
+    return path
+
+
+def _member(name: str, kind: bytes = tarfile.REGTYPE, size: int = 0) -> tarfile.TarInfo:
+    info = tarfile.TarInfo(name)
+    info.type, info.size, info.linkname = kind, size, "/etc/passwd"
+    return info
+
+
+@pytest.mark.parametrize("name", ["../evil", "/etc/cron.d/evil", "ws/../../evil"])
+def test_a_tar_that_points_outside_is_not_opened(tmp_path: Path, name: str) -> None:
+    assert "points outside the archive" in _refused(_tar(tmp_path / "a.tgz", _member("src/p/x"), _member(name)))[1]
+
+
+@pytest.mark.parametrize("kind", [tarfile.SYMTYPE, tarfile.LNKTYPE, tarfile.CHRTYPE, tarfile.FIFOTYPE])
+def test_links_pipes_and_devices_in_a_tar_are_refused(tmp_path: Path, kind: bytes) -> None:
+    found, sentence = _refused(_tar(tmp_path / "a.tar", _member("src/p/x"), _member("src/p/odd", kind), mode="w"))
+    assert found is Kind.UNSAFE_ARCHIVE
+    assert "src/p/odd is" in sentence
+
+
+@pytest.mark.parametrize("mode", ["w:gz", "w:bz2", "w:xz"])
+def test_a_tar_that_unpacks_to_too_much_is_not_read_to_its_end(
+    tmp_path: Path, mode: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archives, "MAX_READ_BYTES", 2**21)
+    bomb = _tar(tmp_path / "a.tar", _member("src/p/x"), _member("beside", size=2**22), mode=mode)
+    assert bomb.stat().st_size < 20_000
+    assert "it is larger than 2 MiB when it is unpacked" in _refused(bomb)[1]
+
+
+def test_a_cut_tar_is_unreadable(tmp_path: Path) -> None:
+    for mode in ("w:gz", "w:bz2", "w:xz"):
+        whole = _tar(tmp_path / "a.tar", _member("src/p/x", size=9000), mode=mode).read_bytes()
+        (tmp_path / "cut.tar.gz").write_bytes(whole[: len(whole) // 2])
+        assert _refused(tmp_path / "cut.tar.gz")[0] is Kind.UNREADABLE
+
+
+def test_xz_that_asks_for_too_much_memory_is_unreadable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(archives, "MAX_DICTIONARY", 2**20)
+    assert _refused(_tar(tmp_path / "a.tar.xz", _member("src/p/x"), mode="w:xz"))[0] is Kind.UNREADABLE
+
+
+def test_archives_nested_without_end_and_too_many_of_them_are_not_opened(tmp_path: Path) -> None:
+    data = _zip(tmp_path / "0.zip", TREE).read_bytes()
+    for number in range(reading.MAX_NESTING + 2):
+        data = _zip(tmp_path / "n.zip", {f"{number}.zip": data}).read_bytes()
+    assert "lies in 3 archives or more: hand in the folder as one zip" in _refused(tmp_path / "n.zip")[1]
+    empty = _zip(tmp_path / "e.zip", {}).read_bytes()
+    many = _zip(tmp_path / "many.zip", {f"{number}.zip": empty for number in range(reading.MAX_ARCHIVES + 1)})
+    assert "is one of more than 20 archives" in _refused(many)[1]
+
+
+def test_a_zip_with_an_endless_list_of_files_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    data = bytearray(_zip(tmp_path / "a.zip", TREE).read_bytes())
+    at = data.rindex(b"PK\x05\x06") + 12
+    data[at : at + 4] = struct.pack("<I", archives.MAX_DIRECTORY + 1)
+    (tmp_path / "long.zip").write_bytes(data)
+    assert "it holds too many files" in _refused(tmp_path / "long.zip")[1]
+
+
+def test_outputs_are_dropped_only_of_a_notebook_that_parses_to_few_values() -> None:
+    book = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "", "outputs": [%s]}]}'
+    assert b"outputs" not in without_outputs(book % b'{"text": "\\"x"}')
+    for outputs in (b"[]," * 3_000_000 + b"[]", b'"a",' * 1_000_001 + b'""', b"[" * 9_000_000):
+        assert without_outputs(book % outputs) == book % outputs
 
 
 def test_two_files_of_one_name_or_a_file_that_is_a_folder_are_refused(tmp_path: Path) -> None:
