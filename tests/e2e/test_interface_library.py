@@ -60,5 +60,5 @@ def talk(scratch: Path) -> dict[str, Any]:
 
 
 def test_code_in_a_library_of_messages_runs_in_the_sandbox_alone() -> None:
-    answer = in_cell(talk, own_cell=True)
+    answer = in_cell(talk)
     assert answer == {"level": 50, "trip": True, "said": ["PAYLOAD ran"], "outside": False, "loaded": []}

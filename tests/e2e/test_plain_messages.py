@@ -84,7 +84,7 @@ def _real(plain: Any) -> Any:
     return kind(**{name: _real(getattr(plain, name)) for name in plain._defaults})
 
 
-def compare(scratch: Path, prefix: str) -> dict[str, Any]:
+def compare(scratch: Path) -> dict[str, Any]:
     """Let each kind of messages read the bytes of the other; return what differs, and the types of fields."""
     from rclpy.serialization import deserialize_message, serialize_message
     from rosidl_parser.definition import NamespacedType
@@ -92,7 +92,8 @@ def compare(scratch: Path, prefix: str) -> dict[str, Any]:
     from autograder.interfaces import messages
     from autograder.interfaces.loading import classes
 
-    sys.path.insert(0, str(site_packages(Path(prefix))))
+    prefix = build(PACKAGE, TEXTS, cache=Cache(scratch / "cache"))
+    sys.path.insert(0, str(site_packages(prefix)))
     package = classes(((PACKAGE, tuple(TEXTS.items())),))
     draw, wrong = random.Random(7), []
     kinds = [*vars(package.msg).values(), package.srv.Ask.Request, package.srv.Ask.Response]
@@ -108,7 +109,7 @@ def compare(scratch: Path, prefix: str) -> dict[str, Any]:
                 wrong.append([repr(message), "is not what is read of rosidl's bytes", serialize_message(real).hex()])
     generated = import_module(f"{PACKAGE}.msg")
     fields = [generated.All.get_fields_and_field_types(), package.msg.All.get_fields_and_field_types()]
-    described = [json.loads(path.read_text()) for path in Path(prefix).glob(f"share/{PACKAGE}/*/*.json")]
+    described = [json.loads(path.read_text()) for path in prefix.glob(f"share/{PACKAGE}/*/*.json")]
     hashes = {each["type_name"]: each["hash_string"] for one in described for each in one["type_hashes"]}
     for name, expected in hashes.items():
         if name.startswith(PACKAGE):
@@ -118,9 +119,8 @@ def compare(scratch: Path, prefix: str) -> dict[str, Any]:
     return {"hashes": len(hashes), "wrong": wrong[:3], "messages": len(kinds), "fields": fields}
 
 
-def test_the_bytes_of_plain_messages_are_those_of_generated_ones(tmp_path: Path) -> None:
-    prefix = build(PACKAGE, TEXTS, cache=Cache(tmp_path / "cache"))
-    answer = in_cell(compare, str(prefix), own_cell=True)
+def test_the_bytes_of_plain_messages_are_those_of_generated_ones() -> None:
+    answer = in_cell(compare)
     assert answer["wrong"] == []
     assert answer["messages"] == 9
     assert answer["hashes"] > 20
