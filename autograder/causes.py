@@ -14,7 +14,7 @@ from autograder.checks import Outcome
 from autograder.result import CheckResult
 
 FAILED_AS_WELL = "These failed as well; mend the first and run again:"
-NOT_CHECKED = "Not checked: {titles}"
+MAX_NAMED = 3  # titles in the line about what was not checked
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,17 @@ class Cause:
 
     @property
     def not_checked(self) -> str:
-        """The line that names what could not be checked; empty if there is nothing."""
-        return NOT_CHECKED.format(titles=" ".join(check.title for check in self.unchecked)) if self.unchecked else ""
+        """The line about what could not be checked, empty if there is nothing. It names a few, and counts many."""
+        if not self.unchecked:
+            return ""
+        few = " ".join(check.title for check in self.unchecked)
+        return f"Not checked: {len(self.unchecked)} more checks." if self.unnamed else f"Not checked: {few}"
+
+    @property
+    def unnamed(self) -> tuple[str, ...]:
+        """The titles of what could not be checked, if they are too many for the line."""
+        titles = tuple(check.title for check in self.unchecked)
+        return titles if len(titles) > MAX_NAMED else ()
 
 
 def causes(checks: Sequence[CheckResult], diagnosis: str = "") -> tuple[Cause, ...]:

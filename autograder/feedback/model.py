@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from autograder.causes import Cause, causes, dearest
@@ -24,7 +24,8 @@ class CheckView:
         contract: the sentences that a check which failed holds a student to.
         pictures: its pictures.
         also: the checks that failed as well.
-        not_checked: the line that names what could not be checked, or an empty string.
+        not_checked: the line about what could not be checked, or an empty string.
+        unnamed: the titles of what that line only counts.
     """
 
     result: CheckResult
@@ -32,6 +33,7 @@ class CheckView:
     pictures: tuple[Picture, ...]
     also: tuple[CheckView, ...] = ()
     not_checked: str = ""
+    unnamed: tuple[str, ...] = ()
 
     @property
     def message(self) -> str:
@@ -147,10 +149,11 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
     def view(check: CheckResult, cause: Cause | None = None) -> CheckView:
         held = check.holds if check.outcome is Outcome.FAILED else ()
         sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
-        also = tuple(view(one) for one in cause.failed) if cause else ()
-        return CheckView(
-            check, tuple(sentences), tuple(pictures.get(check.id, ())), also, cause.not_checked if cause else ""
-        )
+        shown = CheckView(check, tuple(sentences), tuple(pictures.get(check.id, ())))
+        if cause is None:
+            return shown
+        also = tuple(view(one) for one in cause.failed)
+        return replace(shown, also=also, not_checked=cause.not_checked, unnamed=cause.unnamed)
 
     groups = []
     for name in dict.fromkeys(check.group for check in result.checks):

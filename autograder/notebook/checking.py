@@ -116,6 +116,9 @@ def _cause(cause: Cause) -> str:
     if cause.failed:
         rows = "".join(map(_row, cause.failed))
         row += f"<details {INDENT}><summary>{FAILED_AS_WELL} {len(cause.failed)}</summary>{rows}</details>"
+    if cause.unnamed:
+        titles = "".join(f"<li>{html.escape(title)}</li>" for title in cause.unnamed)
+        return f"{row}<details {INDENT}><summary>{cause.not_checked}</summary><ul>{titles}</ul></details>"
     return row + (f"<div {INDENT}>{html.escape(cause.not_checked)}</div>" if cause.not_checked else "")
 
 

@@ -58,6 +58,8 @@ def test_what_was_not_checked_for_the_same_reason_is_one_line(result: Make) -> N
     build = [result(name, NOT_CHECKED, message="it does not build") for name in "abc"]
     assert told(*build, result("d", NOT_CHECKED, "c", message="first c")) == [("a", "", "b c d")]
     assert causes(build)[0].not_checked == "Not checked: It is b. It is c."
+    many = causes([result(name, NOT_CHECKED, message="it does not build") for name in "abcde"])[0]
+    assert (many.not_checked, len(many.unnamed)) == ("Not checked: 4 more checks.", 4)
     assert told(result("a", NOT_CHECKED, message="x"), result("b", NOT_CHECKED)) == [("a", "", ""), ("b", "", "")]
 
 

@@ -105,6 +105,18 @@ def test_what_came_with_a_failure_is_folded_under_it_and_named_once_in_its_own_g
     assert page.tags.count("details") == 2  # what failed as well, and a hint in it
 
 
+def test_many_checks_that_could_not_be_checked_are_a_line_that_unfolds(
+    make_result: MakeResult, make_check: Callable[..., Check], tmp_path: Path
+) -> None:
+    first = make_check("first", "It starts.", 1.0, "graph")
+    rest = [make_check(f"c{number}", f"It does {number}.", 1.0, "graph", needs=("first",)) for number in range(9)]
+    checks = (CheckResult.of(first, Outcome.FAILED), *(CheckResult.of(check, Outcome.NOT_CHECKED) for check in rest))
+    page = Page(feedback.write(make_result(checks=checks), tmp_path))
+    assert page.all("aria-label") == ["failed", "not checked"]
+    assert "Not checked: 9 more checks. It does 0. It does 1." in page.text
+    assert page.tags.count("details") == 1
+
+
 def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     make_result: MakeResult, tmp_path: Path
 ) -> None:
