@@ -17,6 +17,8 @@ from autograder.sandbox.limits import GRADING_CELL
 from autograder.sandbox.parcel import ParcelError
 from autograder.sandbox.spec import View
 
+GRACE = 30.0  # s in which a worker that knows that its time is over ends what runs, and says what it knows
+
 
 def in_own_cell(job: Job, seconds: float) -> CellReport:
     """Run a job by a worker of its own in a cell of its own, for at most `seconds`; report the files that it left."""
@@ -25,7 +27,7 @@ def in_own_cell(job: Job, seconds: float) -> CellReport:
     def command(scratch: Path) -> list[str]:
         return _worker(replace(job, scratch=scratch, out=scratch / "out", seconds=seconds), theirs.fileno())
 
-    limits = replace(GRADING_CELL, wall_seconds=seconds)
+    limits = replace(GRADING_CELL, wall_seconds=seconds + GRACE)
     with ours, ExitStack() as stack:
         with theirs:
             cell = in_cell(command, job.tier, limits, view=view(job), pass_fds=(theirs.fileno(),))

@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 from autograder import layout
 from autograder.building.keeper import attend
 from autograder.grading.job import Job
+from autograder.grading.own_cell import GRACE
 from autograder.sandbox.cell import CellReport, copy_submission, in_cell
 from autograder.sandbox.limits import PROOF_CELL
 from autograder.sandbox.parcel import ParcelError
@@ -92,7 +93,7 @@ class _Worker:
 
     def grade(self, job: Job, seconds: float) -> CellReport:
         """Send one job and wait for its result. If the ending is not `exited`, the worker cannot be used again."""
-        deadline = time.monotonic() + seconds
+        deadline = time.monotonic() + seconds + GRACE
         place = self._scratch / "job"
         with TemporaryDirectory(dir=self._shown) as folder:
             Path(folder).chmod(0o755)
