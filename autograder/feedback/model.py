@@ -21,7 +21,7 @@ class CheckView:
 
     Attributes:
         result: its result.
-        contract: the sentences that a check which failed holds a student to.
+        contract: the sentences that a program broke, by which it failed the check.
         pictures: its pictures.
         also: the checks that failed as well.
         not_checked: the line about what could not be checked, or an empty string.
@@ -147,7 +147,8 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Senten
     found = causes(result.checks, result.diagnosis.sentence)
 
     def view(check: CheckResult, cause: Cause | None = None) -> CheckView:
-        held = check.holds if check.outcome is Outcome.FAILED else ()
+        judged = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
+        held = check.holds if judged else ()  # a program that does not run has broken none of them in particular
         sentences = dict.fromkeys(contract[name].text for name in held if name in contract)
         shown = CheckView(check, tuple(sentences), tuple(pictures.get(check.id, ())))
         if cause is None:
