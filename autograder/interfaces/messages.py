@@ -158,6 +158,7 @@ def _message(message: rosidl.Message, section: Section, known: KnownTypes) -> An
     }
 
     def support() -> dict[str, Any]:
+        type_support.require_known_layout()
         return type_support.message_support(_message_type(kind, known), to_bytes, lambda data: from_bytes(made, data))
 
     made = _class(_metaclass(support, type_support.NAMES), kind, (PlainMessage,), content)

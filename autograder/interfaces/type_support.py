@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from autograder.exceptions import GraderError
 from autograder.interfaces.cdr import MAX_BYTES
 from autograder.interfaces.introspection import IDENTIFIER, MessageSupport
 
@@ -120,6 +121,17 @@ def message_support(
     addresses = [*map(_address, functions), ctypes.addressof(_message(message))]
     _keep.append(functions)
     return dict(zip(NAMES, map(_capsule, addresses), strict=True))
+
+
+@cache
+def require_known_layout() -> None:
+    """Raise a GraderError if the bytes of a message are not found in this Fast CDR: no message shall get lost."""
+    from rclpy.serialization import deserialize_message
+
+    name = MessageType("autograder", "msg", "Probe", f"RIHS01_{'0' * 64}")
+    meta: Any = type("Metaclass", (type,), message_support(name, bytes, bytes))
+    if deserialize_message(LITTLE_ENDIAN + bytes(2) + b"probe", meta("Probe", (), {})) != b"probe":
+        raise GraderError("the layout of this Fast CDR is not known, so no message of a student's type can be read")
 
 
 def service_support(service: TypeName, request: MessageType, response: MessageType) -> dict[str, Any]:

@@ -400,6 +400,25 @@ class Talker(Node):
 spin(Talker)
 """
 
+# Among words come bytes that are none: too few, of the other byte order, too many, and with a length that lies.
+FORGED_WORDS = """
+from lockstep_interfaces.msg import Word
+HEADER = bytes([0, 1, 0, 0])
+FORGED = [HEADER, HEADER + b'ab', bytes(4) + bytes([0, 0, 0, 2]) + b'a' + bytes(1)]
+FORGED += [HEADER + bytes([255] * 4) + b'a', HEADER + bytes([0, 0, 8, 0]) + bytes(512 * 1024)]
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.words = self.create_publisher(Word, 'words', 100)
+        self.create_timer(0.1, self.talk)
+
+    def talk(self):
+        for forged in FORGED:
+            self.words.publish(forged)
+            self.words.publish(Word(text='hello'))
+spin(Talker)
+"""
+
 OWN_TYPE_LISTENER = """
 from lockstep_interfaces.msg import Word
 class Listener(Speaker):

@@ -317,6 +317,24 @@ def test_programs_exchange_messages_of_a_type_that_the_grader_does_not_know() ->
     assert heard == [[s, f"listener hello {s:.3f}"] for s in (0.1, 0.2, 0.3)]
 
 
+def forged(scratch: Path) -> Any:
+    from autograder.interfaces.loading import classes
+
+    word = classes((("lockstep_interfaces", tuple(INTERFACES.items())),)).msg.Word
+    workspace = write_workspace(scratch, talker=programs.FORGED_WORDS)
+
+    def run() -> Any:
+        with open_lab(workspace, "talker", listens={"/words": word}) as harness:
+            harness.run(0.3)
+            return [[round(each.seconds, 3), each.message.text] for each in harness.messages("/words")]
+
+    return twice(run)
+
+
+def test_bytes_that_are_no_message_of_their_type_are_dropped_and_counted() -> None:
+    assert in_cell(forged) == [[s, "hello"] for s in (0.1, 0.2, 0.3) for _ in range(5)]
+
+
 def served(scratch: Path) -> Any:
     texts = {"server": programs.SERVER, "first": programs.CLIENTS["await"]}
     texts["second"] = programs.CLIENTS["call in many threads"].replace("'asking'", "'second'")

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.exceptions import StudentError
+from autograder.exceptions import GraderError, StudentError
+from autograder.interfaces import type_support
 from autograder.interfaces.cdr import MAX_BYTES, MAX_OBJECTS
 from autograder.interfaces.loading import classes
 from autograder.interfaces.messages import from_bytes, to_bytes
@@ -89,6 +90,14 @@ def test_a_message_of_many_messages_is_refused_before_they_are_made() -> None:
     assert len(from_bytes(kind, struct.pack("<I", MAX_OBJECTS - 2) + bytes(MAX_OBJECTS)).all) == MAX_OBJECTS - 2
     with pytest.raises(ValueError, match="texts and messages"):
         from_bytes(kind, struct.pack("<I", 200_000) + bytes(200_000))
+
+
+def test_a_fast_cdr_of_another_layout_is_an_error_of_the_grader(monkeypatch: pytest.MonkeyPatch) -> None:
+    type_support.require_known_layout()
+    type_support.require_known_layout.cache_clear()
+    monkeypatch.setattr(type_support, "PLACES", type_support.PLACES + 8)
+    with pytest.raises(GraderError, match="Fast CDR"):
+        type(package().msg.Inner).__import_type_support__()
 
 
 @given(st.sampled_from(["Inner", "Outer", "Empty"]), st.binary(max_size=200))
