@@ -23,6 +23,7 @@ from autograder.plain_text import clean
 MAX_REASON = 200  # characters of an exception's text
 MAX_INT = 10**100  # an int beyond a float's range can be neither compared with one nor, at 4,300 digits, shown
 MAX_DEPTH = 20  # of lists in lists
+MAX_VALUES = 100_000
 # No data cause these: a disk that fails, and a machine that has no more processes, memory or descriptors.
 _OF_THE_MACHINE = frozenset(
     {errno.EIO, errno.EMFILE, errno.ENFILE, errno.EROFS, errno.ESTALE, errno.ENODEV, errno.EAGAIN, errno.ENOMEM}
@@ -91,16 +92,22 @@ def is_of_data(error: BaseException) -> bool:
     return isinstance(error, _OF_DATA) or (isinstance(error, OSError) and error.errno in _OF_FILES)
 
 
-def beyond_bounds(value: object, depth: int = 0) -> str:
+def beyond_bounds(value: object) -> str:
     """Return what in plain data no check can compute with or show, as the name of a type; empty if there is nothing."""
-    if isinstance(value, int) and abs(value) > MAX_INT:
-        return f"int above {float(MAX_INT):.0e}"
-    if not isinstance(value, list | tuple | dict):
-        return ""
-    if depth == MAX_DEPTH:
-        return f"{type(value).__name__} nested more than {MAX_DEPTH} deep"
-    inside = (*value, *value.values()) if isinstance(value, dict) else value
-    return next(filter(None, (beyond_bounds(each, depth + 1) for each in inside)), "")
+    pending, count = [(value, 0)], 0
+    while pending:
+        each, depth = pending.pop()
+        count += 1
+        if count > MAX_VALUES:
+            return f"{type(value).__name__} of more than {MAX_VALUES} values"
+        if isinstance(each, int) and abs(each) > MAX_INT:
+            return f"int above {float(MAX_INT):.0e}"
+        if isinstance(each, list | tuple | dict):
+            if depth == MAX_DEPTH:
+                return f"{type(each).__name__} nested more than {MAX_DEPTH} deep"
+            inside = (*each, *each.values()) if isinstance(each, dict) else each
+            pending += [(inner, depth + 1) for inner in inside]
+    return ""
 
 
 def reason(error: BaseException) -> str:

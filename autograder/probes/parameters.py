@@ -24,6 +24,7 @@ from rclpy.parameter import Parameter
 from autograder.checks import CheckFailed
 from autograder.harness import Harness
 from autograder.harness.parameter_values import value_of
+from autograder.probes import student_yaml
 from autograder.probes.files import read_plain
 from autograder.reading import beyond_bounds, reading, reason
 
@@ -181,7 +182,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
         )
     with reading(path.name):
         try:
-            file = yaml.safe_load(text)
+            file = student_yaml.load(text)
         except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
             raise CheckFailed(f"{path.name} is no YAML: {shortened(reason(error))}.") from None
         if not isinstance(file, dict):

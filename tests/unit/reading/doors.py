@@ -7,6 +7,7 @@ import json
 import os
 import zipfile
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 from typing import Any
@@ -154,6 +155,13 @@ def _definition(package: str, kind: str) -> Callable[[bytes, Path], object]:
     return read
 
 
+def _bomb(form: str) -> bytes:
+    """Return a parameter file whose aliases stand for 9 to the power of 25 values."""
+    names = [f"n{i}" for i in range(26)]
+    lines = [f"  {name}: &{name} {form.format(', '.join([f'*{old}'] * 9))}" for old, name in pairwise(names)]
+    return "\n".join(["scout:", " ros__parameters:", "  n0: &n0 {b: 1}", *lines, ""]).encode()
+
+
 def _parameters_of(place: Path) -> object:
     file = parameters.read_file(place / "config" / "fleet.yaml")
     found = parameters.for_node(file, "scout")
@@ -196,6 +204,9 @@ DOORS: dict[str, Door] = {
             b"scout:\n  ros__parameters: {speed: 0x" + b"9" * 5000 + b"}\n",
             b"0x" + b"9" * 5000 + b": 1\n",
             b"? [1, 2]\n: 1\n",
+            _bomb("[{}]"),
+            _bomb("{{<<: [{}]}}"),
+            b"scout: &s {ros__parameters: {a: *s}}\n",
         ),
     ),
     "answer of a function": Door(

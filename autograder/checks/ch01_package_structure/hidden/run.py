@@ -12,6 +12,7 @@ import yaml
 from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.harness import SteppedHarness, Workspace
+from autograder.probes import student_yaml
 from autograder.probes.installed import Installed
 from autograder.reading import reading
 
@@ -70,7 +71,7 @@ def test_configured(workspace: Workspace, installed_dance: Installed) -> None:
 def _side(text: bytes) -> float:
     with reading("The configuration"):
         try:
-            side = yaml.safe_load(text)["dancer"]["ros__parameters"]["side"]
+            side = student_yaml.load(text)["dancer"]["ros__parameters"]["side"]
         except (yaml.YAMLError, KeyError, TypeError):
             side = None
     usable = isinstance(side, float) and 0.1 <= side <= 5.0

@@ -1,0 +1,42 @@
+"""Reads YAML that anybody may have written: aliases and merges may stand for a bounded number of values only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+MAX_VALUES = 20_000  # that a file stands for, with each alias counted as what it repeats
+
+
+def load(text: str | bytes) -> Any:
+    """Return the plain data that a YAML document stands for.
+
+    Raises:
+        yaml.YAMLError: it is not YAML, it contains itself, or it stands for more than `MAX_VALUES`. PyYAML raises other
+            exceptions, too, for tags and numbers that it cannot read.
+    """
+    loader = yaml.SafeLoader(text)
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            return None
+        _size(node, {})
+        return loader.construct_document(node)
+    finally:
+        loader.dispose()
+
+
+def _size(node: yaml.Node, known: dict[int, int]) -> int:
+    """Return how many values a node stands for; `known` has those of nodes, 0 for one whose inside is being counted."""
+    size = known.get(id(node))
+    if size == 0:
+        raise yaml.YAMLError("an alias stands inside of what it repeats")
+    if size is None:
+        known[id(node)] = 0
+        inside = node.value if isinstance(node, yaml.CollectionNode) else ()
+        parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
+        size = known[id(node)] = 1 + sum(_size(part, known) for part in parts)
+    if size > MAX_VALUES:
+        raise yaml.YAMLError(f"its aliases stand for more than {MAX_VALUES} values")
+    return size
