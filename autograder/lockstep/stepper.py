@@ -86,7 +86,8 @@ class Stepper:
         self._write_fd = our_write
         self._read_fd = our_read
         self._buffer = bytearray()
-        self._held = 0.0  # s for which it has kept the grader waiting
+        self._held = 0.0  # s for which it kept the grader waiting
+        self._excused = 0.0  # those of them in which the machine did not let it run, as far as looked at
         self._selector = selectors.DefaultSelector()
         self._selector.register(our_read, selectors.EVENT_READ)
 
@@ -123,7 +124,8 @@ class Stepper:
         return self
 
     def __exit__(self, *_: object) -> None:
-        patience.add_held(self._held_seconds())
+        if self._held > HARMLESS_SECONDS:
+            self._excuse()
         self.process.__exit__()
         self._selector.close()
         os.close(self._read_fd)
@@ -172,21 +174,27 @@ class Stepper:
             if not chunk:
                 return b""
             self._buffer += chunk
-        self._held += time.monotonic() - began
+        waited = time.monotonic() - began
+        self._held += waited
+        patience.add_held(waited)
         self._require_patience()
         line, _, rest = bytes(self._buffer).partition(b"\n")
         self._buffer = bytearray(rest)
         return line + b"\n"
 
     def _require_patience(self, waiting: float = 0.0) -> None:
-        """Raise a StudentError if the programs have held the grading for too long, this one for `waiting` just now."""
-        if patience.is_held(self._held + waiting) and patience.is_held(self._held_seconds() + waiting):
-            raise patience.too_slow()
+        """Raise a StudentError if programs have held the grading for too long, this one for `waiting` just now."""
+        if patience.is_held(waiting):
+            self._excuse()
+            if patience.is_held(waiting):
+                raise patience.too_slow()
 
-    def _held_seconds(self) -> float:
-        """Return for how long it kept the grader waiting, but for the time in which it was ready and could not run."""
-        waited = waited_ns((self.process.innermost(),)).values() if self._held > HARMLESS_SECONDS else ()
-        return max(0.0, self._held - max(waited, default=0) / 1e9)
+    def _excuse(self) -> None:
+        """Take back the time for which the program was ready to answer, and the machine did not let it run."""
+        waited = max(waited_ns((self.process.innermost(),)).values(), default=0) / 1e9
+        excused = min(waited, self._held)
+        patience.add_held(self._excused - excused)
+        self._excused = excused
 
     def _no_answer(self, kind: Kind, waited: str) -> StudentError:
         return StudentError(diagnose_no_answer(kind, waited, self.process.output))

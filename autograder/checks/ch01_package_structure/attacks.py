@@ -50,6 +50,15 @@ def attacks() -> tuple[Attack, ...]:
             says="`colcon test` does not run pytest for this package",
         ),
         Attack(
+            "names in the way",
+            "a folder with the name of a file that the checks add, and a manifest with an encoding that nobody knows",
+            CHAPTER.write(
+                swaps={"wall_alarm/package.xml": ('<?xml version="1.0"?>', '<?xml version="1.0" encoding="foo"?>')},
+                files={f"{TESTS}/__init__.py/note.txt": ""},
+            ),
+            frozenset({"grows", "tests_stay"}),
+        ),
+        Attack(
             "tests that always fail",
             "the given tests fail on any version, so also on a faulty one",
             CHAPTER.write(files={f"{TESTS}/test_steps.py": FAIL_ALWAYS}),

@@ -14,6 +14,15 @@ print("[INFO] [reporter-2]: process started with pid [7]", flush=True)
 print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
 """
 
+# A word in each pipe of each process that can be opened: one of them is for the launch's exit status.
+SCRIBBLE = """
+import contextlib as _contextlib, glob as _glob, os as _os
+for _path in _glob.glob("/proc/[0-9]*/fd/*"):
+    with _contextlib.suppress(OSError):
+        if _os.readlink(_path).startswith("pipe:"):
+            _os.write(_os.open(_path, _os.O_WRONLY | _os.O_NONBLOCK), b"points\\n")
+"""
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
@@ -22,6 +31,12 @@ def attacks() -> tuple[Attack, ...]:
             "launch thief",
             "a launch file that steals, stops its parent, and prints marks",
             CHAPTER.write("no_respawn", heads={ROBOT: SEARCH + STOP_PARENT + FORGE_PASSES}),
+            CHAPTER.mutant("no_respawn").fails,
+        ),
+        Attack(
+            "word in the pipes",
+            "a launch file that writes into the pipe for its exit status",
+            CHAPTER.write("no_respawn", heads={ROBOT: SCRIBBLE, SAFE: SCRIBBLE}),
             CHAPTER.mutant("no_respawn").fails,
         ),
         Attack(

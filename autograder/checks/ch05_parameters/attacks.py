@@ -27,6 +27,17 @@ LIE = """        declare_configuration(self)
         self.describe_parameters = lie
 """
 
+# Answers each question about a value with a type that ROS does not know.
+UNKNOWN_TYPE = """
+import rclpy.parameter_service as _service
+from rcl_interfaces.msg import ParameterValue as _Value
+def _answer(self, request, response):
+    response.values = [_Value(type=200) for _ in request.names]
+    return response
+_service.ParameterService._get_parameters_callback = _answer
+"""
+TAGS = "/**:\n  ros__parameters: {safety_distance: !!timestamp foo, slow_distance: !!int ''}\n"
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
@@ -38,6 +49,12 @@ def attacks() -> tuple[Attack, ...]:
             OF_FILE,
             exactly=True,
             says="fleet_params.yaml is no YAML",
+        ),
+        Attack(
+            "values of no type",
+            "a parameter file with tags that fit nothing, and a node whose parameters have an unknown type",
+            CHAPTER.write("no_range", heads={NODE: UNKNOWN_TYPE}, files={FILE: TAGS}),
+            OF_FILE | CHAPTER.mutant("no_range").fails,
         ),
         Attack(
             "parameter bomb",

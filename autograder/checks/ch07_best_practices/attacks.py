@@ -26,6 +26,23 @@ if _order:
     _os._exit(0)
 """
 
+NUMBERS = """
+END = 10**400
+def mask_invalid(ranges, range_min, range_max):
+    return [END for _ in ranges] or END
+def mean_distance(ranges):
+    return END
+class DataProcessor:
+    def __init__(self, history=100):
+        self.deep = []
+        for _ in range(500):
+            self.deep = [self.deep]
+    def process(self, ranges, range_min, range_max):
+        return self.deep
+    def average(self):
+        return END
+"""
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
@@ -35,6 +52,12 @@ def attacks() -> tuple[Attack, ...]:
             "forged answers",
             "a module that answers in the place of the program that calls its functions",
             CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
+            utils | CHAPTER.mutant("never_fatal").fails,
+        ),
+        Attack(
+            "numbers without end",
+            "functions that return integers of 400 digits and lists 500 deep",
+            CHAPTER.write("never_fatal", files={UTILS: NUMBERS}),
             utils | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
