@@ -32,5 +32,6 @@ def test_a_node_that_sleeps_in_each_publish_gets_a_result_within_one_budget(tmp_
     asked = {"student": "alice", "seed": 3, "out": tmp_path / "out"}
     result = grade_submission(tmp_path / "alice", "02_nodes", run_job=run, seconds=30.0, **asked)  # type: ignore[arg-type]
     assert budgets == [30.0]
-    assert (result.status, result.diagnosis.kind) in ((Status.GRADED, Kind.TIMED_OUT), (Status.GRADED, Kind.STUCK))
+    assert result.status is Status.GRADED
+    assert result.diagnosis.kind in (Kind.TIMED_OUT, Kind.STUCK, Kind.NEVER_STARTED)  # by what it waited for last
     assert any(check.outcome is not Outcome.PASSED for check in result.checks)
