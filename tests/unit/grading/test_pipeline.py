@@ -28,10 +28,12 @@ class Worker:
 
     def __init__(self, *results: Result | None) -> None:
         self.left, self.alone, self.times = list(results), list[bool](), list[float]()
+        self.last: list[bool] = []  # whether each try was said to be the last one
 
     def __call__(self, job: Job, seconds: float) -> CellReport:
         self.alone.append(pipeline._machine._turn.locked())
         self.times.append(seconds)
+        self.last.append(job.last)
         result = self.left.pop(0)
         if result is None:
             return FAILED
@@ -162,3 +164,9 @@ def test_a_worker_that_answers_something_else_has_failed_and_nothing_of_its_answ
     assert (result.status, result.student) == (Status.NOT_GRADED, "s")
     assert "a worker" in (tmp_path / "out" / "grader.log").read_text()
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"result.json", "grader.log"}
+
+
+def test_a_worker_is_told_which_try_is_the_last(tmp_path: Path, lost: Result) -> None:
+    worker = Worker(None, whole(lost))
+    grade(tmp_path, worker)
+    assert worker.last == [False, True]

@@ -1,0 +1,56 @@
+"""The list of doors is whole: each module of the worker that parses something is in it, or reads the grader's own."""
+
+from __future__ import annotations
+
+import re
+
+from autograder.layout import ROOT
+
+PARSES = re.compile(
+    r"json\.loads?\(|yaml\.(?:safe_)?load|SafeLoader\(|ET\.(?:fromstring|parse)\(|ast\.parse\(|literal_eval|nbformat\.reads?\("
+    r"|\.read_string\(|HeaderParser\(|struct\.unpack|tarfile\.open|zipfile\.ZipFile\(|parse_package_string\(|rosidl_adapter\b"
+)
+PARTS = ("building", "checks", "grading", "harness", "intake", "interfaces", "lockstep", "packages.py", "probes")
+# Modules with a door that `doors` tries, each with the door's name.
+TRIED = {
+    "checks/ch01_package_structure/hidden/run.py": "configuration of 01",
+    "grading/run_notebook.py": "outputs of a notebook",
+    "intake/archives.py": "archive",
+    "intake/notebooks.py": "cells of a notebook",
+    "interfaces/cdr.py": "bytes of a message of the student's own type",
+    "interfaces/definitions.py": "definition that is built",
+    "lockstep/protocol.py": "event of a stepped program",
+    "packages.py": "package.xml by its name",
+    "probes/calls.py": "answer of a function",
+    "probes/files.py": "imports of a module",
+    "probes/installed.py": "metadata of an installed package",
+    "probes/interfaces.py": "definition of a message",
+    "probes/manifest.py": "package.xml whole",
+    "probes/parameters.py": "parameter file",
+    "probes/student_test_reports.py": "report of pytest",
+    "probes/student_yaml.py": "parameter file",
+}
+# What these read, the grader or a course's author has written, or a program of the sandbox reads it there.
+OWN = {
+    *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "checks/contract.py"),
+    *("grading/answer.py", "grading/batch.py", "grading/digests.py", "grading/job.py", "grading/notebook_host.py"),
+    *("grading/store.py", "interfaces/generate.py", "interfaces/tutorials.py"),
+    *("lockstep/lockstep_host/pipes.py", "probes/call_host.py", "probes/versions.py"),
+}
+
+
+def test_each_module_of_the_worker_that_parses_has_a_door_that_is_tried() -> None:
+    from tests.unit.reading.doors import DOORS
+
+    package = ROOT / "autograder"
+    files = [
+        path for part in PARTS for path in ((package / part).rglob("*.py") if "." not in part else [package / part])
+    ]
+    left_out = {"variants", "versions"}  # answers, and packages under test
+    parsing = {
+        path.relative_to(package).as_posix()
+        for path in files
+        if not left_out & set(path.parts) and path.name != "attacks.py" and PARSES.search(path.read_text())
+    }
+    assert parsing == {*TRIED, *OWN}
+    assert set(TRIED.values()) <= set(DOORS)
