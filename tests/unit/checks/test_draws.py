@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from autograder.checks.ch02_nodes.hidden import world_generation
-from autograder.checks.ch02_nodes.hidden.reaction import EDGE, NEAR, at_edge
+from autograder.checks.ch02_nodes.hidden.reaction import COARSE, EDGE, FINE, NEAR
 from autograder.checks.ch02_nodes.hidden.readings import BESIDE, OTHER_LIMITS
 from autograder.checks.ch02_nodes.hidden.worlds import MIN_PATH, RADIUS
 from autograder.checks.ch02_nodes.support import contract as nodes
-from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, RANGE_MAX, RANGE_MIN
+from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, RANGE_MAX, RANGE_MIN, Part, scan
 from autograder.checks.ch03_interfaces.hidden.trips import draw_bad_legs, draw_reserves, draw_too_far, draw_trips
 from autograder.checks.ch03_interfaces.support.contract import MAX_LEGS, METRES_PER_PERCENT
 from autograder.checks.ch04_launch.hidden.inputs import draw_inputs
@@ -109,13 +109,17 @@ def test_what_is_near_for_every_limit_can_be_measured_and_is_within_the_sector()
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_what_stands_beside_the_sector_s_edge_is_inside_or_outside_of_it(side: float) -> None:
-    inside, right, left = at_edge(side, -EDGE)
-    assert max(abs(right), abs(left)) < nodes.HALF_SECTOR
-    assert abs(inside) == nodes.HALF_SECTOR - EDGE
-    outside, right, left = at_edge(side, EDGE)
-    assert min(abs(right), abs(left)) > nodes.HALF_SECTOR
-    assert abs(outside) == nodes.HALF_SECTOR + EDGE
+@pytest.mark.parametrize(("lidar", "count"), [(COARSE, 1), (FINE, 3)])
+def test_what_stands_beside_the_sector_s_edge_is_seen_by_so_many_beams(
+    side: float, lidar: tuple[int, float], count: int
+) -> None:
+    beams, wide = lidar
+    for off in (-EDGE, EDGE):
+        bearing = side * (nodes.HALF_SECTOR + off)
+        assert abs(abs(bearing) - nodes.HALF_SECTOR) > wide
+        shown = scan(Part(bearing - wide, bearing + wide, 0.5), beams=beams)
+        assert sum(reading == 0.5 for reading in shown.ranges) == count
+    assert nodes.HALF_SECTOR - EDGE - FINE[1] > math.degrees(0.5)  # half a radian is no 30 degrees
 
 
 def test_launch_inputs_can_be_told_from_every_default() -> None:

@@ -16,8 +16,9 @@ TALKS = ("subscribes_scan", "publishes_cmd_vel")
 REACTS = ("forward_when_clear", "turns_when_blocked")
 NEAR = 0.13, 0.18  # m, which is near for whatever limit a robot has, and can be measured
 EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
-WIDE = 4.0  # degrees of what stands there
-BEAM = 0.1  # degrees, so that the beams at both ends belong to it
+# How many beams a lidar has, and how far to each side of a bearing, in degrees, something is seen: by one beam of the
+# first, by three of the second, for a robot that does not believe in one.
+COARSE, FINE = (360, 0.6), (1800, 0.3)
 JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
 SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
 
@@ -77,12 +78,13 @@ def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) 
         own.expect_forward(
             robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead"
         )
+    beams, wide = COARSE if own.turns(robot.see(scan(Part(0.0, 0.0, near)))) else FINE
     for side in (-1.0, 1.0):
-        (inside, right, left), (outside, first, last) = (at_edge(side, off) for off in (-EDGE, EDGE))
-        edge = robot.see(scan(Part(right, left, near)))
-        own.expect_turn(edge, f"With something {near:.2f} m away, up to {inside:.0f}°, inside the forward sector")
-        edge = robot.see(scan(Part(first, last, near)))
-        own.expect_forward(edge, f"With something {near:.2f} m away, from {outside:.0f}° on, outside of it")
+        inside, outside = (side * (contract.HALF_SECTOR + off) for off in (-EDGE, EDGE))
+        edge = scan(Part(inside - wide, inside + wide, near), beams=beams)
+        own.expect_turn(robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, in the forward sector")
+        edge = scan(Part(outside - wide, outside + wide, near), beams=beams)
+        own.expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
     around = (Part(first, last, -math.inf) for first, last in ((150.0, 180.0), (45.0, 110.0), (-110.0, -45.0)))
     own.expect_forward(robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85)
 
@@ -115,13 +117,3 @@ def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None
         shown = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
         where = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
         expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)
-
-
-def at_edge(side: float, off: float) -> tuple[float, float, float]:
-    """Return a bearing beside the sector's edge at a side, and the bearings of `WIDE` beams that end there; in degrees.
-
-    Several: whether one alone counts is for another check.
-    """
-    bearing = side * (contract.HALF_SECTOR + off)
-    other = bearing + math.copysign(WIDE, side * off)
-    return bearing, min(bearing, other) - BEAM, max(bearing, other) + BEAM

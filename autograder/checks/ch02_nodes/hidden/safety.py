@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import random
+import statistics
 
 from sensor_msgs.msg import LaserScan
 
-from autograder.checks import group, hint
+from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import (
     SETTLED,
     Reactions,
     Robot,
     expect_stop,
+    is_stop,
 )
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.harness import Workspace
@@ -22,7 +24,11 @@ from autograder.time_record import LOCKSTEP
 check = group("safety")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")
 MARGIN = 0.02  # s around the time-out, two of the shortest steps: a tenth too much is seen
-REAL_MARGIN = 0.15  # s, where time is real and messages are late
+# Where time is real, a command comes when it comes. Between the last that drives and the first that stops lies the
+# time-out, somewhere; the median of many is it, to a hundredth of a second.
+TRIALS = 12
+REAL_MARGIN = 0.04  # s: a tenth too much is seen there, too
+AFTER = 0.25  # s after the time-out: the first command that stops has come
 LATE = 2.0  # s: how old a stamp is, of a scan of which only the arrival counts
 FINE = 0.01  # s between two looks at the clock
 SLOW = 0.25  # of ROS time: how fast the machine's clocks run for a robot that must not look at them
@@ -43,8 +49,10 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, dr
     """It stands still when the newest scan is older than 0.5 s of ROS time: the lidar has died."""
     distance = draw.uniform(1.5, 3.0)
     own.expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
-    margin = MARGIN if robot.time == LOCKSTEP else REAL_MARGIN
-    last, first = contract.STALE_AFTER - margin, contract.STALE_AFTER + margin
+    if robot.time != LOCKSTEP:
+        _expect_timeout(robot, own, scan(fill=distance))
+        return
+    last, first = contract.STALE_AFTER - MARGIN, contract.STALE_AFTER + MARGIN
     came = _show_before_command(robot, scan(fill=distance), last - 0.01)
     _run_finely(robot, last)
     fresh = robot.messages("/cmd_vel", since=came + SETTLED, until=came + last)
@@ -53,8 +61,7 @@ def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, dr
     came = _show_before_command(robot, scan(fill=distance), first + 0.01)
     _run_finely(robot, 2.0)
     expect_stop(robot.messages("/cmd_vel", since=came + first), f"{first:.2f} s after the last scan and later")
-    if robot.time == LOCKSTEP:  # elsewhere the machine's clocks are as they are
-        _expect_ros_time(workspace, scan(fill=distance))
+    _expect_ros_time(workspace, scan(fill=distance))  # where time is real, it is the machine's
 
 
 @check(points=1, holds=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
@@ -69,6 +76,25 @@ def test_recovers(robot: Robot, own: Reactions, draw: random.Random) -> None:
     expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
     late = robot.see(scan(fill=distance), late=LATE)
     own.expect_forward(late, f"With scans that arrive now, and whose stamps are {LATE:g} s old", fraction=0.5)
+
+
+def _expect_timeout(robot: Robot, own: Reactions, shown: LaserScan) -> None:
+    """Fail the check unless a robot in real time takes a scan for old when it is, in the median of many times."""
+    seen = []
+    for number in range(TRIALS):
+        robot.see(shown, 2 * SCAN_SECONDS)
+        robot.run(SCAN_SECONDS * number / TRIALS)  # so that its timer fires at another age of the scan each time
+        came = robot.seconds
+        robot.show(shown, contract.STALE_AFTER + AFTER)
+        commands = robot.messages("/cmd_vel", since=came)
+        driving = [received.seconds - came for received in commands if own.drives([received])]
+        stopped = [received.seconds - came for received in commands if is_stop(received)]
+        expect(bool(driving), "In the first half second after a scan that shows a clear way, it did not drive.")
+        expect(bool(stopped), f"{contract.STALE_AFTER + AFTER:g} s after the last scan, it had not stopped.")
+        seen.append((driving[-1] + stopped[0]) / 2)
+    timeout = statistics.median(seen)
+    right = abs(timeout - contract.STALE_AFTER) <= REAL_MARGIN
+    expect(right, f"It stopped {timeout:.2f} s after the last scan, instead of after {contract.STALE_AFTER:g} s.")
 
 
 def _expect_ros_time(workspace: Workspace, shown: LaserScan) -> None:

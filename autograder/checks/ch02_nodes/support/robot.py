@@ -87,6 +87,10 @@ class Reactions:
         """Fail the check unless every command drives on."""
         _expect(commands, self.forward, situation, "drive straight on at 0.3 m/s", fraction)
 
+    def drives(self, commands: Sequence[ReceivedMessage]) -> bool:
+        """Return whether every command drives on."""
+        return all(_is(_velocity(received), self.forward) for received in commands)
+
     def turns(self, commands: Sequence[ReceivedMessage]) -> bool:
         """Return whether every command turns."""
         return all(_is(_velocity(received), self.turn) for received in commands)
@@ -105,6 +109,11 @@ def expect_stop(commands: Sequence[ReceivedMessage], situation: str, *, fraction
     _expect(commands, STOP, situation, "publish zero velocity", fraction)
 
 
+def is_stop(received: ReceivedMessage) -> bool:
+    """Return whether a command is zero."""
+    return _is(_velocity(received), STOP)
+
+
 def own_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[ReceivedMessage]) -> Reactions:
     """Return the reactions of a robot that was shown a clear way, and something just in front of it.
 
@@ -112,9 +121,10 @@ def own_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[ReceivedMe
     command, and do something else where it is not.
     """
     forward, turn = _steady(clear), _steady(blocked)
-    if forward is None or _is(forward, STOP):
+    moves = forward is not None and not _is(forward, STOP)
+    if forward is None or not moves:
         forward = CONTRACT.forward
-    if turn is None or _is(turn, forward):
+    if turn is None or _is(turn, forward) or (not moves and _is(turn, STOP)):
         turn = CONTRACT.turn
     return Reactions(forward, turn)
 
