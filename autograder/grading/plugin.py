@@ -107,8 +107,8 @@ class GradingPlugin:
         check = _declared_by(item)
         if check is not None:
             self._record(check, call, item)
-        if self.is_finished:
-            item.session.shouldstop = "a check did not pass"
+        if self.is_finished or self.failures:  # a grading that failed is made again, or has no result
+            item.session.shouldstop = "no other check is needed"
 
     def pytest_configure(self, config: pytest.Config) -> None:
         config.option.tbstyle = "native"  # nobody reads the other, for which whole files are parsed at every failure

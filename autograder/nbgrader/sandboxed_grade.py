@@ -23,7 +23,7 @@ from autograder.exceptions import GraderError
 from autograder.feedback.model import page_view
 from autograder.grading import DEFAULT_SEED
 from autograder.grading.batch import Entry, grade_all
-from autograder.grading.store import NOTEBOOK
+from autograder.grading.store import LOG, NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
 from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
 from autograder.plain_text import clean
@@ -70,6 +70,9 @@ class SandboxedGrade(NbGraderPreprocessor):
             )
             if result.status is not Status.GRADED:
                 raise GraderError(f"{student}: not graded, no score is recorded. {result.diagnosis.sentence}")
+            if result.unjudged:
+                checks, log = ", ".join(result.unjudged), results / student / LOG
+                self.log.warning("%s: %s failed, because the check raised an error: read %s", student, checks, log)
             self._copy_outputs(nb, results / student / NOTEBOOK)
             self._write_scores(nb, result, results / student)
             feedback.write(result, results / student)

@@ -37,6 +37,21 @@ def _forge():
 threading.Timer(0.5, _forge).start()
 """
 
+# Says of each message of the grader's that it did not arrive.
+LOSE_MESSAGES = """
+import gc as _gc
+for _pipes in [each for each in _gc.get_objects() if type(each).__name__ == "Pipes"]:
+    def _receive(kind=type(_pipes), receive=type(_pipes).receive, pipes=_pipes):
+        command = receive(pipes)
+        kind.pending = list(command.get("pending", ()))
+        return command
+    def _send(kind=type(_pipes), send=type(_pipes).send, pipes=_pipes, **event):
+        if event.get("event") == "done":
+            event["lost"] = kind.pending
+        send(pipes, **event)
+    _pipes.receive, _pipes.send = _receive, _send
+"""
+
 # Publishes on the grader's topics, on /clock, /rosout and /parameter_events, 20 times a second.
 SPOOF_ROS = """
 def _spoof(node):

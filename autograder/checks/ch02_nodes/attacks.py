@@ -17,6 +17,7 @@ from autograder.checks.ch02_nodes.attack_payloads import (
     FORGE_PROTOCOL,
     FORK_BOMB,
     INSTALL_OWN_RCLPY,
+    LOSE_MESSAGES,
     NOTEBOOK_CELLS,
     OVERRIDE_BUILTINS,
     PACKAGE,
@@ -122,6 +123,12 @@ def attacks() -> tuple[Attack, ...]:
             "forged protocol",
             "answers in the host's place with steps and counts of its own",
             package_writer("five_hertz", head=STEAL_SECRETS, foot=FORGE_PROTOCOL),
+            slow,
+        ),
+        Attack(
+            "lost messages",
+            "says in the host's place that no message of the grader's arrives",
+            package_writer("five_hertz", head=LOSE_MESSAGES),
             slow,
         ),
         Attack(
