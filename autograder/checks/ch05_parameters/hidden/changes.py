@@ -33,8 +33,8 @@ EXACT = 0.005  # of a rate, in lockstep
 @hint("A distance that the request does not name keeps its value: proposed.get(name, self.value(name)).")
 def test_contradiction(robot: Robot, draw: random.Random) -> None:
     """A safety distance that would not be below the slow distance is refused, whichever of the two is set."""
-    above = robot.allowed("safety_distance", round(draw.uniform(1.1, 2.5), 2))
-    below = robot.allowed("slow_distance", round(draw.uniform(0.25, 0.45), 2))
+    above, below = draw_beyond(draw)
+    above, below = robot.allowed("safety_distance", above), robot.allowed("slow_distance", below)
     requests: list[tuple[dict[str, Value], float]] = [
         ({"safety_distance": above}, 0.0),
         ({"slow_distance": below}, 0.0),
@@ -54,7 +54,7 @@ def test_contradiction(robot: Robot, draw: random.Random) -> None:
 @hint("The distance that a request does not name is the present one: neither the default nor that of the start.")
 def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """Its reason names both parameters and their values."""
-    safety, slow, far, near = ((10 * tenths + draw.randrange(2, 9)) / 100 for tenths in (7, 13, 19, 6))
+    safety, slow, far, near = draw_four(draw)
     safety, far = (robot.allowed("safety_distance", distance) for distance in (safety, far))
     slow, near = (robot.allowed("slow_distance", distance) for distance in (slow, near))
     present = {"safety_distance": safety, "slow_distance": slow}
@@ -235,6 +235,17 @@ def test_beside_others(robot: Robot, draw: random.Random) -> None:
         request = {**other, **rate} if frequency > 10.0 else {**rate, **other}
         _change(robot, request)
         expect_rate(robot.command_rate(), frequency, f"After {_values_text(request)}", fraction=0.5)
+
+
+def draw_beyond(draw: random.Random) -> tuple[float, float]:
+    """Return a safety distance above the default slow distance, and a slow distance below the default of the other."""
+    return round(draw.uniform(1.1, 2.5), 2), round(draw.uniform(0.25, 0.45), 2)
+
+
+def draw_four(draw: random.Random) -> tuple[float, float, float, float]:
+    """Return distances that fit, safety and slow, and two that do not: far as a safety distance, near as a slow one."""
+    safety, slow, far, near = ((10 * tenths + draw.randrange(2, 9)) / 100 for tenths in (7, 13, 19, 6))
+    return safety, slow, far, near
 
 
 def _judged(workspace: Workspace) -> tuple[Value, Value, Value]:

@@ -67,8 +67,13 @@ def test_drives(judge_driving: JudgeDriving, draw: random.Random) -> None:
 @hint("The remembered turn ends when the way is clear again, not when the sides look different.")
 def test_turns(judge_driving: JudgeDriving, draw: random.Random) -> None:
     """In front of an obstacle it turns towards the side with more room, and keeps the direction until it is clear."""
-    rooms = {side: (draw.uniform(0.25, NEAR - 0.1), draw.uniform(0.7, 1.2)) for side in ("left", "right")}
+    rooms = draw_rooms(draw)
     judge_driving(lambda driving: _expect_turns(driving, rooms))
+
+
+def draw_rooms(draw: random.Random) -> dict[str, tuple[float, float]]:
+    """Return for each side how near something is ahead, and how much room there is on the other side, in metres."""
+    return {side: (draw.uniform(0.25, NEAR - 0.1), draw.uniform(0.7, 1.2)) for side in ("left", "right")}
 
 
 def _expect_turns(driving: System, rooms: Mapping[str, tuple[float, float]]) -> None:

@@ -76,14 +76,19 @@ class Launched:
         return [name for name, line in self.lines.items() if line not in self.harness.output]
 
 
-@pytest.fixture(scope="module")
-def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
-    """One launch, for all checks of this module."""
+def draw_values(seed: int) -> dict[str, dict[str, float]]:
+    """Return a value for each parameter of each node."""
     draw = Random(f"{seed}:launch")
-    values = {
+    return {
         node: {name: _between(draw, parameter) for name, parameter in parameters.items()}
         for node, parameters in PARAMETERS.items()
     }
+
+
+@pytest.fixture(scope="module")
+def launched(workspace: Workspace, seed: int) -> Iterator[Launched]:
+    """One launch, for all checks of this module."""
+    values = draw_values(seed)
     text = yaml.safe_dump({node: {"ros__parameters": dict(own)} for node, own in values.items()})
     lines = {name: f"{name} begins" for name in PROGRAMS}
     scripts = {name: script for name, line in lines.items() if (script := _printing(workspace, name, line))}

@@ -22,6 +22,11 @@ NODES = tuple(f"/{name}" for name in PROGRAMS)
 FIRST_SECONDS = 20.0  # real time for the first decision; it takes one period
 
 
+def draw_hot(seed: int) -> int:
+    """Return a whole number of degrees Celsius."""
+    return Random(f"{seed}:hot").randint(52, 58)
+
+
 @dataclass(frozen=True)
 class Launched:
     """The launch that all checks look at, and the one with a whole number for hot, where the nodes did not all run."""
@@ -47,7 +52,7 @@ def launched(workspace: Workspace, types: Types, hot: int) -> Iterator[Launched]
 @pytest.fixture(scope="module")
 def hot(seed: int) -> int:
     """The argument with which it is launched, a whole number in degrees Celsius."""
-    return Random(f"{seed}:hot").randint(52, 58)
+    return draw_hot(seed)
 
 
 @check(points=3, holds=("launch", "thermometer-topics", "smoother-topics", "guard-topics"), after=("installs",))

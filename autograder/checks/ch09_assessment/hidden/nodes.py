@@ -61,8 +61,7 @@ def test_readings(start: Start) -> None:
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
     """Thermometer measures by its parameters period, mean and swing."""
-    period = draw.choice((0.1, 0.2, 0.8))
-    mean, swing = round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
+    period, mean, swing = draw_wave(draw)
     try:
         _expect_measured(start, period, mean, swing, reading)
     except CheckFailed:  # whether it goes up and down by the formula, another check says
@@ -179,8 +178,7 @@ def test_hysteresis(start: Start, draw: Random) -> None:
 @hint("self.hot = ... in __init__ is read once; get_parameter in a callback is not.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
     """Guard decides by hot and cool as they were at its start, which fails unless cool is less than hot."""
-    cool = round(draw.uniform(20.0, 30.0), 1)
-    hot = round(cool + draw.uniform(5.0, 10.0), 1)
+    hot, cool = draw_thresholds(draw)
     with start(GUARD, hot=hot, cool=cool) as harness:
         where = f"With hot {hot} and cool {cool}: "
         _expect_decisions(harness, [cool - 1.0, hot + 1.0, cool - 1.0], where, hot=hot, cool=cool)
@@ -252,6 +250,18 @@ def test_relative(workspace: Workspace) -> None:
         if (said := missing_in_namespace(workspace, contract.PACKAGE, name, names, plain=True))
     ]
     expect(not left, " ".join(left))
+
+
+def draw_wave(draw: Random) -> tuple[float, float, float]:
+    """Return a period in s, a mean and a swing in degrees Celsius."""
+    period = draw.choice((0.1, 0.2, 0.8))
+    return period, round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
+
+
+def draw_thresholds(draw: Random) -> tuple[float, float]:
+    """Return the temperatures hot and cool in degrees Celsius."""
+    cool = round(draw.uniform(20.0, 30.0), 1)
+    return round(cool + draw.uniform(5.0, 10.0), 1), cool
 
 
 def _expect_measured(start: Start, period: float, mean: float, swing: float, reading: Callable[..., float]) -> None:

@@ -1,0 +1,106 @@
+"""What 05 to 09 draw from a seed is within the bounds of their contracts, whatever the seed is."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
+from autograder.checks.ch05_parameters.hidden import changes, declaration, start_values
+from autograder.checks.ch05_parameters.support import contract as parameters
+from autograder.checks.ch07_best_practices.hidden import robust
+from autograder.checks.ch07_best_practices.support.robot import expected
+from autograder.checks.ch08_capstone.hidden import commands, drives
+from autograder.checks.ch08_capstone.hidden import launches as navigation
+from autograder.checks.ch08_capstone.support import contract as capstone
+from autograder.checks.ch09_assessment.hidden import launches as guarded
+from autograder.checks.ch09_assessment.hidden import nodes
+from autograder.checks.ch09_assessment.support import contract as assessment
+from sim import RobotSpec, Simulation, clearance, start
+
+SEEDS = range(1000)
+SOME = range(0, 1000, 25)  # for what takes long
+
+
+def _allowed(name: str, value: float) -> bool:
+    wanted = parameters.WANTED[name]
+    return wanted.low is not None and wanted.high is not None and wanted.low <= value <= wanted.high
+
+
+def test_05_starts_with_values_that_are_allowed_and_fit_each_other() -> None:
+    for seed in SEEDS:
+        drawn = start_values.start_numbers(seed)
+        assert all(_allowed(name, value) for name, value in drawn.items())
+        assert drawn["safety_distance"] < drawn["slow_distance"]
+        assert isinstance(drawn["battery_threshold"], int)
+        assert 5 <= drawn["battery_threshold"] <= 95  # charges beside it are charges
+
+
+def test_05_asks_for_changes_that_only_the_distances_forbid() -> None:
+    for seed in SEEDS:
+        above, below = changes.draw_beyond(random.Random(seed))
+        assert _allowed("safety_distance", above)
+        assert _allowed("slow_distance", below)
+        assert above > 1.0
+        assert below < 0.5
+        safety, slow, far, near = changes.draw_four(random.Random(seed))
+        assert _allowed("safety_distance", far)
+        assert _allowed("slow_distance", near)
+        assert near < safety < slow < far
+        assert safety < 1.0  # the default slow distance, with which it has to fit, too
+        assert slow > 0.5
+
+
+def test_05_asks_for_values_outside_of_each_range() -> None:
+    limited = [wanted for wanted in parameters.WANTED.values() if wanted.low is not None]
+    for seed in SEEDS:
+        for wanted in limited:
+            low, high = declaration._outside(wanted, random.Random(seed))
+            assert low < wanted.low
+            assert high > wanted.high
+            assert type(low) is type(high) is type(wanted.default)
+
+
+def test_07_finds_seeds_that_a_parameter_may_have() -> None:
+    for seed in SOME:
+        shaky = robust._shaky(random.Random(seed))
+        assert 1 <= shaky <= 2**31 - 1
+        assert expected(shaky, 0.5, robust.READINGS, 1).count("unstable: 2 in a row") >= 2
+
+
+def test_08_launches_with_values_within_the_ranges() -> None:
+    for seed in SEEDS:
+        for node, values in navigation.draw_values(seed).items():
+            for name, value in values.items():
+                bounds = capstone.PARAMETERS[node][name]
+                assert bounds.lowest <= value <= bounds.highest
+
+
+def test_08_shows_obstacles_that_a_lidar_measures_and_the_robot_turns_at() -> None:
+    safety = capstone.PARAMETERS[capstone.CONTROLLER]["safety_distance"].default
+    for seed in SEEDS:
+        for near, tight in commands.draw_rooms(random.Random(seed)).values():
+            assert RANGE_MIN < near < safety
+            assert RANGE_MIN < tight - 0.4 < tight < RANGE_MAX
+
+
+@pytest.mark.parametrize("seed", SOME)
+def test_08_draws_corridors_in_which_the_robot_stands_free_and_has_a_way_to_go(seed: int) -> None:
+    bend = drives.draw_bend(random.Random(seed))
+    simulation = Simulation(bend.world, (RobotSpec(radius=drives.RADIUS),), seed=1)
+    assert clearance(simulation, start(simulation)).distance > 0.1
+    at_start = bend.world.starts[0]
+    assert float(bend.share(np.array([at_start.x]), np.array([at_start.y]))[0]) < 0.2
+    assert float(bend.share(np.array([bend.first]), np.array([bend.side * bend.second]))[0]) == 1.0
+
+
+def test_09_draws_thresholds_of_which_cool_is_the_lower() -> None:
+    for seed in SEEDS:
+        hot, cool = nodes.draw_thresholds(random.Random(seed))
+        assert cool + 2.0 < hot - 2.0  # with room for what lies between
+        assert assessment.COOL < guarded.draw_hot(seed) < assessment.HOT
+        period, mean, swing = nodes.draw_wave(random.Random(seed))
+        assert period > 0.0
+        assert (period, mean, swing) != (assessment.PERIOD, assessment.MEAN, assessment.SWING)
