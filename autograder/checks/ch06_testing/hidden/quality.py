@@ -7,7 +7,7 @@ from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
-from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_TESTS, PACKAGE
 from autograder.harness import Workspace
 from autograder.probes import linters
 from autograder.probes.colcon_test import expect_ended
@@ -27,7 +27,7 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
-    examination.expect_usable(LIMITS)
+    examination.expect_begun()
     given = style(STYLES[0]).files
     texts = {name: text.encode() for name, text in given.items()}
     changed = changed_files(examination.source.files, texts, GIVEN)
@@ -68,7 +68,7 @@ def test_ends(examination: Examination) -> None:
 @hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
-    examination.expect_usable(LIMITS)
+    examination.expect_begun()
     report = examination.colcon
     verdicts = report.claims.verdicts
     expect_ended(report)
@@ -84,7 +84,7 @@ def test_colcon(examination: Examination) -> None:
 @hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")
 def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
-    examination.expect_usable(LIMITS)
+    examination.expect_begun()
     verdicts = examination.colcon.claims.verdicts
     ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
     names = {name.partition("::")[2] for name, verdict in ran.items() if verdict is not ClaimedOutcome.SKIPPED}
