@@ -16,6 +16,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from autograder.interfaces import rosidl
+
 MAX_FILES = 64
 MAX_BYTES = 64 * 1024
 MAX_FIELDS = 512
@@ -254,11 +256,9 @@ class _Reader:
         return values == [constant.value for constant in spec.constants] + [f.default_value for f in spec.fields]
 
     def _parse(self, line: str) -> Any:
-        from rosidl_adapter.parser import parse_message_string
-
         try:
             with contextlib.redirect_stderr(io.StringIO()):
-                return parse_message_string(self._package, self._name, line)
+                return rosidl.parser().parse_message_string(self._package, self._name, line)
         except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
             what = "a field is written `type name`, a constant `type NAME=value`"
             reason = str(error)

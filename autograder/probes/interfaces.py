@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from autograder.interfaces import rosidl
+
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
 READ_AS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
@@ -93,15 +95,15 @@ def parse(package: str, path: str, text: str) -> Interface:
     Raises:
         Unreadable: the build would refuse it.
     """
-    from rosidl_adapter import parser
-
     kind, _, file = path.partition("/")
     name = file.removesuffix(f".{kind}")
     if len(text) > MAX_BYTES:
         raise Unreadable(f"{path} is far larger than a definition.")
     try:
         with contextlib.redirect_stderr(io.StringIO()):
-            whole = getattr(parser, f"parse_{READ_AS[kind]}_string")(package, name, text)
+            whole = getattr(rosidl.parser(), f"parse_{READ_AS[kind]}_string")(
+                package, name, rosidl.without_comments(text)
+            )
     except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
         raise Unreadable(f"{path} cannot be read: {_reason(error)}.") from None
     return Interface(path, tuple(_part(package, getattr(whole, part) if part else whole) for part in PARTS[kind]))

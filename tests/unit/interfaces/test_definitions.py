@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import re
+import time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autograder.interfaces import rosidl
 from autograder.interfaces.definitions import (
     MAX_BYTES,
     MAX_FILES,
@@ -16,6 +19,7 @@ from autograder.interfaces.definitions import (
     read,
     require_uses,
 )
+from autograder.probes import interfaces
 
 
 def test_a_definition_loses_its_comments_and_names_what_it_uses() -> None:
@@ -139,3 +143,27 @@ def test_any_text_is_a_definition_or_refused(path: str, text: str) -> None:
         (definition,) = read("my_msgs", {path: text})
         (again,) = read("my_msgs", {path: definition.text})
         assert again.sections == definition.sections
+
+
+LONG = {
+    "a constant's name": f"int32 {'A' * 30_000}!=3",
+    "a constant's name with an underscore at its end": f"int32 {'A_' * 30_000}=3",
+    "brackets in a comment": f"int32 a #{'[' * 60_000}",
+    "quotation marks": f"string[] a [{chr(39) * 60_000}",
+    "texts": f"string[] a [{'x,' * 10_000}]",
+    "spaces": f"int32{' ' * 60_000}a",
+}
+
+
+@pytest.mark.parametrize("line", LONG.values(), ids=LONG)
+def test_a_long_line_is_read_in_a_moment(line: str) -> None:
+    began = time.process_time()
+    for parse in (lambda: read("my_msgs", {"msg/A.msg": line}), lambda: interfaces.parse("my_msgs", "msg/A.msg", line)):
+        with contextlib.suppress(DefinitionError, interfaces.Unreadable):
+            parse()
+    assert time.process_time() - began < 5.0
+
+
+@pytest.mark.parametrize("name", ["A", "AB", "A_B", "A1_2", "A_", "A__B", "aB", "_A", "Ab", "", "A_B_"])
+def test_a_constants_name_is_right_for_rosidl_where_it_is_right_here(name: str) -> None:
+    assert bool(rosidl.CONSTANT_NAME.match(name)) == bool(re.match("^[A-Z]([A-Z0-9_]?[A-Z0-9]+)*$", name))
