@@ -91,6 +91,10 @@ class Check:
         return self.needs + self.after
 
 
+class FractionError(GraderError, ValueError):
+    """A failed check's fraction is none: the check is wrong, or did not expect the data that it worked it out of."""
+
+
 class CheckFailed(AutograderError):
     """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
 
@@ -100,7 +104,7 @@ class CheckFailed(AutograderError):
     def __init__(self, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
         super().__init__(message)
         if not (math.isfinite(fraction) and 0.0 <= fraction < 1.0):
-            raise GraderError(f"a failed check's fraction must be in [0, 1), not {fraction!r}")
+            raise FractionError(f"a failed check's fraction must be in [0, 1), not {fraction!r}")
         self.message = message
         self.fraction = fraction
         self.hints = hints

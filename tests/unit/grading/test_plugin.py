@@ -248,6 +248,20 @@ def test_an_error_over_data_in_hand_fails_that_check_alone_and_is_kept_for_the_i
     assert "OverflowError" in plugin.unjudged["reads"]
 
 
+def test_a_fraction_that_data_in_hand_make_impossible_fails_that_check_alone(grade: Grade) -> None:
+    plugin = grade("""
+        from autograder.reading import hold
+
+        @check(points=1, group="g")
+        def test_reads():
+            '''It is so.'''
+            hold("What /add answered")
+            expect(False, "wrong", fraction=float("nan"))
+    """)
+    assert plugin.results["reads"].outcome is Outcome.FAILED
+    assert (plugin.failures, list(plugin.unjudged)) == ([], ["reads"])
+
+
 def test_an_error_without_data_in_hand_is_the_grader_s_own_failure_after_a_check_that_had_some(grade: Grade) -> None:
     plugin = grade("""
         from autograder.reading import hold

@@ -128,7 +128,8 @@ class Robot(AutoHarness):
 
     def rate_since(self, began: float) -> float:
         """Return how many commands a second came after `began`, by the mean time between them."""
-        return 1.0 / mean_period(self.messages("/cmd_vel", since=began))
+        period = mean_period(self.messages("/cmd_vel", since=began))
+        return 1.0 / period if period else math.inf
 
     def charge(self, percent: float) -> None:
         """Let the battery say its charge."""
