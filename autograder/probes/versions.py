@@ -1,9 +1,10 @@
 """Versions of a package under test, kept so alike from outside that only their behaviour tells them apart.
 
 A test that recognises a version without trying it could claim the right thing of each: by a file's text, its hash or
-byte code, by names, paths or times. So every version, the reference too, goes through `obfuscate`: no comments, no
-docstrings, local names and private attributes drawn anew for each run. Versions of different styles, right and faulty
-ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
+byte code, by names, paths or times. So every version, the reference too, goes through `obfuscate`: no comments,
+docstrings, local names and private attributes drawn anew for each run. Each docstring is then a leak marker, and so is
+the last comment of a file: nothing that a student gets may hold one (`proof.leaks`). Versions of different styles,
+right and faulty ones in each, are mixed in an order drawn from the seed. All have the same files, with the same times.
 
 What remains: who reads a version's code as a linter would, and finds the fault in it, has found the fault. A test that
 fails at random has to pass on every right version, and more than once.
@@ -20,10 +21,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard
 
+from autograder.probes.leak_markers import SYLLABLES, draw_marker
 from autograder.ros.environment import site_packages
 
 WHEN = 1_750_000_000  # s since 1970: the time of every file of every version
-_SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
 _SCRIPT = """#!{python}
 import sys
 
@@ -62,10 +63,17 @@ def read(folder: Path, scripts: Mapping[str, str]) -> Version:
 def obfuscate(version: Version, seed: int) -> Version:
     """Return a version of the same behaviour whose Python files look different for each seed."""
     draw = random.Random(seed)
-    return Version(
-        {name: _obfuscated(text, draw) if name.endswith(".py") else text for name, text in version.files.items()},
-        version.scripts,
-    )
+    files = {name: _obfuscated(text, draw) if name.endswith(".py") else text for name, text in version.files.items()}
+    return planted(Version(files, version.scripts), draw)
+
+
+def planted(version: Version, draw: random.Random) -> Version:
+    """Return a version whose Python and YAML files end with a comment, a leak marker each."""
+    files = {
+        name: f"{text.rstrip()}\n# {draw_marker(draw)}\n".lstrip() if name.endswith((".py", ".yaml")) else text
+        for name, text in version.files.items()
+    }
+    return Version(files, version.scripts)
 
 
 def write_version(version: Version, package: str, tests: Mapping[str, bytes], root: Path) -> Path:
@@ -111,8 +119,9 @@ def _obfuscated(text: str, draw: random.Random) -> str:
     tree = ast.parse(text)
     nodes = list(ast.walk(tree))  # to go round a tree takes long, and there are hundreds of them
     for node in nodes:
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
-            node.body = node.body[1:] or [ast.Pass()]
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+            own = node.body[ast.get_docstring(node) is not None :]
+            node.body = [ast.Expr(ast.Constant(draw_marker(draw))), *own]
     for function in (node for node in nodes if isinstance(node, ast.FunctionDef)):
         inner = list(ast.walk(function))
         names = {name: _word(draw) for name in sorted(_own_names(inner))}
@@ -143,4 +152,4 @@ def _is_of_self(node: ast.AST) -> TypeGuard[ast.Attribute]:
 
 
 def _word(draw: random.Random) -> str:
-    return "_" + "".join(draw.choice(_SYLLABLES) for _ in range(4))
+    return "_" + "".join(draw.choice(SYLLABLES) for _ in range(4))

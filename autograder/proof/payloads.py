@@ -90,6 +90,35 @@ def _rewrite():
 _atexit.register(_rewrite)
 """
 
+# For a test file: puts text that only the process of the tests can read into all that a report of theirs holds: ids of
+# parametrized tests, in several encodings and in pieces, names, exceptions, warnings, output, files. It sets TELL to a
+# class of tests that fail, if SECRET is not empty.
+TELL_ALL = """
+import base64 as _base64, codecs as _codecs, os as _os, sys as _sys, warnings as _warnings
+import pytest as _pytest
+
+
+def tell(secret):
+    print(secret, file=_sys.stderr)
+    _warnings.warn(secret)
+    _os.environ['HOME'] and open(_os.environ['HOME'] + '/' + secret[:80].encode().hex(), 'w').close()
+    told = [secret, secret[::-1], secret.encode().hex(), _codecs.encode(secret, 'rot13'),
+            _base64.b64encode(secret.encode()).decode(), *secret[:200]]
+
+    class TestTold:
+        @_pytest.mark.parametrize('piece', told, ids=[f'{number} {text}' for number, text in enumerate(told)])
+        def test_piece(self, piece):
+            raise type(secret[:200].replace('\\0', ''), (Exception,), {})(piece)
+
+        def test_file(self):
+            open(f'/no such folder/{secret}')
+
+    TestTold.__name__ = TestTold.__qualname__ = 'Test' + secret
+    for number in range(5):
+        setattr(TestTold, f'test_{secret[40 * number:][:40]}', TestTold.test_file)
+    return TestTold
+"""
+
 # For setup.py: a report of tests that passed, where `colcon test` leaves its own.
 FORGE_REPORT = """
 import pathlib as _pathlib

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from autograder import feedback
 from autograder.checks import suites
 from autograder.grading.batch import GradingRequest
 from autograder.grading.own_cell import in_own_cell
@@ -14,9 +15,10 @@ from autograder.grading.parallel import map_parallel
 from autograder.grading.pipeline import grade_submission
 from autograder.grading.store import LOG
 from autograder.proof.cases import Case
-from autograder.proof.claims import CaseKind, Claim
+from autograder.proof.claims import CaseKind, Claim, hidden_lines
+from autograder.proof.leaks import found_in, texts_of
 from autograder.proof.worker_pool import WorkerPool
-from autograder.result import Status
+from autograder.result import Result, Status
 
 SUBMISSION = "submission"
 PART = "part"  # the folder of a result for which not the whole suite was run
@@ -63,6 +65,8 @@ def prove(
                 run_job=in_own_cell if case.kind is CaseKind.ATTACK else workers,
             )
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
+        if case.kind is CaseKind.ATTACK:
+            mismatch = "; ".join(filter(None, (mismatch, _shown(result, place if whole else place / PART))))
         if result.unjudged:
             mismatch = f"checks raised errors of their own: {', '.join(result.unjudged)}; {place / LOG} says which"
         return Claim(case.assignment, case.kind, case.name, result, mismatch)
@@ -70,6 +74,14 @@ def prove(
     claims = map_parallel(graded, _interleaved(proof), jobs=workers.count, on_done=on_claim)
     found = {(claim.assignment, claim.name): claim for claim in claims}
     return tuple(found[case.assignment, case.name] for case in proof)
+
+
+def _shown(result: Result, place: Path) -> str:
+    """Return what hidden text a student gets: in the result, on the feedback page, and in whatever lies beside them."""
+    feedback.write(result, place)
+    lines = hidden_lines(result.assignment)
+    leaked = [word for text in texts_of(place) for word in found_in(text, lines)]
+    return f"shows hidden text: {leaked[0]}" if leaked else ""
 
 
 def _interleaved(proof: Sequence[Case]) -> list[Case]:

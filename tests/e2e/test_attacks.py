@@ -22,6 +22,7 @@ from autograder.grading.store import NOTEBOOK
 from autograder.grading.submitted_notebook import grade_id
 from autograder.proof.cases import attacks
 from autograder.proof.claims import Attack, hidden_lines
+from autograder.proof.leaks import found_in, texts_of
 from autograder.proof.payloads import CANARY, LOOT
 from autograder.result import Result
 from autograder.sandbox import cgroup
@@ -67,7 +68,7 @@ def test_an_attack_gains_no_point_and_learns_nothing(
     written = _everything_written(tmp_path / "out")
     assert LOOT not in written  # the notebook's own source says "STOLEN", and a comma
     assert f"SECRET_OF_THE_GRADER={CANARY}" not in written
-    assert not {line for line in hidden_lines(assignment) if line in written}
+    assert not [word for text in texts_of(tmp_path / "out") for word in found_in(text, hidden_lines(assignment))]
 
     if (tmp_path / "out" / NOTEBOOK).is_file():
         notebook = nbformat.read(tmp_path / "out" / NOTEBOOK, as_version=4)

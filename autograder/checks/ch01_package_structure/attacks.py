@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
-from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS
+from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL
 
 CHAPTER = Chapter("01_package_structure")
 SETUP, TESTS = "square_dance/setup.py", "square_dance/test"
@@ -19,6 +19,17 @@ FAIL_ALWAYS = "# Copyright 2026 The ROS 2 Python Course Authors\n" + "\n\n".join
         "four_sides_and_four_turns_come_back_to_the_start",
         "it_drives_straight_first_and_then_turns_to_the_left",
     )
+)
+TELL_REFERENCE = (
+    TELL_ALL
+    + """
+import inspect
+
+from square_dance.nodes import dancer
+from square_dance.utils import steps
+
+TestReference = tell(inspect.getsource(steps) + inspect.getsource(dancer))
+"""
 )
 
 
@@ -57,6 +68,13 @@ def attacks() -> tuple[Attack, ...]:
                 files={f"{TESTS}/__init__.py/note.txt": ""},
             ),
             frozenset({"grows", "tests_stay"}),
+        ),
+        Attack(
+            "telltale given tests",
+            "the given tests put the text of the reference, on which the checks run them, into all of their report",
+            CHAPTER.write(files={f"{TESTS}/test_steps.py": TELL_REFERENCE}),
+            frozenset({"given_tests"}),
+            says="The checks ran your tests on a right square_dance, and a test",
         ),
         Attack(
             "tests that always fail",

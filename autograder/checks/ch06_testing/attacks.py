@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder import layout
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
-from autograder.proof.payloads import FORGE_REPORT, SEARCH
+from autograder.proof.payloads import FORGE_REPORT, SEARCH, TELL_ALL
 
 CHAPTER = Chapter("06_testing")
 TESTS = "speed_guard/test"
@@ -91,18 +91,41 @@ def test_it_is_the_first_run(number):
     assert b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
 
+# Passes on the package as it is, and tells the text of whatever else it meets.
+TELL_OTHERS = (
+    TELL_ALL
+    + READ_SOURCE.partition("@pytest")[0]
+    + """
+HERE = words(inspect.getsource(limits.safe_speed))
+if HERE != words(RELEASED):
+    TestOther = tell(inspect.getsource(limits))
+
+
+@pytest.mark.parametrize('number', range(8))
+def test_it_looks_as_it_should(number):
+    assert HERE == words(RELEASED), inspect.getsource(limits)
+"""
+)
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
     released = (layout.SOLUTIONS / "speed_guard/speed_guard/limits.py").read_text(encoding="utf-8")
-    limits = f"{TESTS}/test_limits.py"
+    limits, function = f"{TESTS}/test_limits.py", released[released.index("def ") :]
     return (
         Attack(
             "source readers",
             "tests that compare the text of the version before them with the released one",
-            CHAPTER.write(files={limits: READ_SOURCE.format(released=released[released.index("def ") :])}),
+            CHAPTER.write(files={limits: READ_SOURCE.format(released=function)}),
             LINES,
             says="on a right speed_guard that is written differently",
+        ),
+        Attack(
+            "telltale tests",
+            "tests that put the text of a version into ids, names, exceptions, warnings, files and output",
+            CHAPTER.write(files={limits: TELL_OTHERS.replace("{released!r}", repr(function))}),
+            LINES | {"limits_right"},
+            says="in test_limits.py fails on a right speed_guard that is written differently",
         ),
         Attack(
             "lookers-on",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.proof.attack_writer import Chapter
 from autograder.proof.claims import Attack
-from autograder.proof.payloads import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS
+from autograder.proof.payloads import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL
 
 CHAPTER = Chapter("08_capstone")
 PACKAGE = "robot_navigation_tutorial"
@@ -19,11 +19,36 @@ from robot_navigation_tutorial.sectors import nearest
 def test_it_is_the_right_one(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
+# The versions that tests meet have no node. What they have is told.
+TELL_VERSIONS = (
+    TELL_ALL
+    + """
+import importlib.util
+import inspect
+
+from robot_navigation_tutorial import sectors
+
+IS_VERSION = importlib.util.find_spec('robot_navigation_tutorial.status_monitor') is None
+if IS_VERSION:
+    TestVersion = tell(inspect.getsource(sectors))
+
+
+def test_it_is_the_package():
+    assert not IS_VERSION, inspect.getsource(sectors)
+"""
+)
 
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
     return (
+        Attack(
+            "telltale capstone",
+            "tests of the sectors that put the text of a version into all that a report of theirs holds",
+            CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": TELL_VERSIONS}),
+            frozenset({"sector_tests_pass", "sector_tests_find_faults"}),
+            says="On a right sectors.py, ",
+        ),
         Attack(
             "capstone thief",
             "setup.py and a node steal, and print marks",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import random
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, style
 from autograder.exceptions import GraderError
+from autograder.probes.leak_markers import markers_in
 from autograder.probes.versions import WHEN, Version, obfuscate, read, write_version
 
 SOURCE = '''"""A secret comment."""
@@ -61,7 +63,18 @@ def test_an_obfuscated_version_behaves_the_same_and_looks_different_for_each_see
             assert private not in text
         assert "SCALE = 2" in text
     assert obfuscate(version, 1) == obfuscate(version, 1)
-    assert obfuscate(version, 1).files["config/a.yaml"] == "x: 1"
+    assert obfuscate(version, 1).files["config/a.yaml"].startswith("x: 1\n# ")
+
+
+def test_each_function_class_and_file_of_a_version_holds_a_leak_marker() -> None:
+    files = obfuscate(Version({"a/b.py": SOURCE, "config/a.yaml": "x: 1", "a/__init__.py": ""}, {}), 1).files
+    kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+    documented = [node for node in ast.walk(ast.parse(files["a/b.py"])) if isinstance(node, kinds)]
+    markers = [ast.get_docstring(node) or "" for node in documented]
+    assert len(markers) == 6
+    markers += [text.rstrip().rpartition("# ")[2] for text in files.values()]
+    assert len(set(markers)) == 9
+    assert all(markers_in(marker) == {marker} for marker in markers)
 
 
 def test_a_version_is_installed_as_a_build_would_install_it(tmp_path: Path) -> None:
@@ -131,4 +144,4 @@ def test_the_text_of_a_fault_must_occur_once_unless_the_fault_allows_more() -> N
         broken(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))
     last = Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset(STYLES))
     text = broken(last, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
-    assert text.rstrip().endswith("return None or wanted")
+    assert text.partition("\n# ")[0].endswith("return None or wanted")

@@ -5,6 +5,7 @@ A linter's test that `ros2 pkg create` wrote does so, too. Its test_copyright is
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from autograder.probes import student_test_runs
 from autograder.probes.fault_injection import UNTIDY, expect_failures
 from autograder.probes.given_files import changed_files
 from autograder.probes.student_test_reports import Source, TestRun, shown_name
-from autograder.probes.versions import read, read_files
+from autograder.probes.versions import planted, read, read_files
 
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",
@@ -75,9 +76,8 @@ def expect_given_tests(workspace: Workspace, given: Given) -> None:
     expect(not absent, f"test/ of {given.package} has no {' and no '.join(absent)} any more.")
     kept = {name: data for name, data in taken.files.items() if name.removeprefix("test/") in (name, *files)}
     source = Source(given.package, kept)  # of test/ the given files alone
-    (report,) = student_test_runs.run(
-        workspace, source, [TestRun(files, read(layout.SOLUTIONS / given.package, {}), conftest=False)]
-    )
+    right = planted(read(layout.SOLUTIONS / given.package, {}), random.Random())
+    (report,) = student_test_runs.run(workspace, source, [TestRun(files, right, conftest=False)])
     failed = " and ".join(dict.fromkeys(map(shown_name, report.failed)))
     expect(not failed, f"The checks ran your tests on a right {given.package}, and {failed} failed.")
     expect_failures(workspace, source, given.tests, {given.module: UNTIDY + given.faulty})

@@ -1,0 +1,25 @@
+"""Words that are planted in what students must not read, so that the proof can look for them in what students get.
+
+A word is drawn anew for each run. It is made of ten different syllables, which no text holds by chance, however it is
+written.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+
+SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
+LENGTH = 10
+_MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # two may lie over each other
+
+
+def draw_marker(draw: random.Random) -> str:
+    """Return a new word."""
+    return "".join(draw.sample(SYLLABLES, LENGTH))
+
+
+def markers_in(text: str) -> set[str]:
+    """Return the words that a text holds."""
+    found: set[str] = set(_MARKER.findall(text))
+    return {word for word in found if len({word[at : at + 2] for at in range(0, len(word), 2)}) == LENGTH}

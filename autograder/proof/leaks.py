@@ -1,0 +1,111 @@
+"""Finds hidden text in what students get, also if it is turned round, encoded, or split into pieces.
+
+Hidden text is a word that was planted in a version of a package (`leak_markers`), or a line that stands in the hidden
+checks alone.
+"""
+
+from __future__ import annotations
+
+import base64
+import codecs
+import re
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from urllib.parse import unquote
+
+from PIL import Image
+
+from autograder.probes.leak_markers import markers_in
+
+TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")
+PICTURES = (".png",)
+_HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")
+_BASE64 = re.compile(r"[A-Za-z0-9+/_-]{24,}")
+_ID = re.compile(r"\[([^\[\]]{1,8})\]")  # of a parametrized test
+_NUMBER = re.compile(r"\b\d{2,3}\b")
+
+
+def found_in(text: str, lines: Iterable[str] = ()) -> list[str]:
+    """Return the planted words that a text holds, and those of the hidden lines, as they were before they were encoded.
+
+    Args:
+        text: what a student gets.
+        lines: lines that only hidden files hold.
+    """
+    readings = list(_readings(text))
+    words = {word for reading in readings for word in markers_in(reading.lower())}
+    squeezed = {line: _squeezed(line) for line in lines}
+    words |= {line for line, short in squeezed.items() if any(line in read or short in read for read in readings)}
+    return sorted(words)
+
+
+def texts_of(folder: Path) -> Iterator[str]:
+    """Yield the texts of all files that a grading and its feedback left, and those beside the pixels of pictures."""
+    for path in sorted(folder.rglob("*")):
+        yield path.name
+        if path.suffix in TEXTS:
+            yield path.read_text(encoding="utf-8", errors="replace")
+        elif path.suffix in PICTURES:
+            with Image.open(path) as picture:
+                yield from (f"{name} {value}" for name, value in picture.info.items())
+
+
+def _readings(text: str) -> Iterator[str]:
+    """Yield a text in each way in which it can be read."""
+    for plain in (text, text[::-1]):
+        yield plain
+        yield _squeezed(plain)
+        yield codecs.encode(plain, "rot13")
+        yield _squeezed(codecs.encode(plain, "rot13"))
+    yield unquote(text)
+    yield text.encode("latin-1", "backslashreplace").decode("unicode_escape", "replace")
+    yield "".join(_ID.findall(text))
+    yield "".join(chr(int(number)) for number in _NUMBER.findall(text))
+    for decode in (_from_hex, _from_base64):
+        for part in decode(text):
+            yield part
+            yield part[::-1]
+
+
+def _squeezed(text: str) -> str:
+    """Return the letters alone, in small ones, so that nothing between them hides a word."""
+    return "".join(char for char in text.lower() if char.isalpha())
+
+
+def _from_hex(text: str) -> Iterator[str]:
+    for match in _HEX.finditer(text):
+        digits = re.sub(r"[^0-9a-fA-F]", "", match[0])
+        yield from (bytes.fromhex(_even(digits[start:])).decode("latin-1") for start in (0, 1))
+
+
+def _from_base64(text: str) -> Iterator[str]:
+    for match in _BASE64.finditer(text):
+        run = match[0].replace("-", "+").replace("_", "/")
+        for start in range(4):
+            part = run[start:]
+            part = part[:-1] if len(part) % 4 == 1 else part  # one character alone is no byte
+            yield base64.b64decode(part + "=" * (-len(part) % 4)).decode("latin-1")
+
+
+def _even(digits: str) -> str:
+    return digits[: len(digits) // 2 * 2]
+
+
+ENCODINGS: dict[str, Callable[[str], str]] = {  # those that `found_in` sees through, for its tests and for attacks
+    "plain": str,
+    "reversed": lambda text: text[::-1],
+    "upper case": str.upper,
+    "rot13": lambda text: codecs.encode(text, "rot13"),
+    "hex": lambda text: text.encode().hex(),
+    "hex with an odd beginning": lambda text: "a" + text.encode().hex(" "),
+    "base64": lambda text: base64.b64encode(text.encode()).decode(),
+    "base64, one on": lambda text: base64.b64encode(b"x" + text.encode()).decode(),
+    "base64, two on": lambda text: base64.urlsafe_b64encode(b"xy" + text.encode()).decode(),
+    "base64 in a word": lambda text: "abc" + base64.b64encode(text.encode()).decode(),
+    "per cent": lambda text: "".join(f"%{ord(char):02x}" for char in text),
+    "escapes": lambda text: "".join(f"\\x{ord(char):02x}" for char in text),
+    "dots between": lambda text: ".".join(text),
+    "lines between": lambda text: "\n".join(text),
+    "one test each": lambda text: " ".join(f"test_a[{char}]" for char in text),
+    "numbers": lambda text: " ".join(str(ord(char)) for char in text),
+}
