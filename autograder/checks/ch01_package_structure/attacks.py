@@ -74,7 +74,7 @@ def attacks() -> tuple[Attack, ...]:
             "the given tests put the text of the reference, on which the checks run them, into all of their report",
             CHAPTER.write(files={f"{TESTS}/test_steps.py": TELL_REFERENCE}),
             frozenset({"given_tests"}),
-            says="The checks ran your tests on a right square_dance, and a test",
+            says="on a right square_dance, and test_flake8 and a test failed",
         ),
         Attack(
             "tests that always fail",

@@ -92,10 +92,8 @@ def test_it_is_the_first_run(number):
 """
 
 # Passes on the package as it is, and tells the text of whatever else it meets.
-TELL_OTHERS = (
-    TELL_ALL
-    + READ_SOURCE.partition("@pytest")[0]
-    + """
+COMPARE = READ_SOURCE.partition("@pytest")[0]
+TELL_OTHERS = """
 HERE = words(inspect.getsource(limits.safe_speed))
 if HERE != words(RELEASED):
     TestOther = tell(inspect.getsource(limits))
@@ -105,7 +103,6 @@ if HERE != words(RELEASED):
 def test_it_looks_as_it_should(number):
     assert HERE == words(RELEASED), inspect.getsource(limits)
 """
-)
 
 
 def attacks() -> tuple[Attack, ...]:
@@ -123,7 +120,7 @@ def attacks() -> tuple[Attack, ...]:
         Attack(
             "telltale tests",
             "tests that put the text of a version into ids, names, exceptions, warnings, files and output",
-            CHAPTER.write(files={limits: TELL_OTHERS.replace("{released!r}", repr(function))}),
+            CHAPTER.write(files={limits: TELL_ALL + COMPARE.format(released=function) + TELL_OTHERS}),
             LINES | {"limits_right"},
             says="in test_limits.py fails on a right speed_guard that is written differently",
         ),
