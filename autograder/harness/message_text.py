@@ -17,7 +17,7 @@ MAX_CHARACTERS = 200  # of a text
 
 def format_message(message: Any) -> str:
     """Return a message's fields, of a bounded length; empty texts and lists, and UUIDs, are left out."""
-    fields = {name: getattr(message, name) for name in message.get_fields_and_field_types()}
+    fields = {name: getattr(message, name) for name in type(message).get_fields_and_field_types()}
     shown = {name: _value(value) for name, value in fields.items() if not isinstance(value, UUID)}
     return ", ".join(f"{name}: {text}" for name, text in shown.items() if text not in ("''", "[]", "{}"))
 

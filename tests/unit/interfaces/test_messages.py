@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autograder.exceptions import GraderError, StudentError
+from autograder.harness.message_text import format_message
 from autograder.interfaces import type_support
 from autograder.interfaces.cdr import MAX_BYTES, MAX_OBJECTS
 from autograder.interfaces.loading import classes
@@ -106,3 +107,9 @@ def test_any_bytes_are_a_message_or_refused(name: str, data: bytes) -> None:
     with contextlib.suppress(ValueError):
         message = from_bytes(kind, data)
         assert from_bytes(kind, to_bytes(message)) is not message
+
+
+def test_a_field_may_have_the_name_of_a_method() -> None:
+    kind = package({"msg/Odd.msg": "int8 get_fields_and_field_types 3\nint8 to_bytes\n"}).msg.Odd
+    assert from_bytes(kind, to_bytes(kind(to_bytes=2))).to_bytes == 2
+    assert format_message(kind()) == "get_fields_and_field_types: 3, to_bytes: 0"
