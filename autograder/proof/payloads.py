@@ -54,6 +54,31 @@ for _address in (("1.1.1.1", 53), ("127.0.0.1", 22)):
         pass
 """
 
+# Writes settings of the kernel back that it can open, and holds what the kernel counts for the machine's user:
+# instances of inotify, and descriptors on their way from one socket to another.
+HOLD_KERNEL = """
+import array as _array, ctypes as _ctypes, os as _os, socket as _socket
+for _folder, _, _names in _os.walk("/proc/sys"):
+    for _name in _names:
+        try:
+            _value = open(f"{_folder}/{_name}").read()
+            open(f"{_folder}/{_name}", "w").write(_value)
+            print("STOLEN", f"{_folder}/{_name} is writable")
+        except OSError:
+            pass
+_held = 0
+while _ctypes.CDLL(None).inotify_init() >= 0:
+    _held += 1
+if _held > 32:
+    print("STOLEN /instances of inotify", _held)
+_pairs = [_socket.socketpair() for _ in range(60)]
+try:
+    for _near, _ in _pairs:
+        _near.sendmsg([b"x"], [(_socket.SOL_SOCKET, _socket.SCM_RIGHTS, _array.array("i", [0] * 250))])
+except OSError:
+    pass
+"""
+
 # Leaves a process behind that has no parent.
 LEAVE_DAEMON = """
 if not _os.fork():

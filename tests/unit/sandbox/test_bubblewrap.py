@@ -84,7 +84,15 @@ def test_the_kernels_limits_are_set_inside_the_sandbox(tmp_path: Path) -> None:
     inside = arguments[arguments.index("--") + 1 :]
     assert inside[0] == "prlimit"
     assert inside[-2:] == ["node", "--flag"]
-    limits = ("--cpu=7:12", f"--as={2**30}:{2**30}", "--nproc=40:40", "--fsize=99:99", "--nofile=33:33", "--core=0:0")
+    limits = (
+        "--cpu=7:12",
+        f"--as={2**30}:{2**30}",
+        "--nproc=40:40",
+        "--fsize=99:99",
+        "--nofile=33:33",
+        "--core=0:0",
+        "--sigpending=1024:1024",
+    )
     assert set(limits) <= set(inside)
 
 
