@@ -14,7 +14,10 @@ from autograder.export import load
 from tests.unit.cli.killed_grading import grade
 
 FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(["tests.unit.cli.killed_grading", "autograder.cli.grade", "jsonschema.validators"])
+# What each process would import otherwise, which takes longer than a grading here.
+FORKS.set_forkserver_preload(
+    ["tests.unit.cli.killed_grading", "autograder.cli.grade", "jsonschema.validators", "nbformat", "PIL.PngImagePlugin"]
+)
 OLD, NEW = "1-0123456789ab", "2-0123456789ab"
 Lost = Mapping[str, tuple[str, ...]]
 BEFORE: Lost = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
