@@ -57,11 +57,11 @@ class Worker:
             max_score=suite.max_score,
             started="2026-05-04T09:00:00+00:00",
             seconds=1.0,
-            artifacts=(Artifact("nan.png", "track", "0" * 64, "nan", run="nan.run.json"),),
+            artifacts=(Artifact("nan.png", "track", "0" * 64, "nan"),),  # without a run: its player is slow to import
         )
         picture = io.BytesIO()
         Image.new("RGB", (8, 8)).save(picture, "PNG")
-        files = {"nan.png": picture.getvalue(), "nan.run.json": b"{}", "notebook.ipynb": NOTEBOOK}
+        files = {"nan.png": picture.getvalue(), "notebook.ipynb": NOTEBOOK}
         return CellReport(Ending.EXITED, 0, "", {**files, "result.json": json.dumps(result.to_json()).encode()})
 
 
