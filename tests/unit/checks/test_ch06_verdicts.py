@@ -101,7 +101,7 @@ def test_of_a_closed_report_nothing_but_a_known_name_is_shown() -> None:
     assert describe_failure(LIMITS, failed.closed(frozenset({"test_limits::test_0"})), "here") == (
         "test_0 in test_limits.py fails here."
     )
-    assert describe_failure(LIMITS, failed.closed(frozenset()), "here") == "a test in test_limits.py fails here."
+    assert describe_failure(LIMITS, failed.closed(frozenset()), "here") == "One test in test_limits.py fails here."
 
 
 def test_a_stopped_colcon_test_is_not_reported_as_without_tests() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder.checks import CheckFailed, expect
 from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
-from autograder.probes.student_test_reports import Report, Source, shown_name
+from autograder.probes.student_test_reports import UNNAMED, Report, Source, shown_name
 from autograder.sandbox import Ending
 
 UNFINISHED = "still to be written"
@@ -55,7 +55,7 @@ def describe_failure(name: str, report: Report, where: str) -> str:
     if report.failed:
         test = shown_name(report.failed[0])
         if report.known is not None:
-            return f"{test} in {name} fails {where}."
+            return f"{test if test != UNNAMED else 'One test'} in {name} fails {where}."
         message = report.claims.messages[report.failed[0]]
         if UNFINISHED in message:
             return f"{name} is still to be written: {test} raises NotImplementedError."
