@@ -96,24 +96,6 @@ def settle(harness: LaunchHarness, wanted: Collection[str]) -> list[str]:
     return harness.nodes()
 
 
-def hangs(harness: LaunchHarness, name: str) -> bool:
-    """Wait for a program that ends by itself; return whether it hangs, so that a second launch has to decide.
-
-    It hangs if the launch still runs after `START_SECONDS`, and neither its end nor others without it were seen. Where
-    five programs came and went together, one in 600 did so at its end: `expect_clean_stop` says why.
-    """
-    since = time.monotonic()
-
-    def over() -> bool:
-        nonlocal since
-        running = {program.name for program in harness.programs()}
-        if name in running or not running:
-            since = time.monotonic()
-        return name in ended(harness.output) or time.monotonic() - since > QUIET_SECONDS
-
-    return not harness.wait_for(over, START_SECONDS) and harness.status is None
-
-
 def expect_nodes(harness: LaunchHarness, wanted: Collection[str]) -> None:
     """Fail the check unless exactly the wanted nodes run; waits for them. The message names near misses."""
     nodes = settle(harness, wanted)

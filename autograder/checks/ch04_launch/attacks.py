@@ -23,6 +23,10 @@ for _path in _glob.glob("/proc/[0-9]*/fd/*"):
             _os.write(_os.open(_path, _os.O_WRONLY | _os.O_NONBLOCK), b"points\\n")
 """
 
+PRETEND_END = """
+print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
+"""
+
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
@@ -43,6 +47,12 @@ def attacks() -> tuple[Attack, ...]:
             "pretended order",
             "a launch file that starts everything at once, and prints that the self-test has ended",
             CHAPTER.write("driver_at_once", heads={SAFE: PRETEND}),
+            CHAPTER.mutant("driver_at_once").fails,
+        ),
+        Attack(
+            "pretended end",
+            "a launch file that starts everything at once, and prints the end of the self-test, but not its start",
+            CHAPTER.write("driver_at_once", heads={SAFE: PRETEND_END}),
             CHAPTER.mutant("driver_at_once").fails,
         ),
     )

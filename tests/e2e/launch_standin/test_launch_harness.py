@@ -15,7 +15,7 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
-from autograder.probes import launch_probe
+from autograder.probes import launch_probe, short_lived
 from autograder.ros import environment
 from autograder.sandbox.procfs import children
 
@@ -184,11 +184,11 @@ def test_only_a_program_that_does_not_end_by_itself_hangs(
 ) -> None:
     there = starts(FORKS)
     with LaunchHarness(there, "fleet", "given.launch.py", {"how": "once"}) as harness, monkeypatch.context() as patch:
-        patch.setattr(launch_probe, "START_SECONDS", 5.0)
-        assert launch_probe.hangs(harness, "given")
+        patch.setattr(short_lived, "START_SECONDS", 5.0)
+        assert short_lived.hangs(harness, "given")
     with LaunchHarness(there, "fleet", "given.launch.py", {"how": "with_beacon"}) as harness:
-        assert not launch_probe.hangs(harness, "given")
-        assert not launch_probe.hangs(harness, "absent")
+        assert not short_lived.hangs(harness, "given")
+        assert not short_lived.hangs(harness, "absent")
 
 
 def test_a_killed_program_disappears_and_an_idle_launch_ends(workspace: Workspace) -> None:

@@ -120,6 +120,8 @@ def test_trip_reason(reporter: Reporter) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
     reporter.set_battery(50)
     good, bad = reporter.ask([5.0]), reporter.ask([500.0])
+    expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
+    expect(len(bad.reason.strip()) >= MIN_REASON, f"The trip is not possible, and the reason is {bad.reason!r}.")
     for last in (-100.125, 100.125):  # a reason that lists all legs is longer than 80 characters
         answer = reporter.ask([100.125] * 7 + [last])
         fits = len(answer.reason.strip()) >= MIN_REASON and len(answer.reason) <= MAX_REASON
@@ -127,8 +129,6 @@ def test_trip_reason(reporter: Reporter) -> None:
             f"With eight legs, the reason has {len(answer.reason)} characters, instead of {MIN_REASON} to {MAX_REASON}."
         )
         expect(fits, said, fraction=0.5)
-    expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
-    expect(len(bad.reason.strip()) >= MIN_REASON, f"The trip is not possible, and the reason is {bad.reason!r}.")
 
 
 def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> None:

@@ -24,7 +24,8 @@ from autograder.checks.ch04_launch.support.contract import (
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes.launch_arguments import Argument
-from autograder.probes.launch_probe import hangs, shown_arguments, with_files
+from autograder.probes.launch_probe import shown_arguments, with_files
+from autograder.probes.short_lived import hangs, run_together
 
 # launch shows standard error in any case, and standard output where it is told to.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
@@ -33,7 +34,7 @@ ON_STDERR = {**ON_STDOUT, "RCUTILS_LOGGING_USE_STDOUT": "0"}  # as nodes log by 
 UNUSUAL = {"by a signal": "#!/bin/sh\nkill -KILL $$\n", "with exit status 3": "#!/bin/sh\nexit 3\n"}
 # Stand-ins for all three: the self-test takes a while, the reporter ends again and again, the driver when it is told.
 SCRIPTS = {
-    "self_test": "#!/bin/sh\nexec sleep 3\n",
+    "self_test": "#!/bin/sh\nsleep 3\nexit 0\n",  # no exec: the system shows by its name that it runs
     "reporter": "#!/bin/sh\nexec sleep 0.1\n",
     "driver": "#!/bin/sh\ntrap 'exit 3' TERM\nwhile sleep 0.2; do :; done\n",
 }
@@ -57,6 +58,7 @@ class Launches:
         self._stack = ExitStack()
         self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
+        self._early: set[LaunchHarness] = set()
         self._arguments: dict[str, dict[str, Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
@@ -97,7 +99,11 @@ class Launches:
 
     def scripted(self) -> LaunchHarness:
         """Return safe_start.launch.py above `SCRIPTS`."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts")
+        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", short_lived="self_test")
+
+    def is_early(self, harness: LaunchHarness) -> bool:
+        """Return whether in a launch of `safe` or `scripted` the driver ran beside the self-test."""
+        return harness in self._early
 
     def safe_arguments(self) -> dict[str, Argument]:
         """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
@@ -129,6 +135,8 @@ class Launches:
             copy = self._copy(file, robot, programs)
             harness = LaunchHarness(copy, PACKAGE, file, words, listens=listens, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
+            if short_lived and run_together(harness, short_lived, "driver"):
+                self._early.add(harness)
             if short_lived and hangs(harness, short_lived):
                 self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
