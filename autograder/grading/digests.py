@@ -36,7 +36,8 @@ def read_digests(path: Path, assignment: str, tier: Tier) -> Digests | None:
         return _read(path, assignment)
     path = path.resolve()
     command = [sys.executable, "-m", "autograder.grading.digests", str(path), assignment]
-    view = View(shown=(layout.chapter(assignment),), submitted=(path,))
+    chapter = layout.CHAPTERS / assignment  # a course directory of nbgrader may have others
+    view = View(shown=(chapter,) if chapter.is_dir() else (), submitted=(path,))
     report = run_in_cell(lambda scratch: command, tier, READING_CELL, view=view)
     lines = report.output.splitlines()
     if report.returncode != 0 or not lines:
