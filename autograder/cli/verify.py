@@ -22,7 +22,7 @@ from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.mutation_run import MutantResult, run_mutants
 from autograder.proof.population import GeneratedMutant, population
 from autograder.proof.prove import prove
-from autograder.proof.record import record_failures
+from autograder.proof.record import compared_again, record_failures
 from autograder.proof.summary import summary
 from autograder.proof.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
 from autograder.proof.worker_pool import WorkerPool
@@ -112,10 +112,11 @@ def verify(
             for name, each in populations.items()
             if mutants[name]
         ]
-    echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     if record:
         for chapter in dict.fromkeys(claim.assignment for claim in claims):
             echo(record_failures(chapter, claims), err=True)
+        claims = compared_again(claims)
+    echo("\n" + table([(_name(claim), score_text(claim.result), _verdict(claim)) for claim in claims], HEADINGS))
     counted = summary(claims, time.monotonic() - began) | counts(chapters)
     echo("\n" + "  ".join(f"{name} {value}" for name, value in counted.items()))
     plain = {

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from autograder.proof import snapshot
-from autograder.proof.claims import CaseKind, Claim, lost_checks
+from autograder.proof.claims import CaseKind, Claim, lost_checks, verify_mutant
 from autograder.proof.mutants import mutants
 from autograder.result import Status
 
@@ -20,7 +21,7 @@ def record_failures(assignment: str, claims: Iterable[Claim]) -> str:
     seen = {
         claim.name: lost_checks(claim.result)
         for claim in claims
-        if (claim.assignment, claim.kind) == (assignment, CaseKind.MUTANT) and claim.result.status is Status.GRADED
+        if claim.assignment == assignment and _is_recordable(claim)
     }
     useless = sorted(name for name, failed in seen.items() if written_for[name] not in failed)
     before = snapshot.recorded(assignment)
@@ -30,3 +31,25 @@ def record_failures(assignment: str, claims: Iterable[Claim]) -> str:
     changed = sum(before.get(name) != after.get(name) for name in before | after)
     text = f"{assignment}: {len(seen)} mutants graded, {changed} records changed"
     return text + (f"; not recorded, because they pass their own check: {', '.join(useless)}" if useless else "")
+
+
+def compared_again(claims: Iterable[Claim]) -> tuple[Claim, ...]:
+    """Return the claims with the results of named mutants compared with what is recorded now."""
+    claims = tuple(claims)
+    known = {
+        (assignment, mutant.id): mutant
+        for assignment in {claim.assignment for claim in claims}
+        for mutant in mutants(assignment)
+    }
+    return tuple(
+        replace(claim, mismatch=verify_mutant(known[claim.assignment, claim.name], claim.result))
+        if _is_recordable(claim)
+        else claim
+        for claim in claims
+    )
+
+
+def _is_recordable(claim: Claim) -> bool:
+    """Return whether a claim is of a named mutant that every check judged."""
+    graded = claim.result.status is Status.GRADED and not claim.result.unjudged
+    return claim.kind is CaseKind.MUTANT and graded

@@ -11,7 +11,7 @@ from autograder.checks import Outcome, suites
 from autograder.proof import snapshot
 from autograder.proof.claims import CaseKind, Claim
 from autograder.proof.mutants import mutants
-from autograder.proof.record import record_failures
+from autograder.proof.record import compared_again, record_failures
 from autograder.result import CheckResult, Status
 from tests.conftest import MakeResult
 
@@ -75,3 +75,12 @@ def test_a_mutant_that_is_gone_loses_its_record(file: Path) -> None:
     file.write_text(file.read_text() + "no_such_mutant: all\n")
     record_failures(ASSIGNMENT, [])
     assert "no_such_mutant" not in file.read_text()
+
+
+def test_a_result_that_was_just_recorded_is_as_claimed(graded: Callable[..., Claim]) -> None:
+    other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
+    claims = [graded(FIRST.id, FIRST.check, other), graded(SECOND.id, other)]
+    record_failures(ASSIGNMENT, claims)
+    first, second = compared_again(claims)
+    assert first.mismatch == ""
+    assert second.mismatch.startswith(f"passes {SECOND.check}, for which it was written")
