@@ -20,6 +20,7 @@ import inspect
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from threading import RLock
 
 from autograder import fingerprint
 from autograder.checks.declaration import Check, check_of
@@ -27,6 +28,7 @@ from autograder.exceptions import GraderError, UsageError
 
 HOME = "autograder.checks"
 VISIBLE, HIDDEN = "visible", "hidden"
+_importing = RLock()  # two threads that import checks at once may each wait for a module that the other imports
 
 
 @dataclass(frozen=True)
@@ -133,8 +135,9 @@ def read(home: str, assignment: str, kind: str) -> Suite:
     package = f"{home}.ch{assignment}.{kind}"
     if assignment not in (there := assignments_with(home, kind)):
         raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(there)}")
-    described = importlib.import_module(package)
-    modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
+    with _importing:
+        described = importlib.import_module(package)
+        modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
     files = tuple(Path(inspect.getfile(module)) for module in modules)
     checks = [found for module in modules for value in vars(module).values() if (found := check_of(value))]
     _require_order(assignment, checks)
