@@ -18,7 +18,7 @@ TRIED = {
     "intake/archives.py": "archive",
     "intake/notebooks.py": "cells of a notebook",
     "interfaces/cdr.py": "bytes of a message of the student's own type",
-    "interfaces/definitions.py": "definition that is built",
+    "interfaces/rosidl.py": "definition that is built",
     "lockstep/protocol.py": "event of a stepped program",
     "packages.py": "package.xml by its name",
     "probes/calls.py": "answer of a function",
