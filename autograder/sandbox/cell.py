@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -12,6 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from autograder import layout
 from autograder.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SCANNED
 from autograder.intake.ignored import environment_parts, is_ignored
 from autograder.ros.environment import without_wheel_bootstrap
@@ -120,7 +122,9 @@ def copy_submission(path: Path, copy: Path) -> None:
 
 
 def _own(scratch: Path, tier: Tier) -> dict[str, str]:
-    return {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log")}
+    found = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
+    path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, found))}
+    return {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
 
 
 def _passed(environment: Mapping[str, str]) -> dict[str, str]:
