@@ -13,6 +13,7 @@ from pathlib import Path
 
 from autograder import intake, layout
 from autograder.exceptions import AutograderError
+from autograder.reading import reading
 from autograder.result import structure
 from autograder.sandbox import Tier
 from autograder.sandbox.cell import run_in_cell
@@ -48,7 +49,8 @@ def read_digests(path: Path, assignment: str, tier: Tier) -> Digests | None:
 
 def _read(path: Path, assignment: str) -> Digests | None:
     try:
-        submission = intake.read_submission(path, assignment)
+        with reading("The submission"):  # nothing in it may end the grading of a class
+            submission = intake.read_submission(path, assignment)
     except (OSError, AutograderError):
         return None
     notices = None if submission.packages is None else submission.notices

@@ -34,13 +34,13 @@ class Tree:
 
     home: PurePosixPath
     root: PurePosixPath
-    packages: tuple[PurePosixPath, ...]  # the folders of packages, where these alone belong to it
+    packages: frozenset[PurePosixPath]  # the folders of packages, where these alone belong to it
     files: Mapping[PurePosixPath, SubmittedFile]
     answers: Answers
 
     def holds(self, path: PurePosixPath) -> bool:
         """Return whether a file of the submission lies in it."""
-        return any(map(path.is_relative_to, self.packages or (self.home,)))
+        return not (self.packages or {self.home}).isdisjoint((path, *path.parents))
 
 
 @dataclass(frozen=True)
@@ -161,25 +161,28 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
                 homes[root] = home
     virtual = PurePosixPath()
     packages = {path.parent for path in paths if path.name == MANIFEST} if not homes else set()
-    outer = [package for package in packages if not packages.intersection(package.parents)]
+    outer = frozenset(package for package in packages if not packages.intersection(package.parents))
     if packages:
-        if outer == [PurePosixPath()]:
+        if outer == {PurePosixPath()}:
             virtual = _package_name(next(file.data for file in files if str(file.path) == MANIFEST))
             homes = {PurePosixPath(): PurePosixPath()} if virtual.parts else {}
         else:
             homes = {package.parent: package.parent for package in outer}
     others = set(layout.assignments()) - {assignment}
+    below: dict[PurePosixPath, list[SubmittedFile]] = {home: [] for home in homes.values()}
+    for file in files:
+        if not outer or outer.intersection(file.path.parents):
+            for home in below.keys() & set(file.path.parents):
+                below[home].append(file)
     trees = []
     for root, home in homes.items():
         if others.intersection(home.parts):
             continue
         inside = {
             (p := virtual / file.path.relative_to(home)): SubmittedFile(p, file.data, file.executable)
-            for file in files
-            if file.path != home and file.path.is_relative_to(home)
-            if not outer or any(file.path.is_relative_to(package) for package in outer)
+            for file in below[home]
         }
-        trees.append(Tree(home, root, tuple(outer), inside, _tree_answers(inside, exercises)))
+        trees.append(Tree(home, root, outer, inside, _tree_answers(inside, exercises)))
     own = exercises.packages if exercises is not None else frozenset()
     return [tree for tree in trees if own.intersection(path.parts[0] for path in tree.files)] or trees
 
@@ -212,10 +215,10 @@ def _notebooks(
     files: Sequence[SubmittedFile], trees: Sequence[Tree], assignment: str, exercises: Exercises | None
 ) -> list[Notebook]:
     """Return the notebooks of the assignment, by their name or by their cells; any others where there are none."""
-    homes = [tree.home for tree in trees if tree.home.parts]
+    homes = {tree.home for tree in trees if tree.home.parts}
     named, alike, others = [], [], []
     for file in files:
-        if not is_notebook(file.path.name) or any(file.path.is_relative_to(home) for home in homes):
+        if not is_notebook(file.path.name) or homes.intersection((file.path, *file.path.parents)):
             continue
         notebook, is_of_chapter = _read(file, exercises)
         if names_assignment(file.path.name, assignment):

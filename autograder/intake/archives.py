@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+import copy
 import gzip
 import io
 import lzma
@@ -16,19 +17,21 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import IO, Any
 
-from autograder.intake.files import MAX_READ_BYTES, Contents, unsafe
+from autograder.intake.files import MAX_READ_BYTES, MAX_UNPACKED_BYTES, Contents, unsafe
 from autograder.intake.ignored import IgnoredPaths
 from autograder.intake.names import reading_rank
 
 # By their first bytes: archives that the standard library does not open.
 FOREIGN = {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!\x1a\x07": "RAR", b"\x28\xb5\x2f\xfd": "Zstandard"}
 MAX_DIRECTORY = 32 * 1024 * 1024  # bytes of a zip's list of its files
+MAX_NAME = 1024  # characters; what is longer, or lies deeper, is never an answer, and looking at it takes long
+MAX_FOLDERS = 64
 MAX_DICTIONARY = 128 * 1024 * 1024  # bytes of memory to decompress xz
 _EXECUTABLE = 0o100
 _COMPRESSED: dict[bytes, Callable[[IO[bytes]], Any]] = {
     b"\x1f\x8b": lambda raw: gzip.GzipFile(fileobj=raw),
     b"BZh": lambda raw: bz2.BZ2File(raw),
-    b"\xfd7zXZ\x00": lambda raw: io.BufferedReader(_Xz(raw)),
+    b"\xfd7zXZ\x00": lambda raw: _decompressed(raw, lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)),
 }
 # `zipfile`, `tarfile` and the decompressors raise these for what is damaged, encrypted or packed by an unknown method.
 DAMAGED = (
@@ -74,7 +77,7 @@ def read_archive(file: IO[bytes], name: str, prefix: PurePosixPath, contents: Co
 
     def opened() -> IO[bytes]:
         file.seek(0)
-        return io.BufferedReader(_Counted(file if opener is None else opener(file)), 64 * 1024)
+        return io.BufferedReader(_Counted(file if opener is None else opener(file), contents), 64 * 1024)
 
     start = opened().read(512)
     if start[257:262] == b"ustar":
@@ -88,7 +91,10 @@ def read_archive(file: IO[bytes], name: str, prefix: PurePosixPath, contents: Co
 
 def inside(name: str) -> PurePosixPath:
     """Return a member's path. Raises StudentError if it leads out of the archive."""
-    path = PurePosixPath(name.replace("\\", "/"))
+    name = name.replace("\\", "/")
+    if len(name) > MAX_NAME or name.count("/") > MAX_FOLDERS:
+        raise unsafe(f"the name {name[:60]!r}... has more than {MAX_NAME} characters or {MAX_FOLDERS} folders")
+    path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
         raise unsafe(f"{name} points outside the archive")
     return path
@@ -128,10 +134,32 @@ def _require_short_directory(file: IO[bytes]) -> None:
 
 def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     # The archive's directory may state a wrong size: read at most one byte more than it states.
-    with archive.open(info) as stream:
-        data = stream.read(info.file_size + 1)
+    if info.compress_type in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA):
+        data = _inflate_in_steps(archive, info)
+    else:
+        with archive.open(info) as stream:
+            data = stream.read(info.file_size + 1)
     if len(data) != info.file_size:
         raise zipfile.BadZipFile(f"{info.filename} is not as large as the archive says")
+    return data
+
+
+def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    """Decompress what `zipfile` would decompress at once: 4 KB of bzip2 can become 4 GB."""
+    stored = copy.copy(info)
+    stored.compress_type, stored.file_size = zipfile.ZIP_STORED, info.compress_size
+    del stored.CRC  # of the content, which is compared below
+    with archive.open(stored) as packed:
+        if info.compress_type == zipfile.ZIP_BZIP2:
+            data = _decompressed(packed, bz2.BZ2Decompressor()).read(info.file_size)
+        else:
+            packed.read(2)  # the version of an SDK
+            properties = packed.read(*struct.unpack("<H", packed.read(2)))
+            decompressor = lzma.LZMADecompressor(lzma.FORMAT_ALONE, memlimit=MAX_DICTIONARY)
+            head = properties + bytes(8 * [0xFF])  # the size is not said
+            data = _decompressed(packed, decompressor, head).read(info.file_size)
+    if zlib.crc32(data) != info.CRC:
+        raise zipfile.BadZipFile(f"{info.filename} is not what the archive says")
     return data
 
 
@@ -173,10 +201,10 @@ def _add(members: Iterable[Member], prefix: PurePosixPath, contents: Contents) -
 
 
 class _Counted(io.RawIOBase):
-    """A stream that ends with an error after `MAX_READ_BYTES`."""
+    """A stream that ends with an error after `MAX_READ_BYTES`, or when its submission has been unpacked too much."""
 
-    def __init__(self, raw: IO[bytes]) -> None:
-        self._raw, self._count = raw, 0
+    def __init__(self, raw: IO[bytes], contents: Contents) -> None:
+        self._raw, self._contents, self._count = raw, contents, 0
 
     def readable(self) -> bool:
         return True
@@ -184,25 +212,31 @@ class _Counted(io.RawIOBase):
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
         data = self._raw.read(len(buffer))
         self._count += len(data)
+        self._contents.unpacked += len(data)
         if self._count > MAX_READ_BYTES:
             raise unsafe(f"it is larger than {MAX_READ_BYTES // 2**20} MiB when it is unpacked")
+        if self._contents.unpacked > MAX_UNPACKED_BYTES:
+            raise unsafe("its archives hold too much in all")
         buffer[: len(data)] = data
         return len(data)
 
 
-class _Xz(io.RawIOBase):
-    """Decompresses xz with a bound of memory, which `lzma.LZMAFile` does not take."""
+def _decompressed(raw: IO[bytes], decompressor: Any, head: bytes = b"") -> IO[bytes]:
+    """Return a stream of what a decompressor makes of `head` and what follows, in steps."""
+    return io.BufferedReader(_Decompressed(raw, decompressor, head))
 
-    def __init__(self, raw: IO[bytes]) -> None:
-        self._raw = raw
-        self._decompressor = lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)
+
+class _Decompressed(io.RawIOBase):
+    def __init__(self, raw: IO[bytes], decompressor: Any, head: bytes) -> None:
+        self._raw, self._decompressor, self._head = raw, decompressor, head
 
     def readable(self) -> bool:
         return True
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
         while not self._decompressor.eof:
-            fresh = self._raw.read(64 * 1024) if self._decompressor.needs_input else b""
+            fresh = self._head + self._raw.read(64 * 1024) if self._decompressor.needs_input else b""
+            self._head = b""
             data = self._decompressor.decompress(fresh, len(buffer))
             if data:
                 buffer[: len(data)] = data

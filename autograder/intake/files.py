@@ -18,6 +18,8 @@ MAX_FILE_BYTES = 16 * 1024 * 1024
 MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # of a notebook whose outputs are dropped, and of an archive in an archive
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_READ_BYTES = 256 * 1024 * 1024  # that are decompressed to find the files
+# That decompressing makes, in all archives: one is read three times, its names, then its answers, then the rest.
+MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
 MAX_SCANNED = 100_000  # files and folders that are looked at
 MAX_DEPTH = 16  # parts of a path
 MAX_PATH_BYTES = 200  # file systems allow 255 for each part
@@ -55,6 +57,7 @@ class Contents:
     left_out: list[LeftOut] = field(default_factory=list)
     kept: int = 0  # bytes in memory
     read: int = 0  # bytes that were read or decompressed
+    unpacked: int = 0  # bytes that were decompressed, also of what is skipped
     scanned: int = 0
     archives: int = 0
 
@@ -68,6 +71,11 @@ class Contents:
         """Remove a file whose own files take its place."""
         self.files.remove(file)
         self.kept -= len(file.data)
+
+    def drop(self, first: int) -> None:
+        """Remove the files from a place on."""
+        self.kept -= sum(len(file.data) for file in self.files[first:])
+        del self.files[first:]
 
     def omit(self, path: PurePosixPath, why: str, whole: str = "") -> None:
         """Note what is not read."""

@@ -123,6 +123,5 @@ def _unpack(file: IO[bytes], path: PurePosixPath, contents: Contents) -> None:
         try:
             archives.read_archive(file, path.name, path, contents)
         except (StudentError, *archives.DAMAGED) as error:
-            for unpacked in contents.files[before:]:
-                contents.take(unpacked)
+            contents.drop(before)
             contents.omit(path, f"cannot be opened ({error})")
