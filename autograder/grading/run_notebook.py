@@ -38,6 +38,8 @@ CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
 MAX_OUTPUT = 4 * 1024 * 1024  # characters
 MAX_WHY = 2000  # characters
 MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; what comes after them is left out
+MAX_LINES = 2000  # of an answer, which has one for each cell
+MAX_VALUES = 200_000  # in all outputs: to check one takes up to 0.1 ms, and they may be forged
 WRITEFILE = "%%writefile "
 
 
@@ -100,8 +102,8 @@ class Answer:
 
 def read_answer(data: bytes) -> Answer:
     """Read the lines of `notebook_host`, which the student's code may have forged; what is not valid is left out."""
-    begun, why, cells = False, "", dict[int, NotebookNode]()
-    for line in data.split(b"\n"):
+    begun, why, cells, left = False, "", dict[int, NotebookNode](), MAX_VALUES
+    for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
             said = json.loads(line, parse_constant=lambda _: None)
             if said["event"] == "begin":
@@ -109,6 +111,9 @@ def read_answer(data: bytes) -> Answer:
             elif said["event"] == "end":
                 why = str(said["why"])[:MAX_WHY]
             elif said["event"] == "cell" and type(said["index"]) is int:
+                left -= _count_values(said["outputs"])
+                if left < 0:
+                    continue
                 cell = new_code_cell(
                     outputs=nbformat.from_dict(said["outputs"]), execution_count=said["execution_count"]
                 )
@@ -116,6 +121,15 @@ def read_answer(data: bytes) -> Answer:
                 nbformat.writes(new_notebook(cells=[cell]))
                 cells[said["index"]] = cell
     return Answer(begun, why, cells)
+
+
+def _count_values(value: object) -> int:
+    pending, count = [value], 0
+    while pending:
+        each = pending.pop()
+        count += 1
+        pending += each.values() if isinstance(each, dict) else each if isinstance(each, list) else ()
+    return count
 
 
 def _no_kernel(process: Process, why: str) -> StudentError:

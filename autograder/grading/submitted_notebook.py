@@ -53,14 +53,14 @@ def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     """Return a copy of the submitted notebook with the source notebook's nbgrader cells, and without outputs.
 
     Cells that students may edit keep the student's text. If the student deleted such a cell, it comes back with a
-    comment that says so.
+    comment that says so. The student's own cells have no metadata: nobody reads them, and there can be millions.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
-    notebook = copy.deepcopy(submitted)
-    names = _names(notebook.cells, source.cells)
+    names = _names(submitted.cells, source.cells)
+    bare = [NotebookNode({**cell, "metadata": NotebookNode()}) for cell in submitted.cells]
+    notebook = copy.deepcopy(NotebookNode({**submitted, "cells": bare}))
     seen: set[str] = set()
     for cell, name in zip(notebook.cells, names, strict=True):
-        cell.metadata.pop("nbgrader", None)
         if name in originals and name not in seen:
             seen.add(name)
             _restore_cell(cell, originals[name])

@@ -32,15 +32,13 @@ class RestoreCells(NbGraderPreprocessor):
 def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     """Return the submitted notebook with the nbgrader cells of the released one.
 
-    The student's own cells lose their metadata and attachments, because pages made from the notebook would use them.
+    The student's cells lose their metadata and attachments, because pages made from the notebook would use them.
     """
     notebook = submitted_notebook.restore(submitted, released)
     ids: set[str] = set()
     notebook.cells = [_as_text(cell) if cell.cell_type == "raw" else cell for cell in notebook.cells]
     for cell in notebook.cells:
         cell.source = clean(cell.source)
-        if not submitted_notebook.grade_id(cell):
-            cell.metadata = NotebookNode()
         cell.pop("attachments", None)
         # A browser cannot tell two cells with one id apart, and nbformat only warns.
         while cell.get("id") is None or cell.id in ids:
