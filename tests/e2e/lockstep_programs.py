@@ -285,6 +285,21 @@ class Wall(Speaker):
 spin(Wall)
 """
 
+OWN_CONTEXT = """
+class Ticker(Node):
+    def __init__(self, context):
+        super().__init__('ticker', context=context)
+        self.out = self.create_publisher(String, 'said', 100)
+        self.create_timer(0.1, lambda: self.out.publish(String(data='tick')))
+
+context = rclpy.Context()
+context.init()
+executor = SingleThreadedExecutor(context=context)
+executor.add_node(Ticker(context))
+while context.ok():
+    executor.spin_once(timeout_sec=0.25)
+"""
+
 SLEEPS_BY_CLOCKS = """
 class Sleeper(Speaker):
     def __init__(self):

@@ -256,6 +256,12 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
     ]
 
 
+def test_a_program_with_a_context_of_its_own_is_stepped() -> None:
+    heard, _, _, notes = in_cell(alone, programs.OWN_CONTEXT, 0.35)
+    assert not notes
+    assert heard == [[0.1, "tick"], [0.2, "tick"], [0.3, "tick"]]
+
+
 def test_sleeping_on_a_clock_lets_ros_time_pass() -> None:
     heard, _, _, notes = in_cell(alone, programs.SLEEPS_BY_CLOCKS, 1.5)
     assert not notes

@@ -14,10 +14,10 @@ import weakref
 from pathlib import Path
 from typing import Any
 
-import rclpy
 import rclpy.executors
 import rclpy.time_source
 from rclpy.clock import ClockType, ROSClock
+from rclpy.context import Context
 from rclpy.executors import ConditionReachedException, Executor, TimeoutException, TimeoutObject
 from rclpy.impl.rcutils_logger import Throttle
 from rclpy.time import Time
@@ -36,7 +36,7 @@ LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages 
 OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
 
 _wait_for_work = Executor.wait_for_ready_callbacks
-_init = rclpy.init
+_init = Context.init
 _init_time_source = rclpy.time_source.TimeSource.__init__
 
 
@@ -77,7 +77,7 @@ class Host:
         self.blocking.install()
         self.clocks.install()
         time_source = rclpy.time_source.TimeSource
-        rclpy.init = self.init
+        Context.init = lambda context, args=None, **options: self.init(context, args, **options)
         Executor.wait_for_ready_callbacks = lambda executor, *args, **kwargs: self.wait(executor, *args, **kwargs)
         time_source.__init__ = lambda source, *, node=None: self.init_time_source(source, node=node)
         time_source._subscribe_to_clock_topic = lambda source: None  # the grader steps the clock, nobody else
@@ -89,11 +89,12 @@ class Host:
 
     # What rclpy calls instead of its own functions.
 
-    def init(self, *, args: list[str] | None = None, **options: Any) -> Any:
-        """Initialise rclpy with simulated time."""
-        self.phase = "start"
+    def init(self, context: Context, args: list[str] | None, **options: Any) -> None:
+        """Initialise a context with simulated time: that of `rclpy.init`, or one of the program's own."""
+        if self.phase == "import":
+            self.phase = "start"
         arguments = list(sys.argv if args is None else args)
-        return _init(args=[*arguments, "--ros-args", "-p", "use_sim_time:=true"], **options)
+        _init(context, [*arguments, "--ros-args", "-p", "use_sim_time:=true"], **options)
 
     def init_time_source(self, source: Any, *, node: Any = None) -> None:
         """Let a new node's clock start at the present step's time."""
