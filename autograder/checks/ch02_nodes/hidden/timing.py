@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 
 from std_msgs.msg import String
 
@@ -23,6 +24,7 @@ LONG_SECONDS = 9.0  # in front of a wall: who warns every 1.8 s has warned once 
 ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s for which something is in the way, and then is not; how often
 # What is in the way, in turn. Two throttles, whichever of these each is for, let two warnings through in 1.2 s.
 IN_TURN = (Part(10.0, 20.0, 0.9), Part(-5.0, 5.0, -math.inf), Part(-20.0, -10.0, 0.3))
+_ENTRY = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTILINE)  # where one begins in the log
 
 
 @check(points=2, holds="cmd-vel", needs=("publishes_cmd_vel",))
@@ -122,10 +124,11 @@ def _expect_few_warnings(robot: Robot, began: float, before: int, situation: str
 
 
 def _logs(robot: Robot, level: str, words: str = "", *, more_than: int = 0) -> bool:
-    """Wait until more lines with these words were logged at this level; return whether that happens."""
+    """Wait until more entries with these words were logged at this level; return whether that happens."""
     return robot.wait_for(lambda: len(_logged(robot, level, words)) > more_than, WRITTEN_SECONDS)
 
 
 def _logged(robot: Robot, level: str, words: str = "") -> list[str]:
-    """Return the lines with these words that the robot has logged at this level."""
-    return [line for line in robot.output.splitlines() if line.startswith(f"[{level}]") and words in line]
+    """Return the entries with these words that the robot has logged at this level, each of one or more lines."""
+    entries = _ENTRY.split(robot.output)
+    return [entry for entry in entries if entry.startswith(f"[{level}]") and words in entry]
