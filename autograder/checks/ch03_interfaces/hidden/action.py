@@ -13,7 +13,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
-from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, stopped
+from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, is_left, stopped
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
 from autograder.probes.message_period import describe_pace, is_paced
 from autograder.time_record import LOCKSTEP
@@ -183,7 +183,7 @@ def test_drive_feedback(placed_driver: Driver, draw: random.Random) -> None:
     placed_driver.finish(goal, LONG, f"With {distance:.2f} m to drive")
     heard = [received.message for received in goal.feedback]
     expect(len(heard) >= 4, f"On the way came {len(heard)} feedbacks, instead of about ten a second.")
-    wrong = [one for one in heard if abs(one.driven + one.remaining - distance) > SLACK]
+    wrong = [one for one in heard if not is_left(distance, one.driven, one.remaining, SLACK)]
     said = f"driven {wrong[0].driven:.2f} m and remaining {wrong[0].remaining:.2f} m" if wrong else ""
     expect(not wrong, f"With {distance:.2f} m to drive, a feedback said {said}.")
     driven = [one.driven for one in heard]

@@ -149,3 +149,9 @@ class Driver(AutoHarness):
 def stopped(commands: list[Twist]) -> bool:
     """Return whether the last command is a stop."""
     return bool(commands) and commands[-1].linear.x == 0.0 and commands[-1].angular.z == 0.0
+
+
+def is_left(distance: float, driven: float, remaining: float, slack: float) -> bool:
+    """Return whether `remaining` is what is left of a goal, all in m: beyond the goal, 0 or a number below it."""
+    left = distance - driven
+    return any(abs(remaining - right) <= slack for right in (left, max(0.0, left)))

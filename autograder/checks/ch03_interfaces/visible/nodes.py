@@ -9,7 +9,7 @@ from sensor_msgs.msg import BatteryState
 
 from autograder.checks import check, expect, hint
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.driver import Driver, stopped
+from autograder.checks.ch03_interfaces.support.driver import Driver, is_left, stopped
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 
 STATUS, TRIP, DRIVE = (("builds", definition) for definition in ("robot_status", "check_trip", "drive_distance"))
@@ -109,8 +109,8 @@ def test_drive(driver: Driver) -> None:
     expect(0.33 <= driven <= 0.55, f"The robot drove {driven:.2f} m.")
     expect(bool(goal.feedback), "There was no feedback on the way.")
     told = goal.feedback[-1].message
-    together = told.driven + told.remaining
-    expect(abs(together - 0.35) < 0.01, f"driven and remaining of a feedback are {together:.2f} m together.")
+    adds_up = is_left(0.35, told.driven, told.remaining, 0.01)
+    expect(adds_up, f"A feedback said driven {told.driven:.2f} m and remaining {told.remaining:.2f} m.")
     said = goal.result.driven
     expect(abs(said - driven) <= 0.1, f"The result says {said:.2f} m, it was {driven:.2f} m.")
     expect(stopped(commands), "After the goal had ended, the last command was no stop.")
