@@ -22,7 +22,7 @@ MAX_FILES = 64
 MAX_BYTES = 64 * 1024
 MAX_FIELDS = 512
 MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that it holds
-FOREIGN_ELEMENTS = 128  # what a message of another package counts for
+FOREIGN_ELEMENTS = 128  # what a message of ROS's counts for
 KINDS = ("msg", "srv", "action")
 SECTIONS = {"msg": 1, "srv": 2, "action": 3}
 PARTS = {"msg": "a message has none", "srv": "request --- response", "action": "goal --- result --- feedback"}
@@ -116,6 +116,7 @@ class Definition:
     path: str  # `msg/RobotStatus.msg`
     sections: tuple[Section, ...]
     uses: tuple[tuple[str, str, str], ...]  # the messages of other packages in it, as (package, type, the line's text)
+    elements: int = 1  # that a fresh message makes room for
 
     @property
     def text(self) -> str:
@@ -131,8 +132,15 @@ def require_package_name(name: str) -> None:
         )
 
 
-def read(package: str, files: Mapping[str, str]) -> tuple[Definition, ...]:
-    """Read the definitions of a package, texts by their path such as `msg/RobotStatus.msg`.
+def read(
+    package: str, files: Mapping[str, str], below: Mapping[tuple[str, str], int] | None = None
+) -> tuple[Definition, ...]:
+    """Read the definitions of a package.
+
+    Args:
+        package: its name.
+        files: texts by their path such as `msg/RobotStatus.msg`.
+        below: the elements of other packages' messages, by package and name, where they are known.
 
     Raises:
         DefinitionError: the first thing that is wrong, by file and line.
@@ -155,9 +163,8 @@ def read(package: str, files: Mapping[str, str]) -> tuple[Definition, ...]:
     own = {path[4:-4] for path in files if path.startswith("msg/")}
     read = {path: _Reader(package, path, text, own) for path, text in sorted(files.items())}
     messages = {path[4:-4]: reader for path, reader in read.items() if path.startswith("msg/")}
-    for reader in read.values():
-        reader.weigh(messages, ())
-    return tuple(Definition(path, reader.sections, tuple(reader.uses)) for path, reader in read.items())
+    elements = {path: reader.weigh(messages, below or {}, ()) for path, reader in read.items()}
+    return tuple(Definition(path, each.sections, tuple(each.uses), elements[path]) for path, each in read.items())
 
 
 class _Reader:
@@ -172,18 +179,22 @@ class _Reader:
         lines = raw.replace("\r\n", "\n").split("\n")
         self._lines = [self._clean(line) for line in lines]
         self.uses: list[tuple[str, str, str]] = []
-        self._arrays: list[tuple[int, str | None, str]] = []
+        self._arrays: list[tuple[int, tuple[str, str] | None, str]] = []  # of messages: package and name
         self.sections = tuple(self._read_section(lines) for lines in self._split())
 
-    def weigh(self, messages: Mapping[str, _Reader], above: tuple[str, ...]) -> int:
+    def weigh(
+        self, messages: Mapping[str, _Reader], below: Mapping[tuple[str, str], int], above: tuple[str, ...]
+    ) -> int:
         """Count the elements that a fresh message of this type makes room for."""
         if self._path in above:
             raise self._error("the message contains itself: take the field out that leads back to it")
         total = 1
         for count, inner, line in self._arrays:
-            each = FOREIGN_ELEMENTS if inner == "" else 1
-            if inner:
-                each = messages[inner].weigh(messages, (*above, self._path))
+            each = 1
+            if inner is not None and inner[0] == self._package:
+                each = messages[inner[1]].weigh(messages, below, (*above, self._path))
+            elif inner is not None:
+                each = below.get(inner, FOREIGN_ELEMENTS)
             total += count * each
             if total > MAX_ELEMENTS:
                 raise self._error(
@@ -272,15 +283,13 @@ class _Reader:
             new = kind.type.capitalize()
             raise self._error(f"ROS 2 has no {kind.type}: use builtin_interfaces/{new}", line)
         count = kind.array_size if kind.is_array and kind.array_size and not kind.is_upper_bound else 1
-        inner = None
+        inner = None if kind.pkg_name is None else (kind.pkg_name, kind.type)
         if kind.pkg_name == self._package:
             if kind.type not in self._own:
                 raise self._error(
                     f"there is no msg/{kind.type}.msg in {self._package}: write it, or correct the name", line
                 )
-            inner = kind.type
         elif kind.pkg_name is not None:
-            inner = ""
             self.uses.append((kind.pkg_name, kind.type, line))
         self._arrays.append((count, inner, line))
         if field.default_value is not None:

@@ -42,7 +42,7 @@ def load_from(workspace: Workspace, package: str) -> Any:
         if package not in packages and broken:
             raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
         texts: dict[str, Texts] = {}
-        _gather(packages, package, (), texts, workspace.ros.prefixes)
+        _gather(packages, package, (), texts, {}, workspace.ros.prefixes)
         return classes(tuple(texts.items()))
     except StudentError as error:
         raise StudentError(explain(error.diagnosis, source, package)) from None
@@ -59,9 +59,14 @@ def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
 
 
 def _gather(
-    packages: dict[str, Path], package: str, above: tuple[str, ...], texts: dict[str, Texts], ros: tuple[Path, ...]
+    packages: dict[str, Path],
+    package: str,
+    above: tuple[str, ...],
+    texts: dict[str, Texts],
+    elements: dict[tuple[str, str], int],
+    ros: tuple[Path, ...],
 ) -> None:
-    """Add the texts of a package to `texts`, after those of the packages that it uses."""
+    """Add the texts of a package, and the elements of its messages, after those of the packages that it uses."""
     folder = packages.get(package)
     if folder is None:
         sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
@@ -77,12 +82,14 @@ def _gather(
         own = _texts(folder)
         definitions = read(package, own)
         for name in sorted({name for definition in definitions for name, _, _ in definition.uses} & set(packages)):
-            _gather(packages, name, (*above, package), texts, ros)
+            _gather(packages, name, (*above, package), texts, elements, ros)
         _require_uses(definitions, texts, ros)
+        definitions = read(package, own, elements)
     except DefinitionError as error:
         sentence = f"src/{folder.name}: {error}."
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
     texts[package] = tuple(sorted(own.items()))
+    elements.update({(package, Path(each.path).stem): each.elements for each in definitions if each.path[:3] == "msg"})
 
 
 def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
