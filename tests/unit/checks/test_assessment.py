@@ -67,6 +67,7 @@ def test_each_choice_is_a_check_of_one_point() -> None:
     [
         ("q1: a", {"q1": "a"}),
         ("Q1 :  'B'  # sure\n\n# q2: c\nnonsense\n- q3: d", {"q1": "b"}),
+        ("'q1': a\n\"q2\" : 'b'", {"q1": "a", "q2": "b"}),
         ("q1: a\nq1: b", {"q1": "b"}),
         ("q1:", {"q1": ""}),
         ("q1: a or b", {"q1": "a or b"}),

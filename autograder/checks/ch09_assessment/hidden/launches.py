@@ -55,7 +55,11 @@ def hot(seed: int) -> int:
     return draw_hot(seed)
 
 
-@check(points=3, holds=("launch", "thermometer-topics", "smoother-topics", "guard-topics"), after=("installs",))
+@check(
+    points=3,
+    holds=("launch", "set-up", "thermometer-topics", "smoother-topics", "guard-topics"),
+    after=("installs",),
+)
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
 @hint("ros2 topic echo /decision shows whether the three talk to each other.")
 def test_launches(launched: Launched) -> None:

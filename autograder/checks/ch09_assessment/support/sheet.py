@@ -19,12 +19,14 @@ def parse(text: str) -> dict[str, str]:
     found = {}
     for line in text.splitlines():
         question, colon, answer = (part.strip() for part in line.partition("#")[0].partition(":"))
-        if colon and _QUESTION.fullmatch(question):
-            answer = answer[answer.startswith(QUOTES) :]
-            answer = answer[: len(answer) - answer.endswith(QUOTES)].strip()
-            if not any(quote in answer for quote in QUOTES):
-                found[question.lower()] = answer.lower()
+        question, answer = _unquoted(question), _unquoted(answer)
+        if colon and _QUESTION.fullmatch(question) and not any(quote in answer for quote in QUOTES):
+            found[question.lower()] = answer.lower()
     return found
+
+
+def _unquoted(text: str) -> str:
+    return text[text.startswith(QUOTES) : len(text) - text.endswith(QUOTES)].strip()
 
 
 def answers(workspace: Workspace) -> dict[str, str]:
