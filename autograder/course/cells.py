@@ -21,7 +21,8 @@ from nbformat import NotebookNode
 
 from autograder import layout
 from autograder.course.exceptions import CourseError
-from autograder.course.solution_markers import mark_functions, mark_lines, strip_licence
+from autograder.course.solution_markers import mark_functions, mark_lines
+from autograder.probes.given_files import strip_licence
 
 _METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8")))
 

@@ -60,15 +60,6 @@ def strip_markers(text: str) -> str:
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
 
 
-def strip_licence(text: str) -> str:
-    """Return Python source without the copyright comment at its start."""
-    lines = text.splitlines(keepends=True)
-    if not (lines and lines[0].startswith("# Copyright")):
-        return text
-    body = next((i for i, line in enumerate(lines) if not line.startswith("#")), len(lines))
-    return "".join(lines[body:]).lstrip("\n")
-
-
 def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
     """Return text with markers around regions: the indices of the first line and behind the last, the indentation."""
     if BEGIN in text or END in text:

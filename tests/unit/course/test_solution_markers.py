@@ -8,7 +8,7 @@ import pytest
 
 from autograder.course.exceptions import CourseError
 from autograder.course.forms import CODE_STUB
-from autograder.course.solution_markers import mark_functions, strip_licence, strip_markers
+from autograder.course.solution_markers import mark_functions, strip_markers
 
 MODULE = '''"""A module."""
 
@@ -90,12 +90,3 @@ def test_the_stub_raises_an_error_that_tells_the_student_to_write_it() -> None:
 def test_a_function_that_cannot_be_hidden_is_named(text: str, hide: list[str], message: str) -> None:
     with pytest.raises(CourseError, match=message):
         mark_functions(text, hide)
-
-
-def test_the_licence_comment_is_not_released() -> None:
-    licence = "# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
-    assert strip_licence(licence + MODULE) == MODULE
-
-
-def test_a_comment_that_is_no_licence_stays() -> None:
-    assert strip_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"

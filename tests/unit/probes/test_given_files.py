@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.probes.given_files import changed_files
+from autograder.probes.given_files import changed_files, strip_licence
 
 GIVEN = {"lamp/lamp.py": b"a = 1\n", "launch/lamp.py": b"b = 2\n", "setup.py": b"c = 3\n"}
 FOLDERS = ("lamp", "launch")
@@ -15,3 +15,14 @@ def test_missing_and_changed_files_below_the_folders_are_named() -> None:
 def test_white_space_further_files_and_files_elsewhere_are_free() -> None:
     kept = {"lamp/lamp.py": b"a  =  1", "launch/lamp.py": b"b = 2\n", "lamp/more.py": b"", "setup.py": b"d = 4\n"}
     assert changed_files(kept, GIVEN, FOLDERS) == []
+
+
+def test_a_file_may_be_as_a_notebook_gives_it_without_the_copyright_comment() -> None:
+    licence = b"# Copyright 2026 Somebody\n#\n# Licensed under ...\n\n"
+    given = {"lamp/lamp.py": licence + b"a = 1\n"}
+    assert changed_files({"lamp/lamp.py": b"a = 1\n"}, given, FOLDERS) == []
+    assert changed_files({"lamp/lamp.py": b"# coding: utf-7\na = 1\n"}, given, FOLDERS) == ["lamp/lamp.py"]
+
+
+def test_a_comment_that_is_no_licence_stays() -> None:
+    assert strip_licence("# Why this is here.\nx = 1\n") == "# Why this is here.\nx = 1\n"

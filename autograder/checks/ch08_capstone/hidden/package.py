@@ -21,7 +21,7 @@ FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
 
-@check(points=2, holds="manifest")
+@check(points=2, holds=("manifest", "interfaces-facts"))
 @hint("The order of the tags is name, version, description, maintainer, license, then the dependencies, then export.")
 @hint("<export><build_type>ament_python</build_type></export>; ament_cmake for the messages.")
 def test_manifests(workspace: Workspace) -> None:

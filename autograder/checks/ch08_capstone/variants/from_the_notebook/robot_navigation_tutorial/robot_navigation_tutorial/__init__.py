@@ -1,0 +1,1 @@
+"""Reactive navigation in three nodes."""
