@@ -32,8 +32,11 @@ def read_summary(manifest: Path, called: str = "") -> PackageSummary:
     with reading(where, Kind.HALF_WRITTEN_PACKAGE, "Correct it for colcon."):
         if manifest.stat().st_size > MAX_MANIFEST:
             raise _wrong(f"{where} is larger than {MAX_MANIFEST // 1024} KiB: shorten it.")
+        data = manifest.read_bytes()
+        if b"<!DOCTYPE" in data.replace(b"\0", b""):  # also in UTF-16; one can make 8 MB of a small file
+            raise _wrong(f"{where} has a <!DOCTYPE>, which no manifest needs: take it out.")
         try:
-            root = ET.fromstring(manifest.read_bytes())
+            root = ET.fromstring(data)
         except ET.ParseError as error:
             raise _wrong(f"{where} is not well-formed XML ({error}): correct that line for colcon.") from None
         name = root.findtext("name", "").strip()

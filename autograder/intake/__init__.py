@@ -34,6 +34,7 @@ from autograder.intake.files import (
     write_tree,
 )
 from autograder.intake.reading import read_contents, read_source_folder
+from autograder.reading import reading as door
 
 __all__ = [
     "MAX_DEPTH",
@@ -97,15 +98,17 @@ def read_submission(path: Path, assignment: str) -> Submission:
         UsageError: `path` does not exist.
         StudentError: the submission is unsafe, unreadable or unclear, or has neither the notebook nor a package.
     """
-    contents = read_contents(path, assignment)
-    return detect_layout(contents.files, assignment, contents.left_out)
+    with door("Your submission"):
+        contents = read_contents(path, assignment)
+        return detect_layout(contents.files, assignment, contents.left_out)
 
 
 def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
     """Read all files of a submission, with paths below its root. Args and errors are those of `read_submission`."""
-    contents = read_contents(path, assignment)
-    detect_layout(contents.files, assignment, contents.left_out)
-    return contents.files
+    with door("Your submission"):
+        contents = read_contents(path, assignment)
+        detect_layout(contents.files, assignment, contents.left_out)
+        return contents.files
 
 
 def detect_layout(files: Sequence[SubmittedFile], assignment: str, left_out: Sequence[LeftOut] = ()) -> Submission:

@@ -87,14 +87,21 @@ def test_a_cmake_package_needs_none_of_pythons_files(tmp_path: Path) -> None:
     assert build.find_packages(tmp_path)[0]
 
 
-@pytest.mark.parametrize(
-    "text", ["<package><name>", "", "not xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><package>&x;</package>"]
-)
+@pytest.mark.parametrize("text", ["<package><name>", "", "not xml", "<package>&x;</package>"])
 def test_a_malformed_manifest_is_named_with_its_line(tmp_path: Path, text: str) -> None:
     kind, sentence = _fault(_package(tmp_path, **{"package.xml": text}))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
     assert "src/my_robot_package/package.xml is not well-formed XML" in sentence
     assert "line" in sentence
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_a_manifest_with_entities_is_refused_before_they_are_read(tmp_path: Path, encoding: str) -> None:
+    text = "<!DOCTYPE a [<!ENTITY b 'c'>]><package>&b;</package>"
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/package.xml").write_text(text, encoding=encoding)
+    with pytest.raises(StudentError, match="has a <!DOCTYPE>"):
+        packages.read_summary(tmp_path / "p/package.xml")
 
 
 def test_a_huge_manifest_is_not_read(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
+from autograder import intake
 from autograder.exceptions import StudentError
 from autograder.grading import digests
 from autograder.intake import SubmittedFile, detect_layout, read_submission
@@ -87,5 +88,7 @@ def test_a_submission_that_ends_its_reader_does_not_end_the_grading_of_a_class(
     def fail(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(digests.intake, "read_submission", fail)
+    monkeypatch.setattr(intake, "read_contents", fail)
+    with pytest.raises(StudentError, match="Your submission cannot be read: MemoryError"):
+        read_submission(tmp_path, CHAPTER)
     assert digests.read_digests(tmp_path, CHAPTER, Tier.PROCESS) is None

@@ -88,6 +88,13 @@ def test_the_files_of_a_moodle_submission_without_folders_come_together(tmp_path
     assert (collected.older, collected.unmatched) == ((), ())
 
 
+def test_the_name_of_a_moodle_file_cannot_make_it_another_students(tmp_path: Path) -> None:
+    name = "Jane Doe_102_assignsubmission_file_x_101_assignsubmission_file_a.zip"
+    collected, entries = found(download(tmp_path / "d", name), MOODLE)
+    assert entries == {"jane@example.edu": name}
+    assert collected.missing == ("zoe@example.edu", "bob@example.edu")
+
+
 def test_a_canvas_download_names_attempts_and_late_submissions(tmp_path: Path) -> None:
     folder = download(
         tmp_path / "canvas",

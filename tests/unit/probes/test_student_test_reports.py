@@ -56,6 +56,7 @@ def test_a_message_is_cut_to_its_bound() -> None:
         b"\xff\xfe<",
         b"<testsuite>" + b" " * MAX_BYTES + b"</testsuite>",
         b'<!DOCTYPE a [<!ENTITY b "c">]><testsuite>&b;</testsuite>',
+        '<!DOCTYPE a [<!ENTITY b "c">]><testsuite>&b;</testsuite>'.encode("utf-16"),
         b'<?xml version="1.0" encoding="no-such-code"?><testsuite/>',
     ],
     ids=["empty", "text", "bytes", "large", "entities", "encoding"],
