@@ -59,7 +59,7 @@ def test_a_message_is_cut_to_its_bound() -> None:
         '<!DOCTYPE a [<!ENTITY b "c">]><testsuite>&b;</testsuite>'.encode("utf-16"),
         b'<?xml version="1.0" encoding="no-such-code"?><testsuite/>',
     ],
-    ids=["empty", "text", "bytes", "large", "entities", "encoding"],
+    ids=["empty", "text", "bytes", "large", "entities", "entities in UTF-16", "encoding"],
 )
 def test_bytes_that_are_no_valid_small_report_give_no_claims(data: bytes) -> None:
     assert parse_claims(data) is None
