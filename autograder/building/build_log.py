@@ -26,6 +26,12 @@ _DEFINITION = re.compile(
 _DEPENDENCY = re.compile(
     r"/rosidl_generator_type_description/__init__\.py\"(?s:.{1,2000}?)\nKeyError: '(?P<package>\w{1,100})'\n"
 )
+# What CMake says breaks lines, too, and names a file of ROS; the student's line is at the end of the call stack.
+_CMAKE_ERROR = re.compile(
+    r"^CMake Error at (?P<place>\S{1,300}) \(\w{1,80}\):\n(?P<text>(?:  .*\n){1,12})(?P<rest>(?s:.{0,3000}))",
+    re.MULTILINE,
+)
+_CMAKE_LINE = re.compile(r"^  (CMakeLists\.txt:\d+) \(", re.MULTILINE)
 _CMAKE_TRACEBACK = re.compile(r"^  Traceback \(most recent call last\):\n(?:[ ]*\n|    .*\n)*", re.MULTILINE)
 _RUNS_SETUP = "in run_setup"  # of setuptools: the frames called "<string>" below it are those of setup.py
 _EMPTY_BLOCK = re.compile(r"^--- (?:stderr|output): .*\n(?:[ \t]*\n)*---\n", re.MULTILINE)
@@ -56,6 +62,9 @@ def first_error(log: str) -> str:
     if found := _DEPENDENCY.search(bounded):
         return f"CMakeLists.txt: rosidl_generate_interfaces does not name {found['package']} behind DEPENDENCIES"
     text = readable(log)
+    if found := _CMAKE_ERROR.search(text):
+        own = _CMAKE_LINE.search(found["rest"])
+        return f"{own[1] if own else found['place']}: {' '.join(found['text'].split())}"[:300]
     errors = [line.strip() for line in text.splitlines() if "Error" in line or "error:" in line]
     place = f"setup.py, line {found['line']}: " if (found := _IN_SETUP.search(text)) else ""
     return f"{place}{errors[0][:300]}" if errors else ""

@@ -125,6 +125,24 @@ def test_the_start_and_the_end_of_a_long_log_are_read(part: str) -> None:
     assert len(readable(log)) <= 2 * END + 2
 
 
+@pytest.mark.parametrize(
+    ("log", "error"),
+    [
+        (
+            "CMake Error at CMakeLists.txt:6 (find_package):\n  No package\n  std_msg.\n\n  Add it.\n",
+            "CMakeLists.txt:6: No package std_msg.",
+        ),
+        (
+            "CMake Error at /opt/ros/lint.cmake:45 (message):\n  no linter there\n"
+            "Call Stack (most recent call first):\n  /opt/hook.cmake:9 (lint)\n  CMakeLists.txt:21 (ament_package)\n",
+            "CMakeLists.txt:21: no linter there",
+        ),
+    ],
+)
+def test_what_cmake_says_is_told_with_the_line_of_the_student(log: str, error: str) -> None:
+    assert first_error(log) == error
+
+
 def test_a_package_that_cmakelists_does_not_name_is_reported_in_a_sentence() -> None:
     folder = "/opt/ros/jazzy/lib/python3.12/site-packages/rosidl_generator_type_description"
     log = (
