@@ -1,6 +1,6 @@
 """Configures nbgrader, with this folder as the course directory.
 
-The isolated grader (`autograder.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
+The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
 exchange folder of a class. Without it the folder is `.build/exchange`.
 
 `nbgrader autograde` grades one submission after the other, and books what is graded already. These commands grade a
@@ -12,6 +12,6 @@ class on all cores, or on a cluster by `--scheduler`, and then book it:
 
 from pathlib import Path
 
-from autograder.nbgrader.configuration import configure
+from autograder.lms.nbgrader.configuration import configure
 
 configure(get_config(), Path(__file__).resolve().parent)  # noqa: F821 (traitlets defines it for a configuration file)

@@ -155,7 +155,10 @@ class SetUp:
     def expected_stamp(self, *, dev: bool) -> dict[str, str]:
         """Return the stamp of a finished set-up."""
         lock, patches = self.root / "requirements.lock", self.root / "autograder" / "ros" / "patch_wheels.py"
-        project = (self.root / "pyproject.toml", self.root / "autograder" / "interfaces" / "tutorials.yaml")
+        project = (
+            self.root / "pyproject.toml",
+            self.root / "autograder" / "building" / "interfaces" / "tutorials.yaml",
+        )
         # A virtual environment knows its own path: a moved clone needs a new one.
         about = (str(self.root), self.interpreter.executable, self.interpreter.build, str(self.sourced))
         base = {"base": digest(Path(__file__), lock, patches, *about), "project": digest(*project)}
@@ -190,7 +193,12 @@ class SetUp:
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
         self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
         if not self.sourced:  # an installed ROS 2 has them
-            self._step("the tutorials' interfaces were not built", self.python, "-m", "autograder.interfaces.tutorials")
+            self._step(
+                "the tutorials' interfaces were not built",
+                self.python,
+                "-m",
+                "autograder.building.interfaces.tutorials",
+            )
         fresh = self.venv / f"{STAMP}.fresh"
         fresh.write_text(json.dumps({**have, **self.expected_stamp(dev=dev)}, indent=1))
         fresh.replace(self.venv / STAMP)

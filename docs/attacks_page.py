@@ -6,10 +6,10 @@ from typing import Any
 
 import yaml
 
-from autograder.checks import suites
-from autograder.course.markdown_table import table
+from autograder.author.course.markdown_table import table
+from autograder.author.verification.cases import attacks
 from autograder.layout import ROOT
-from autograder.proof.cases import attacks
+from autograder.suite import suites
 
 PAGE = ROOT / "docs" / "attacks.md"
 ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").read_text(encoding="utf-8"))

@@ -18,13 +18,13 @@ import nbformat
 import numpy as np
 
 from autograder import layout
-from autograder.checks import suites
-from autograder.course.forms import Form, in_form
-from autograder.course.markdown_table import table
-from autograder.course.sync import Chapter, chapters
-from autograder.proof.cases import cases
-from autograder.proof.claims import CaseKind
-from autograder.proof.mutants import mutants
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.markdown_table import table
+from autograder.author.course.sync import Chapter, chapters
+from autograder.author.verification.cases import cases
+from autograder.author.verification.claims import CaseKind
+from autograder.author.verification.mutants import mutants
+from autograder.suite import suites
 from sim import Command, RobotSpec, Scan, Simulation, State, load_world, run
 from sim.export import to_html
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from autograder.author.course.markdown_table import table
+from autograder.building.interfaces.cache import LIMIT
 from autograder.building.keeper import CACHE
-from autograder.course.markdown_table import table
-from autograder.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
-from autograder.interfaces.cache import LIMIT
 from autograder.layout import ROOT
-from autograder.patience import HELD_SECONDS
-from autograder.prefork import seccomp
-from autograder.sandbox import limits
-from autograder.sandbox.limits import MIB, TreeLimits
+from autograder.run.fork_server import seccomp
+from autograder.run.patience import HELD_SECONDS
+from autograder.run.sandbox import limits
+from autograder.run.sandbox.limits import MIB, TreeLimits
+from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
 
 PAGE = ROOT / "docs" / "limits.md"
 HEAD = """# Limits by kind
 
 What a submission may use, what keeps the limit, and where that is tested. `python docs/limits_page.py` writes this
-page from the values in the code, most of them in `autograder/sandbox/limits.py`.
+page from the values in the code, most of them in `autograder/run/sandbox/limits.py`.
 """
 FOOT = """
 Where an ordinary user grades, all cells are the same user of the machine. What the kernel counts by user and no row

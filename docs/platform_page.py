@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 from packaging.requirements import Requirement
 
-from autograder.course.markdown_table import table
+from autograder.author.course.markdown_table import table
 from autograder.layout import ROOT
 from autograder.ros.platform_versions import PACKAGES, PlatformPackage
 from autograder.ros.ros2.exceptions import NotCoveredError
@@ -38,8 +38,9 @@ COLUMNS = ("package", "apt's name", "Ubuntu 24.04", "here", "where a student mee
 TAIL = """## Interface packages without wheels
 
 The tutorials of ROS use `example_interfaces`, `action_tutorials_interfaces` and `tf2_msgs`. Set-up builds them for
-Python programs, from `autograder/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have the hashes of
-the real ones, so programs meet those of other computers. A CMake package cannot use them: they have no CMake files.
+Python programs, from `autograder/building/interfaces/tutorials.yaml`; it takes about ten seconds. Their types have
+the hashes of the real ones, so programs meet those of other computers. A CMake package cannot use them: they have no
+CMake files.
 
 A CMake package that `ros2 pkg create` has written asks for `ament_lint_auto`, which has no wheel. Set-up puts an empty
 one in its place. The package is built, and has no linters.

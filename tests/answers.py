@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from autograder import layout
-from autograder.course.release import write_released
-from autograder.course.sync import Chapter
+from autograder.author.course.release import write_released
+from autograder.author.course.sync import Chapter
 
 CHAPTER = "02_nodes"
 BOOK = f"{CHAPTER}.ipynb"

@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
 
-from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.result import Artifact, Build, CheckResult, Result, Status
+from autograder.result.model import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
-from autograder.sandbox.launcher import restore_sigint
+from autograder.run.sandbox.launcher import restore_sigint
+from autograder.suite import Check, Outcome, Visibility
 
 # The same examples in each run: a test that fails now and then would be no gate. `make fuzz` looks further.
 # A busy machine is slow, and that is no failure.

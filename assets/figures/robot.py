@@ -8,8 +8,8 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+from autograder.author.verification.mutants import write_reference
 from autograder.notebook import DriveReport, drive
-from autograder.proof.mutants import write_reference
 
 OUT = Path(__file__).with_suffix(".png")
 

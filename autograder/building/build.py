@@ -13,10 +13,10 @@ from autograder.building.colcon import StoppedBuildError, colcon_build, require_
 from autograder.building.interface_bundle import install_bundle, interface_bundle
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.exercise_stubs import explain
-from autograder.packages import find_packages
-from autograder.result import Build
-from autograder.workspace import Workspace
+from autograder.result.model import Build
+from autograder.run.workspace import Workspace
+from autograder.submission.exercise_stubs import explain
+from autograder.submission.packages import find_packages
 
 
 @dataclass(frozen=True)

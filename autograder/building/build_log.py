@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from autograder.lockstep.tracebacks import with_source_paths
+from autograder.run.lockstep.tracebacks import with_source_paths
 
 END, LINE = 50_000, 1_000  # characters
 _BEGIN = "Traceback (most recent call last):"

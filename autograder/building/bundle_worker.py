@@ -13,11 +13,11 @@ from pathlib import Path
 from autograder.building.interface_bundle import build_alone
 from autograder.exceptions import StudentError
 from autograder.ros import activate
-from autograder.sandbox.launcher import restore_sigint
-from autograder.sandbox.limits import INSTALLED, SOURCES
-from autograder.sandbox.parcel import receive_tree, send_message, send_tree, write_received
-from autograder.sandbox.trees import read_tree
-from autograder.workspace import Workspace
+from autograder.run.sandbox.launcher import restore_sigint
+from autograder.run.sandbox.limits import INSTALLED, SOURCES
+from autograder.run.sandbox.parcel import receive_tree, send_message, send_tree, write_received
+from autograder.run.sandbox.trees import read_tree
+from autograder.run.workspace import Workspace
 
 
 def main() -> None:

@@ -11,12 +11,12 @@ from autograder.building import cmake_overlay
 from autograder.building.build_log import first_error, readable
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.lockstep.failures import tail
-from autograder.sandbox import Ending, Mount
-from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import BUILD, INSTALLED
-from autograder.sandbox.trees import TreeError, survey
-from autograder.workspace import Workspace
+from autograder.run.lockstep.failures import tail
+from autograder.run.sandbox import Ending, Mount
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import BUILD, INSTALLED
+from autograder.run.sandbox.trees import TreeError, survey
+from autograder.run.workspace import Workspace
 
 HOST = Path(__file__).with_name("colcon_host.py")
 LOG_LINES = 40

@@ -15,14 +15,14 @@ from pathlib import Path
 
 from autograder.building import keeper
 from autograder.building.colcon import colcon_build
+from autograder.building.interfaces import Cache
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces import Cache
-from autograder.packages import MANIFEST, read_summary
-from autograder.sandbox import line
-from autograder.sandbox.limits import SOURCES
-from autograder.sandbox.trees import TreeError, read_tree
-from autograder.workspace import Workspace
+from autograder.run.sandbox import line
+from autograder.run.sandbox.limits import SOURCES
+from autograder.run.sandbox.trees import TreeError, read_tree
+from autograder.run.workspace import Workspace
+from autograder.submission.packages import MANIFEST, read_summary
 
 GROUP = "rosidl_interface_packages"
 NOTE = "bundle.json"

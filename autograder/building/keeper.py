@@ -20,15 +20,15 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from autograder.building.interfaces import Cache
+from autograder.building.interfaces.prefix import identity
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import GraderError, StudentError
-from autograder.interfaces import Cache
-from autograder.interfaces.prefix import identity
 from autograder.ros import find
-from autograder.sandbox import Tier
-from autograder.sandbox.cell import ended, in_cell
-from autograder.sandbox.limits import BUILD, GRADING_CELL, INSTALLED, RESULT_FILES, SOURCES
-from autograder.sandbox.parcel import (
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import ended, in_cell
+from autograder.run.sandbox.limits import BUILD, GRADING_CELL, INSTALLED, RESULT_FILES, SOURCES
+from autograder.run.sandbox.parcel import (
     ParcelError,
     receive_message,
     receive_tree,
@@ -36,7 +36,7 @@ from autograder.sandbox.parcel import (
     send_tree,
     write_received,
 )
-from autograder.sandbox.trees import Entry, read_tree
+from autograder.run.sandbox.trees import Entry, read_tree
 
 CACHE = "bundles"
 VERSION = 2  # of the way in which a bundle is built and kept

@@ -11,8 +11,8 @@ from pathlib import Path
 from autograder.building.build import BuildOutcome
 from autograder.building.interface_bundle import relocate
 from autograder.diagnosis import OK
-from autograder.result import Build
-from autograder.workspace import Workspace
+from autograder.result.model import Build
+from autograder.run.workspace import Workspace
 
 
 def copy_prebuilt(built: Path, workspace: Workspace, packages: tuple[str, ...]) -> BuildOutcome:

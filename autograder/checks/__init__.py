@@ -1,4 +1,4 @@
-"""The checks: what a check is, and one package for each chapter with the checks that judge it.
+"""The chapters' checks: one package for each chapter.
 
 The package of a chapter::
 
@@ -12,38 +12,11 @@ The package of a chapter::
         attacks.py     optional: submissions that try to get points that they have not earned
 
 Visible checks and support import nothing hidden, and no conftest imports another. The release and the sandbox hold no
-`hidden` folder. The fixtures that every chapter has are those of `autograder.grading.plugin`.
+`hidden` folder. The fixtures that every chapter has are those of `autograder.grade.plugin`.
 """
 
 from autograder import layout
-from autograder.checks.declaration import (
-    Check,
-    CheckFailed,
-    CheckRow,
-    Outcome,
-    Visibility,
-    check,
-    check_each_row,
-    check_of,
-    expect,
-    group,
-    hint,
-)
 
 # The chapters of a course that lies elsewhere are imported under the same names, as autograder.checks.chID.
 if str(layout.CHECKS) not in __path__:
     __path__.insert(0, str(layout.CHECKS))
-
-__all__ = [
-    "Check",
-    "CheckFailed",
-    "CheckRow",
-    "Outcome",
-    "Visibility",
-    "check",
-    "check_each_row",
-    "check_of",
-    "expect",
-    "group",
-    "hint",
-]

@@ -12,7 +12,7 @@ from autograder.cli.options import json_option
 from autograder.cli.terminal import echo
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.checking import check as run_checks
-from autograder.result import write_json
+from autograder.result.model import write_json
 
 
 @click.command()

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import click
 
-from autograder import export
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
-from autograder.export.changes import Change, CheckChange, changes
-from autograder.result import write_json
+from autograder.report import export
+from autograder.report.export.changes import Change, CheckChange, changes
+from autograder.result.model import write_json
 
 
 @click.command()

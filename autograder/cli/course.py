@@ -6,16 +6,16 @@ import sys
 
 import click
 
-from autograder.checks import suites
+from autograder.author.course.cells import is_graded
+from autograder.author.course.contract_rules import broken_contract
+from autograder.author.course.findings import Finding
+from autograder.author.course.notebook_rules import broken_rules
+from autograder.author.course.sync import Chapter, chapters, find_outdated, sync_chapter
+from autograder.author.course.tables import PAGE, course_page, titles
+from autograder.author.course.workload import outdated_time_sentence
+from autograder.author.verification import checks_page
 from autograder.cli.terminal import echo
-from autograder.course.cells import is_graded
-from autograder.course.contract_rules import broken_contract
-from autograder.course.findings import Finding
-from autograder.course.notebook_rules import broken_rules
-from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
-from autograder.course.tables import PAGE, course_page, titles
-from autograder.course.workload import outdated_time_sentence
-from autograder.proof import checks_page
+from autograder.suite import suites
 
 _names = click.argument("names", nargs=-1, metavar="[ID]...")
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import click
 
 from autograder import layout
-from autograder.checks import suites
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.cli.grade import Progress, report
 from autograder.cli.options import isolation_option, jobs_option, json_option
-from autograder.grading import DEFAULT_SEED
-from autograder.grading.batch import Entry, grade_all
-from autograder.proof.mutants import mutants, write_mutant, write_reference
-from autograder.result import write_json
-from autograder.sandbox import Tier
+from autograder.grade import DEFAULT_SEED
+from autograder.grade.batch import Entry, grade_all
+from autograder.result.model import write_json
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 
 
 @click.command()

@@ -11,7 +11,7 @@ from autograder.cli.options import json_option
 from autograder.cli.terminal import echo
 from autograder.doctor import System, examine, healthy, render, security
 from autograder.doctor.finding import VERDICTS, Finding
-from autograder.result import write_json
+from autograder.result.model import write_json
 
 
 @click.command()

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import click
 
-from autograder import export as exporters
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import UsageError
 from autograder.lms.collect import COLLECTION_REPORT
 from autograder.lms.marks import SYSTEMS, write_marks
 from autograder.lms.roster import read_roster
-from autograder.result import write_json
+from autograder.report import export as exporters
+from autograder.result.model import write_json
 
 _FOLDERS = " and ".join(name for name, format in exporters.FORMATS.items() if format.FOLDER)
 

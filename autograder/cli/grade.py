@@ -11,8 +11,6 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from autograder import feedback
-from autograder.checks import suites
 from autograder.cli.compare import print_changes
 from autograder.cli.options import (
     isolation_option,
@@ -23,14 +21,16 @@ from autograder.cli.options import (
 from autograder.cli.terminal import echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
-from autograder.export.earlier import EarlierMarks
-from autograder.grading.batch import Entry, GradeEach, discover, grade_all
-from autograder.grading.store import LOG
-from autograder.intake import read_submission
+from autograder.grade.batch import Entry, GradeEach, discover, grade_all
+from autograder.grade.store import LOG
 from autograder.lms.collect import COLLECTION_REPORT, collect, unpacked
 from autograder.lms.roster import read_roster
-from autograder.result import Result, Status, write_json
-from autograder.sandbox import Tier
+from autograder.report import feedback
+from autograder.report.export.earlier import EarlierMarks
+from autograder.result.model import Result, Status, write_json
+from autograder.run.sandbox import Tier
+from autograder.submission.intake import read_submission
+from autograder.suite import suites
 
 INTERRUPTED = 130  # the exit status of a shell after Ctrl-C
 
@@ -208,8 +208,8 @@ def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Ite
         yield None
         return
     try:
-        from autograder.cluster.connection import connected
-        from autograder.cluster.dispatch import grade_on
+        from autograder.grade.cluster.connection import connected
+        from autograder.grade.cluster.dispatch import grade_on
     except ModuleNotFoundError as error:
         if error.name not in ("distributed", "msgpack"):
             raise

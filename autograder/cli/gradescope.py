@@ -9,7 +9,7 @@ import click
 from autograder.cli.options import isolation_option
 from autograder.cli.terminal import echo
 from autograder.lms.gradescope_autograder import write_autograder
-from autograder.sandbox import Tier
+from autograder.run.sandbox import Tier
 
 
 @click.command()

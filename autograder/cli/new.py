@@ -21,7 +21,7 @@ def chapter(assignment: str) -> None:
 
     It has a notebook with a contract, a reference, visible and hidden checks, mutants and a variant.
     """
-    from autograder.course.new import write_chapter
+    from autograder.author.course.new import write_chapter
 
     for folder in write_chapter(assignment):
         echo(folder)
@@ -33,7 +33,7 @@ def chapter(assignment: str) -> None:
 @click.argument("folder", type=click.Path(path_type=Path))
 def course(folder: Path) -> None:
     """Write a course without chapters to FOLDER."""
-    from autograder.course.new import write_course
+    from autograder.author.course.new import write_course
 
     write_course(folder.resolve())
     echo(f"{folder}\n\nIts first chapter: autograder --course {folder} new chapter 01_first")

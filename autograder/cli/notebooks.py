@@ -11,10 +11,10 @@ import click
 from autograder import layout
 from autograder.cli.options import jobs_option, json_option
 from autograder.cli.terminal import echo
-from autograder.result import write_json
+from autograder.result.model import write_json
 
 if TYPE_CHECKING:
-    from autograder.course.execute import Execution
+    from autograder.author.course.execute import Execution
 
 
 @click.command()
@@ -32,10 +32,10 @@ def notebooks(
     A warning is an error. The report of each notebook lies in .build/notebooks. The forms may be combined: --source
     --solved --released takes all three.
     """
-    from autograder.course.execute import run_notebook
-    from autograder.course.forms import Form
-    from autograder.course.sync import Chapter, chapters
-    from autograder.grading.parallel import map_parallel
+    from autograder.author.course.execute import run_notebook
+    from autograder.author.course.forms import Form
+    from autograder.author.course.sync import Chapter, chapters
+    from autograder.grade.parallel import map_parallel
     from autograder.ros import activate
 
     activate()

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from autograder.grading import DEFAULT_SEED
-from autograder.sandbox import Tier
+from autograder.grade import DEFAULT_SEED
+from autograder.run.sandbox import Tier
 
 json_option = click.option(
     "--json", "json_file", type=click.Path(path_type=Path, dir_okay=False), help="Also write what was found as JSON."

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
+from autograder.author.course.release import write_bundle
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo
-from autograder.course.release import write_bundle
-from autograder.result import write_json
+from autograder.result.model import write_json
 
 
 @click.command()

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import click
 
-from autograder import feedback
-from autograder.checks import suites
 from autograder.cli.options import isolation_option
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
-from autograder.export.stored import Stored, load
-from autograder.grading.job import Scope
-from autograder.grading.pipeline import grade_submission
-from autograder.result import Result, Status
-from autograder.sandbox import Tier
+from autograder.grade.job import Scope
+from autograder.grade.pipeline import grade_submission
+from autograder.report import feedback
+from autograder.report.export.stored import Stored, load
+from autograder.result.model import Result, Status
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 
 
 @click.command()

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import click
 
+from autograder.author.course.release import write_bundle
 from autograder.cli.options import json_option
 from autograder.cli.terminal import echo, on_line
-from autograder.course.release import write_bundle
 from autograder.exceptions import StudentError, UsageError
-from autograder.grading.batch import discover
-from autograder.intake import read_submission
+from autograder.grade.batch import discover
 from autograder.layout import COURSE
-from autograder.result import write_json
+from autograder.result.model import write_json
+from autograder.submission.intake import read_submission
 
 
 @click.command()

@@ -6,10 +6,10 @@ import math
 import shutil
 import textwrap
 
-from autograder.causes import causes, dearest
-from autograder.checks import Outcome
 from autograder.plain_text import visible
-from autograder.result import Result, Status
+from autograder.result.causes import causes, dearest
+from autograder.result.model import Result, Status
+from autograder.suite import Outcome
 
 
 def failure_summary(result: Result) -> str:

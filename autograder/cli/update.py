@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from autograder import layout
-from autograder.bundle import read_manifest, update_bundle
+from autograder.author.bundle import read_manifest, update_bundle
 from autograder.cli.terminal import echo
 from autograder.exceptions import UsageError
 

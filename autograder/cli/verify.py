@@ -11,23 +11,23 @@ from pathlib import Path
 import click
 
 from autograder import layout
-from autograder.checks import suites
-from autograder.checks.contract import counts
+from autograder.author.verification.cases import cases
+from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.mutation_run import MutantResult, run_mutants
+from autograder.author.verification.population import GeneratedMutant, population
+from autograder.author.verification.prove import prove
+from autograder.author.verification.record import compared_again, record_failures
+from autograder.author.verification.summary import summary
+from autograder.author.verification.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
+from autograder.author.verification.worker_pool import WorkerPool
 from autograder.cli.grade import Progress
 from autograder.cli.options import isolation_option, jobs_option, json_option, seed_option
 from autograder.cli.terminal import echo
 from autograder.cli.text_tables import score_text, table
-from autograder.proof.cases import cases
-from autograder.proof.claims import CaseKind, Claim
-from autograder.proof.mutation_run import MutantResult, run_mutants
-from autograder.proof.population import GeneratedMutant, population
-from autograder.proof.prove import prove
-from autograder.proof.record import compared_again, record_failures
-from autograder.proof.summary import summary
-from autograder.proof.survivors import ChapterMutationResult, faults, mutant_counts, reasons, report
-from autograder.proof.worker_pool import WorkerPool
-from autograder.result import write_atomically, write_json
-from autograder.sandbox import Tier
+from autograder.result.model import write_atomically, write_json
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
+from autograder.suite.contract import counts
 
 HEADINGS = ("submission", "marks", "claim")
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from autograder import layout
-from autograder.prefork import seccomp
-from autograder.sandbox import Ending, Limits
-from autograder.sandbox.limits import GIB, MIB
+from autograder.run.fork_server import seccomp
+from autograder.run.sandbox import Ending, Limits
+from autograder.run.sandbox.limits import GIB, MIB
 
 CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
 LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)

@@ -13,10 +13,10 @@ from pathlib import Path
 from autograder.doctor.escapes import CANARY, ESCAPES, Escape
 from autograder.doctor.finding import Finding, Status
 from autograder.ros import activate
-from autograder.sandbox import Mount, Sandbox, Tier, cgroup
-from autograder.sandbox.cell import run_in_cell
-from autograder.sandbox.launcher import launch, warm_up
-from autograder.sandbox.tiers import namespaces_failure
+from autograder.run.sandbox import Mount, Sandbox, Tier, cgroup
+from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.launcher import launch, warm_up
+from autograder.run.sandbox.tiers import namespaces_failure
 
 VERDICTS = ("Every sandbox held.", "Something got out: docs/security.md says what bounds it.")
 _PROFILE = "lockstep"  # of nodes

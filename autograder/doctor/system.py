@@ -16,8 +16,8 @@ from pathlib import Path
 
 from autograder.ros import find
 from autograder.ros.patch_wheels import baked_files
-from autograder.sandbox import cgroup
-from autograder.sandbox.tiers import namespaces_failure
+from autograder.run.sandbox import cgroup
+from autograder.run.sandbox.tiers import namespaces_failure
 
 COMMAND_TIMEOUT_SECONDS = 60.0
 

@@ -12,7 +12,7 @@ from autograder.harness.goals import Goal, ReceivedMessage
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.shared import Shared
 from autograder.harness.stepped import SteppedHarness
-from autograder.workspace import Workspace
+from autograder.run.workspace import Workspace
 
 __all__ = [
     "AutoHarness",

@@ -17,8 +17,8 @@ from autograder.exceptions import StudentError
 from autograder.harness.base import Harness, Program
 from autograder.harness.real_time import RealTimeHarness
 from autograder.harness.stepped import SteppedHarness
-from autograder.time_record import LOCKSTEP, REAL
-from autograder.workspace import Workspace
+from autograder.run.time_record import LOCKSTEP, REAL
+from autograder.run.workspace import Workspace
 
 TIME_VARIABLE = "AUTOGRADER_TIME"  # "real" keeps every program from being stepped
 PROBE_SECONDS = 1.0

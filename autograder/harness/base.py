@@ -19,11 +19,11 @@ from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.grader_node import NAME, GraderNode, OnMessage
 from autograder.harness.message_text import format_message
 from autograder.harness.steps import TICK_NS
-from autograder.reading import hold
 from autograder.ros.discovery import PROFILES, PROFILES_VARIABLE
 from autograder.ros.domains import Domain
-from autograder.sandbox import Mount, Process
-from autograder.workspace import Workspace
+from autograder.run.sandbox import Mount, Process
+from autograder.run.workspace import Workspace
+from autograder.submission.reading import hold
 
 MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
 

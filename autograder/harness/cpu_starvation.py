@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
-from autograder.sandbox.procfs import waited_ns
+from autograder.run.sandbox.procfs import waited_ns
 
 
 @contextmanager

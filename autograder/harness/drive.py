@@ -15,7 +15,7 @@ from autograder.exceptions import StudentError
 from autograder.harness.base import Harness
 from autograder.harness.goals import ReceivedMessage
 from autograder.plain_text import clean
-from autograder.sandbox import Process
+from autograder.run.sandbox import Process
 from sim import Command, Recorder, Recording, Scan, Simulation, State, observe, start, step
 from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 

@@ -18,8 +18,8 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from autograder.lockstep.lockstep_host import channels
 from autograder.ros.discovery import announcing_often
+from autograder.run.lockstep.lockstep_host import channels
 
 DEPTH = 1000
 NAME = "grader"

@@ -22,14 +22,14 @@ import autograder
 from autograder.exceptions import StudentError
 from autograder.harness.grader_node import DEPTH, GraderNode, OnMessage
 from autograder.harness.parameter_values import value_of
-from autograder.lockstep.failures import diagnose_ending
-from autograder.reading import hold, reading
 from autograder.ros.domains import Domain
-from autograder.sandbox import Mount, Process, Sandbox
-from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import LAUNCH
-from autograder.sandbox.procfs import children, measure, parent
-from autograder.workspace import Workspace
+from autograder.run.lockstep.failures import diagnose_ending
+from autograder.run.sandbox import Mount, Process, Sandbox
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import LAUNCH
+from autograder.run.sandbox.procfs import children, measure, parent
+from autograder.run.workspace import Workspace
+from autograder.submission.reading import hold, reading
 
 HOST = Path(__file__).with_name("launch_host.py")
 ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins

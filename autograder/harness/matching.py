@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from autograder.harness.grader_node import GraderNode
-from autograder.lockstep.protocol import Description
+from autograder.run.lockstep.protocol import Description
 
 
 def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:

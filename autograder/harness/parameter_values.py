@@ -7,7 +7,7 @@ from typing import Any
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rclpy.parameter import parameter_value_to_python
 
-from autograder.reading import reading
+from autograder.submission.reading import reading
 
 KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
 

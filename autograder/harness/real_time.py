@@ -14,9 +14,9 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import cpu_starvation
 from autograder.harness.base import Harness, Program
-from autograder.lockstep.failures import diagnose_ending, diagnose_no_answer, diagnose_output
-from autograder.sandbox import Process
-from autograder.sandbox.launcher import launch
+from autograder.run.lockstep.failures import diagnose_ending, diagnose_no_answer, diagnose_output
+from autograder.run.sandbox import Process
+from autograder.run.sandbox.launcher import launch
 
 START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
 GRACE_NS = 300_000_000  # real time for the programs to match the grader's endpoints; they cannot be asked

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack
 from typing import Any, Generic, Protocol, TypeVar
 
 from autograder.exceptions import StudentError
-from autograder.sandbox import Process
+from autograder.run.sandbox import Process
 
 
 class Programs(AbstractContextManager[Any], Protocol):

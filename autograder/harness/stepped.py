@@ -14,10 +14,10 @@ from autograder.exceptions import DoubtfulError, StudentError
 from autograder.harness.base import Harness, Program
 from autograder.harness.matching import connected
 from autograder.harness.steps import next_instant, tick_of
-from autograder.lockstep import Description, Stepper, UnsteppableError
-from autograder.lockstep.lockstep_host import channels
-from autograder.lockstep.protocol import START_NS
-from autograder.sandbox import Process
+from autograder.run.lockstep import Description, Stepper, UnsteppableError
+from autograder.run.lockstep.lockstep_host import channels
+from autograder.run.lockstep.protocol import START_NS
+from autograder.run.sandbox import Process
 
 DELIVERY_SECONDS = 15.0  # real time, over a whole run, for messages that were announced and have not come yet
 SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be seen

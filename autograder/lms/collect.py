@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.grading.batch import Entry, submission_in
-from autograder.intake.ignored import is_ignored
-from autograder.intake.names import is_archive, is_notebook
+from autograder.grade.batch import Entry, submission_in
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_name, resubmitted
+from autograder.submission.intake.ignored import is_ignored
+from autograder.submission.intake.names import is_archive, is_notebook
 
 COLLECTION_REPORT = "handed_in.json"  # beside the results: the late students, and what fits no student
 

@@ -12,10 +12,10 @@ import zipfile
 from pathlib import Path
 
 from autograder import layout
-from autograder.checks import suites
-from autograder.course.release import copy_course, copy_tool
+from autograder.author.course.release import copy_course, copy_tool
 from autograder.exceptions import UsageError
-from autograder.sandbox import Tier
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 
 SCRIPTS = layout.ROOT / "assets" / "gradescope"  # both are executable, in the zip too
 # What grading needs besides the course, of which it needs the hidden checks and the reference, too.

@@ -14,9 +14,9 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.export import Stored
 from autograder.lms.roster import Roster, normalized
-from autograder.result import Result, Status
+from autograder.report.export import Stored
+from autograder.result.model import Result, Status
 
 Rows = list[list[str]]
 CANVAS_NAMES = ("student", "id", "sis user id", "sis login id", "integration id", "section")

@@ -22,11 +22,11 @@ from copydetect.utils import get_token_coverage, highlight_overlap
 from markupsafe import Markup
 
 from autograder.exceptions import AutograderError
-from autograder.feedback.pages import SUMMARY, environment
-from autograder.intake import Submission
-from autograder.intake.notebooks import read_cells
 from autograder.plain_text import clean
-from autograder.result import write_atomically
+from autograder.report.feedback.pages import SUMMARY, environment
+from autograder.result.model import write_atomically
+from autograder.submission.intake import Submission
+from autograder.submission.intake.notebooks import read_cells
 
 MIN_MATCH_TOKENS = 50  # a shorter passage does not count; these are about three lines
 MAX_CHARACTERS = 200_000  # of a text

@@ -23,8 +23,8 @@ from typing import Any
 import yaml
 
 from autograder.exceptions import UsageError
-from autograder.grading.batch import student_of
-from autograder.intake.ignored import is_ignored
+from autograder.grade.batch import student_of
+from autograder.submission.intake.ignored import is_ignored
 
 METADATA = "submission_metadata.yml"  # of Gradescope
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
-from autograder.intake.counting import differs
-from autograder.intake.exercises import SOURCE, text_of
-from autograder.intake.names import is_notebook, names_assignment
-from autograder.intake.notebooks import read_cells
-from autograder.intake.writefile import same_text, written_file
 from autograder.notebook.writefile import digest, read_record
+from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
+from autograder.submission.intake.counting import differs
+from autograder.submission.intake.exercises import SOURCE, text_of
+from autograder.submission.intake.names import is_notebook, names_assignment
+from autograder.submission.intake.notebooks import read_cells
+from autograder.submission.intake.writefile import same_text, written_file
 
 
 def differences(assignment: str, workspace: Path, packages: Sequence[str]) -> tuple[str, ...]:

@@ -19,14 +19,14 @@ from autograder import layout
 from autograder.diagnosis import OK
 from autograder.exceptions import GraderError, StudentError
 from autograder.notebook.worker_client import RECORDING, REPLY_FILE
-from autograder.result import write_json
+from autograder.result.model import write_json
 from autograder.ros import activate
 from autograder.ros.domains import Domain
-from autograder.sandbox.launcher import current_tier, restore_sigint
-from autograder.sandbox.tiers import Tier
+from autograder.run.sandbox.launcher import current_tier, restore_sigint
+from autograder.run.sandbox.tiers import Tier
 
 if TYPE_CHECKING:
-    from autograder.workspace import Workspace
+    from autograder.run.workspace import Workspace
 
 SEED = 1  # of the visible checks' inputs
 
@@ -36,7 +36,7 @@ def main() -> None:
     request = json.loads(Path(sys.argv[1]).read_text())
     restore_sigint()
     ros = activate()
-    from autograder.workspace import Workspace  # once ROS is switched on: it reaches rclpy, and so does what builds
+    from autograder.run.workspace import Workspace  # once ROS is switched on: it reaches rclpy, and so does what builds
 
     scratch, out = Path(request["scratch"]), Path(request["out"])
     home = scratch / "home"
@@ -83,10 +83,10 @@ def _drive(
 
 def _check(workspace: Workspace, out: Path, assignment: str) -> dict[str, Any]:
     from autograder.building.build import build_workspace
-    from autograder.checks import Outcome, suites
-    from autograder.gallery import Gallery
-    from autograder.grading.plugin import GradingPlugin, run
-    from autograder.result import CheckResult
+    from autograder.grade.plugin import GradingPlugin, run
+    from autograder.result.artifacts import Gallery
+    from autograder.result.model import CheckResult
+    from autograder.suite import Outcome, suites
 
     suite = suites.visible(assignment)
     results: dict[str, CheckResult] = {}

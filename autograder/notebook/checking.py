@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder import layout
-from autograder.causes import FAILED_AS_WELL, Cause, causes
-from autograder.checks import Outcome, suites
 from autograder.exceptions import UsageError
 from autograder.notebook.cells_and_files import differences
 from autograder.notebook.notices import INFO, STYLE, TROUBLE, Notice
 from autograder.notebook.worker_client import run_in_worker
-from autograder.result import CheckResult, structure
+from autograder.result.causes import FAILED_AS_WELL, Cause, causes
+from autograder.result.model import CheckResult, structure
+from autograder.suite import Outcome, suites
 from sim.grading import grading
 
 SYMBOLS = {Outcome.PASSED: "✔", Outcome.FAILED: "✘", Outcome.NOT_CHECKED: "○"}

@@ -13,7 +13,7 @@ from autograder.exceptions import UsageError
 from autograder.notebook.driving import DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.simulator_session import SimulatorSession
-from autograder.result import write_json
+from autograder.result.model import write_json
 from sim import Recording
 
 FILE = Path("scores.json")  # nobody else reads it

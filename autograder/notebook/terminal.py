@@ -18,8 +18,8 @@ from pathlib import Path
 
 from autograder.diagnosis import OK
 from autograder.exceptions import UsageError
-from autograder.exercise_stubs import explain
 from autograder.ros.discovery import announcing_often
+from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
 NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."

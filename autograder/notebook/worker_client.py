@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from autograder.exceptions import GraderError, UsageError
-from autograder.fingerprint import places
-from autograder.sandbox import best_tier
-from autograder.sandbox.cell import run_in_cell
-from autograder.sandbox.limits import NOTEBOOK_CELL
-from autograder.sandbox.spec import View
+from autograder.run.sandbox import best_tier
+from autograder.run.sandbox.cell import run_in_cell
+from autograder.run.sandbox.limits import NOTEBOOK_CELL
+from autograder.run.sandbox.spec import View
+from autograder.suite.fingerprint import places
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"

@@ -17,7 +17,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from IPython.display import display
 
 from autograder.notebook.notices import Notice
-from autograder.result import write_json
+from autograder.result.model import write_json
 
 STUB = "YOUR CODE HERE"  # what a released cell holds where an answer belongs
 RECORD = ".writefile.json"  # in a workspace: by path, a digest of what a cell wrote last

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from autograder.building.build import build
-from autograder.packages import find_packages
 from autograder.probes.installed import Installed, look
-from autograder.reading import reading
-from autograder.workspace import Workspace
+from autograder.run.workspace import Workspace
+from autograder.submission.packages import find_packages
+from autograder.submission.reading import reading
 
 
 def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> Installed:

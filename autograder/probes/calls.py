@@ -19,17 +19,17 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from autograder.checks import CheckFailed
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.lockstep.failures import diagnose_crash, diagnose_ending
-from autograder.lockstep.protocol import Crash
-from autograder.lockstep.tracebacks import own_frames
-from autograder.reading import beyond_bounds, reading
-from autograder.sandbox import Mount, Process
-from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import CALLS
-from autograder.workspace import Workspace
+from autograder.run.lockstep.failures import diagnose_crash, diagnose_ending
+from autograder.run.lockstep.protocol import Crash
+from autograder.run.lockstep.tracebacks import own_frames
+from autograder.run.sandbox import Mount, Process
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import CALLS
+from autograder.run.workspace import Workspace
+from autograder.submission.reading import beyond_bounds, reading
+from autograder.suite import CheckFailed
 
 REFERENCE = "$made"  # as in call_host.py, which runs alone in the sandbox
 HOST = Path(__file__).with_name("call_host.py")

@@ -12,15 +12,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.building.colcon import HOST, colcon_command
-from autograder.checks import expect
 from autograder.probes.files import read_below
 from autograder.probes.installed import Installed
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, parse_claims
 from autograder.probes.student_test_runs import sandboxed
-from autograder.sandbox import Ending, Mount
-from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import COLCON_TEST
-from autograder.workspace import Workspace
+from autograder.run.sandbox import Ending, Mount
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import COLCON_TEST
+from autograder.run.workspace import Workspace
+from autograder.suite import expect
 
 TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
 

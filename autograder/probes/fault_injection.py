@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from autograder.checks import expect
 from autograder.probes import student_test_runs
 from autograder.probes.student_test_reports import ClaimedOutcome, Source, TestRun
 from autograder.probes.versions import Version
-from autograder.workspace import Workspace
+from autograder.run.workspace import Workspace
+from autograder.suite import expect
 
 # What flake8 objects to, and pep257: a name that nothing uses, and a docstring that is no sentence.
 UNTIDY = '"""no sentence"""\n\nimport os\n\n\n'

@@ -14,7 +14,7 @@ from email.parser import HeaderParser
 from pathlib import Path
 
 from autograder.probes.files import plain_files, read_below, read_plain
-from autograder.reading import reading
+from autograder.submission.reading import reading
 
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024

@@ -11,16 +11,16 @@ from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
 
-from autograder.checks import CheckFailed, expect
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness, Stop, sandbox, start
-from autograder.lockstep.tracebacks import with_source_paths
 from autograder.probes.launch_arguments import Argument, parse_arguments
 from autograder.probes.parameters import Value, same
 from autograder.probes.rclpy_races import lost_a_race
-from autograder.reading import reading
-from autograder.workspace import Workspace
+from autograder.run.lockstep.tracebacks import with_source_paths
+from autograder.run.workspace import Workspace
+from autograder.submission.reading import reading
+from autograder.suite import CheckFailed, expect
 
 START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
 QUIET_SECONDS = 1.5  # real time without a change, once each program that runs has its node

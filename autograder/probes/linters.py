@@ -12,12 +12,12 @@ import re
 from collections.abc import Collection
 from dataclasses import replace
 
-from autograder.checks import CheckFailed
 from autograder.probes import student_test_runs
 from autograder.probes.fault_injection import UNTIDY, expect_failures
 from autograder.probes.student_test_reports import Source, TestRun
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
-from autograder.workspace import Workspace
+from autograder.run.workspace import Workspace
+from autograder.suite import CheckFailed
 
 BELOW = "package"  # the folder of a package's files
 # The comments by which flake8, pycodestyle and pydocstyle pass over a line or a file; as long as what replaces them.

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from catkin_pkg.package import InvalidPackage, parse_package_string  # type: ignore[import-untyped]
 
-from autograder.checks import CheckFailed
-from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
-from autograder.packages import MANIFEST, MAX_MANIFEST
 from autograder.probes.files import read_plain
+from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
+from autograder.submission.packages import MANIFEST, MAX_MANIFEST
+from autograder.suite import CheckFailed
 
 PLACEHOLDER = "TODO"
 JAZZY = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}  # what a condition may ask

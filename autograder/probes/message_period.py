@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from autograder.harness import ReceivedMessage
-from autograder.time_record import LOCKSTEP, REAL
+from autograder.run.time_record import LOCKSTEP, REAL
 
 TOLERANCE = 0.08  # of the period: an error of a tenth is seen
 JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s by which a pause may be wrong besides

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from email.utils import parseaddr
 from pathlib import Path
 
-from autograder.checks import expect
 from autograder.harness import Workspace
-from autograder.packages import MANIFEST
 from autograder.probes.colcon_test import runs_pytest
 from autograder.probes.installed import INDEX, Installed
 from autograder.probes.manifest import Manifest
+from autograder.submission.packages import MANIFEST
+from autograder.suite import expect
 
 GENERATORS, RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
 GROUP_OF_INTERFACES = "rosidl_interface_packages"

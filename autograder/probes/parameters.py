@@ -21,12 +21,12 @@ from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 
-from autograder.checks import CheckFailed
 from autograder.harness import Harness
 from autograder.harness.parameter_values import value_of
 from autograder.probes import student_yaml
 from autograder.probes.files import read_plain
-from autograder.reading import beyond_bounds, reading, reason
+from autograder.submission.reading import beyond_bounds, reading, reason
+from autograder.suite import CheckFailed
 
 Value = bool | int | float | str | list[object] | None
 

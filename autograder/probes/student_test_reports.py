@@ -19,7 +19,7 @@ from typing import ClassVar
 
 from autograder.probes.files import parse_python
 from autograder.probes.versions import Version
-from autograder.sandbox import Ending
+from autograder.run.sandbox import Ending
 
 MAX_BYTES = 1024 * 1024
 MAX_MESSAGE = 300

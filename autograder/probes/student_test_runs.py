@@ -31,16 +31,16 @@ from tempfile import TemporaryDirectory
 import autograder.ros
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.intake import read_packages
 from autograder.probes.rtps_sniffer import RtpsSniffer
 from autograder.probes.student_test_reports import MAX_BYTES, Claims, Report, Source, TestRun, parse_claims
 from autograder.probes.versions import write_version
-from autograder.reading import hold, reading
 from autograder.ros.domains import Domain
-from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
-from autograder.sandbox.launcher import current_tier, launch
-from autograder.sandbox.limits import TEST_RUN
-from autograder.workspace import Workspace
+from autograder.run.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier
+from autograder.run.sandbox.launcher import current_tier, launch
+from autograder.run.sandbox.limits import TEST_RUN
+from autograder.run.workspace import Workspace
+from autograder.submission.intake import read_packages
+from autograder.submission.reading import hold, reading
 
 HOST = Path(__file__).with_name("pytest_host.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"

@@ -6,9 +6,9 @@ import os
 import tempfile
 from pathlib import Path
 
-from autograder.checks import suites
-from autograder.grading import grade_submission
-from autograder.proof.mutants import write_reference
+from autograder.author.verification.mutants import write_reference
+from autograder.grade import grade_submission
+from autograder.suite import suites
 
 ASSIGNMENT = "08_capstone"
 

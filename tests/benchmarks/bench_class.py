@@ -6,10 +6,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from autograder.checks import suites
-from autograder.grading import DEFAULT_SEED
-from autograder.grading.batch import Entry, grade_all
-from autograder.proof.mutants import write_reference
+from autograder.author.verification.mutants import write_reference
+from autograder.grade import DEFAULT_SEED
+from autograder.grade.batch import Entry, grade_all
+from autograder.suite import suites
 
 CLASSES = {"02_nodes": 6, "08_capstone": 4}  # an even number each, for two workers
 ONE_AND_TWO = "02_nodes"

@@ -12,16 +12,16 @@ from pathlib import Path
 
 from distributed import Client
 
-from autograder.checks import suites
-from autograder.cluster.connection import LOCAL, connected
-from autograder.cluster.dispatch import grade_on
-from autograder.cluster.parcel import Answer, Parcel
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading.batch import GradingRequest
-from autograder.grading.pipeline import refused
-from autograder.intake import detect_layout
-from autograder.result import Result
-from autograder.sandbox import Tier
+from autograder.grade.batch import GradingRequest
+from autograder.grade.cluster.connection import LOCAL, connected
+from autograder.grade.cluster.dispatch import grade_on
+from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.pipeline import refused
+from autograder.result.model import Result
+from autograder.run.sandbox import Tier
+from autograder.submission.intake import detect_layout
+from autograder.suite import suites
 
 ASSIGNMENT = "02_nodes"
 SUBMISSIONS, THREADS = 400, 16

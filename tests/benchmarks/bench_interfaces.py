@@ -12,9 +12,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from autograder.interfaces.definitions import KINDS
-from autograder.interfaces.loading import Texts, classes
-from autograder.proof.mutants import write_reference
+from autograder.author.verification.mutants import write_reference
+from autograder.building.interfaces.definitions import KINDS
+from autograder.building.interfaces.loading import Texts, classes
 from autograder.ros import activate
 
 PACKAGE = "my_robot_interfaces"

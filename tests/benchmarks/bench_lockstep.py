@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from autograder.layout import ROOT
-from autograder.sandbox import Tier
-from autograder.sandbox.cell import run_in_cell
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import run_in_cell
 
 STEPS = 2000
 CHAIN_STEPS = 500
@@ -71,10 +71,10 @@ def measure(scratch: Path) -> dict[str, list[float]]:
 
 
 def _one(workspace: Any) -> list[float]:
+    from autograder.author.verification.mutants import write_reference
     from autograder.building.build import build
     from autograder.checks.ch02_nodes.support.robot import Robot
     from autograder.checks.ch02_nodes.support.scans import scan
-    from autograder.proof.mutants import write_reference
 
     write_reference(("my_robot_package",), workspace.root)
     build(workspace, ("my_robot_package",))

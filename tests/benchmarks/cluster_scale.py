@@ -17,8 +17,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from distributed import LocalCluster
 
-from autograder.cluster.connection import PRELOAD, connected
-from autograder.export import load
+from autograder.grade.cluster.connection import PRELOAD, connected
+from autograder.report.export import load
 from tests.benchmarks.bench_cluster import seconds
 
 MEASURED = Path(__file__).parents[2] / "docs" / "scale.json"

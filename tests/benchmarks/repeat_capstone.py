@@ -22,11 +22,11 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from autograder.checks import suites
-from autograder.grading import grade_submission
+from autograder.author.verification.mutants import write_reference
+from autograder.grade import grade_submission
 from autograder.layout import ROOT
-from autograder.proof.mutants import write_reference
-from autograder.result import Outcome
+from autograder.result.model import Outcome
+from autograder.suite import suites
 
 ASSIGNMENT = "08_capstone"
 SEED = 2026

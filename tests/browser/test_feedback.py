@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from autograder import feedback
-from autograder.checks import Check, Outcome
-from autograder.gallery import Gallery
-from autograder.result import Artifact, CheckResult, Result
+from autograder.report import feedback
+from autograder.result.artifacts import Gallery
+from autograder.result.model import Artifact, CheckResult, Result
+from autograder.suite import Check, Outcome
 from tests.browser.wall_run import keep_run
 
 pytestmark = pytest.mark.browser

@@ -17,11 +17,11 @@ from nbformat import NotebookNode
 from playwright.sync_api import Browser, expect
 
 from autograder import layout
-from autograder.checks import suites
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter
-from autograder.export import load
-from autograder.proof.mutants import mutants, write_mutant, write_reference
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
+from autograder.report.export import load
+from autograder.suite import suites
 from tests.browser.jupyter import PATIENCE, serving
 from tests.e2e.classroom import Classroom
 

@@ -12,11 +12,11 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
-from autograder import feedback
-from autograder.course.sync import chapters
-from autograder.gallery import Gallery
+from autograder.author.course.sync import chapters
 from autograder.layout import ROOT
-from autograder.result import Artifact, Result
+from autograder.report import feedback
+from autograder.result.artifacts import Gallery
+from autograder.result.model import Artifact, Result
 from tests.browser.wall_run import keep_run
 
 pytestmark = pytest.mark.browser

@@ -19,9 +19,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page
 
-from autograder.course.cells import is_solution
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter, chapters
+from autograder.author.course.cells import is_solution
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter, chapters
 from tests.browser.jupyter import Lab, lab
 
 __all__ = ["lab"]

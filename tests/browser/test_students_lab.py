@@ -10,8 +10,8 @@ import pytest
 from nbformat.v4 import new_code_cell
 from playwright.sync_api import Page, expect
 
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import chapters
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import chapters
 from autograder.notebook.writefile import REPLACED
 from tests.browser.jupyter import PATIENCE, Lab, lab
 

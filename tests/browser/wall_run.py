@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from autograder.checks import temporal
-from autograder.gallery import Gallery
+from autograder.result.artifacts import Gallery
+from autograder.suite import temporal
 from sim import Command, RobotSpec, Simulation, World, box, run
 
 ROOM = World.from_segments(box(4.0, 3.0), name="a room")

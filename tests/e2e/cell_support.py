@@ -25,9 +25,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
 
-from autograder.sandbox import Process, Tier, cell
-from autograder.sandbox.limits import PROOF_CELL
-from autograder.sandbox.spec import View
+from autograder.run.sandbox import Process, Tier, cell
+from autograder.run.sandbox.limits import PROOF_CELL
+from autograder.run.sandbox.spec import View
 
 ROOT = Path(__file__).resolve().parents[2]
 _MARK = "answer: "
@@ -74,7 +74,7 @@ def is_forked(process: Process) -> bool:
         words = Path(f"/proc/{parent}/cmdline").read_bytes()
     except OSError:
         return True
-    return b"autograder.prefork" in words
+    return b"autograder.run.fork_server" in words
 
 
 # A cell's process is started in /, from where no path leads to the tests.
@@ -114,8 +114,8 @@ _shared_cell = lru_cache(maxsize=1)(_SharedCell)
 
 def _serve(scratch: Path, requests: TextIO, replies: TextIO) -> None:
     """Run pieces, each in a child of its own, until there are no more."""
-    from autograder.prefork.profiles import PROFILES
-    from autograder.sandbox.launcher import warm_up
+    from autograder.run.fork_server.profiles import PROFILES
+    from autograder.run.sandbox.launcher import warm_up
 
     importlib.import_module("autograder.harness")
     for profile in PROFILES:  # a server that a child warmed up would end with it

@@ -15,10 +15,10 @@ from nbformat.v4 import new_code_cell
 from nbgrader.api import Gradebook
 
 from autograder import layout
-from autograder.checks import suites
-from autograder.course.cells import is_solution
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter
+from autograder.author.course.cells import is_solution
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter
+from autograder.suite import suites
 
 Grades = dict[str, tuple[float, float, bool]]
 

@@ -15,10 +15,10 @@ import pytest
 from autograder.building.build import build
 from autograder.harness import Workspace
 from autograder.layout import SOLUTIONS
-from autograder.packages import find_packages
 from autograder.ros import environment
-from autograder.sandbox import Mount, Sandbox
-from autograder.sandbox.launcher import launch
+from autograder.run.sandbox import Mount, Sandbox
+from autograder.run.sandbox.launcher import launch
+from autograder.submission.packages import find_packages
 from tests.e2e.cell_support import in_cell, is_forked
 
 

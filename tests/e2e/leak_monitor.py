@@ -20,14 +20,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from autograder.grading.batch import Entry, GradingRequest, OnResult, grade_all
-from autograder.grading.job import Scope
-from autograder.grading.parallel import map_parallel
-from autograder.grading.pipeline import DEFAULT_SEED, grade_submission
-from autograder.result import Result
-from autograder.sandbox import Limits, cgroup
-from autograder.sandbox.limits import GIB, MIB
-from autograder.sandbox.procfs import measure, name
+from autograder.grade.batch import Entry, GradingRequest, OnResult, grade_all
+from autograder.grade.job import Scope
+from autograder.grade.parallel import map_parallel
+from autograder.grade.pipeline import DEFAULT_SEED, grade_submission
+from autograder.result.model import Result
+from autograder.run.sandbox import Limits, cgroup
+from autograder.run.sandbox.limits import GIB, MIB
+from autograder.run.sandbox.procfs import measure, name
 
 ROOT = Path(__file__).resolve().parents[2]
 PR_SET_CHILD_SUBREAPER = 36  # prctl(2)

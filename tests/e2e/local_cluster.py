@@ -62,7 +62,7 @@ class LocalCluster:
         """Start the scheduler or a worker on its machine."""
         certificate, key = self.certificates / "cluster.pem", self.certificates / "cluster.key"
         tls = ["--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key]
-        common = ["--preload", "autograder.cluster", "--no-dashboard", *tls]
+        common = ["--preload", "autograder.grade.cluster", "--no-dashboard", *tls]
         if machine == SCHEDULER:
             host, port = self.address.removeprefix("tls://").split(":")
             command = [DASK, "scheduler", "--protocol", "tls", "--host", host, "--port", port, *common]

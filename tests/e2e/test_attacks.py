@@ -13,19 +13,20 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder import feedback, layout
-from autograder.checks import suites
+from autograder import layout
+from autograder.author.verification.cases import attacks
+from autograder.author.verification.claims import Attack, hidden_lines
+from autograder.author.verification.leaks import found_in, texts_of
+from autograder.author.verification.payloads import CANARY, LOOT
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, all_checks
-from autograder.grading import grade_submission
-from autograder.grading.job import Scope
-from autograder.grading.store import NOTEBOOK
-from autograder.grading.submitted_notebook import grade_id
-from autograder.proof.cases import attacks
-from autograder.proof.claims import Attack, hidden_lines
-from autograder.proof.leaks import found_in, texts_of
-from autograder.proof.payloads import CANARY, LOOT
-from autograder.result import Result
-from autograder.sandbox import cgroup
+from autograder.grade import grade_submission
+from autograder.grade.job import Scope
+from autograder.grade.store import NOTEBOOK
+from autograder.grade.submitted_notebook import grade_id
+from autograder.report import feedback
+from autograder.result.model import Result
+from autograder.run.sandbox import cgroup
+from autograder.suite import suites
 
 DRIVES = frozenset({"room", "pillars", "corridor"})
 STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends

@@ -17,7 +17,7 @@ def executed(scratch: Path, cells: list[str]) -> dict[str, Any]:
     """Run cells in the sandboxed kernel; return what each printed, and which processes are left of it."""
     from nbformat.v4 import new_code_cell, new_notebook
 
-    from autograder.grading import run_notebook
+    from autograder.grade import run_notebook
     from autograder.harness import Workspace
     from autograder.ros import activate
 

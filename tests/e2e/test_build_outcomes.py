@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from autograder.author.course.forms import CODE_STUB
 from autograder.building import colcon
 from autograder.building.build import build_workspace
-from autograder.course.forms import CODE_STUB
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
 from autograder.ros import activate
-from autograder.sandbox.limits import BUILD
-from autograder.workspace import Workspace
+from autograder.run.sandbox.limits import BUILD
+from autograder.run.workspace import Workspace
 
 MANIFEST = """<package format="3">
   <name>{name}</name><version>0.1.0</version><description>A package</description>

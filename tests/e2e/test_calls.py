@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes.calls import StepResult, call, calls, look, made, same, value
 from autograder.ros import environment
+from autograder.suite import CheckFailed
 
 MODULE = """
 import sys

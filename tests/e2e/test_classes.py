@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import suites
-from autograder.course.sync import Chapter
-from autograder.export import load
+from autograder.author.course.sync import Chapter
+from autograder.author.verification.cases import cases
+from autograder.author.verification.claims import CaseKind, verify_mutant, verify_zero
+from autograder.author.verification.mutants import Mutant, mutants, write_mutant
 from autograder.layout import chapter
-from autograder.proof.cases import cases
-from autograder.proof.claims import CaseKind, verify_mutant, verify_zero
-from autograder.proof.mutants import Mutant, mutants, write_mutant
-from autograder.result import Result
+from autograder.report.export import load
+from autograder.result.model import Result
+from autograder.suite import suites
 from tests.e2e.classroom import Classroom
 
 pytestmark = [

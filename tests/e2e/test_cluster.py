@@ -15,20 +15,20 @@ from typing import Any
 
 import pytest
 
-from autograder.checks import suites
-from autograder.cluster import dispatch
-from autograder.cluster.connection import LOCAL, connected
-from autograder.cluster.dispatch import grade_on
-from autograder.cluster.exceptions import ClusterError
-from autograder.cluster.machine import resource
-from autograder.cluster.parcel import Answer, Parcel
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading.batch import GradingRequest
-from autograder.grading.pipeline import refused
-from autograder.intake import detect_layout
-from autograder.proof.mutants import mutants, write_mutant, write_reference
-from autograder.result import Result, Status
-from autograder.sandbox import Tier
+from autograder.grade.batch import GradingRequest
+from autograder.grade.cluster import dispatch
+from autograder.grade.cluster.connection import LOCAL, connected
+from autograder.grade.cluster.dispatch import grade_on
+from autograder.grade.cluster.exceptions import ClusterError
+from autograder.grade.cluster.machine import resource
+from autograder.grade.cluster.parcel import Answer, Parcel
+from autograder.grade.pipeline import refused
+from autograder.result.model import Result, Status
+from autograder.run.sandbox import Tier
+from autograder.submission.intake import detect_layout
+from autograder.suite import suites
 from tests.e2e.local_cluster import CLIENT, SCHEDULER, WORKERS, LocalCluster, local_cluster
 from tests.e2e.results import without_times
 

@@ -16,9 +16,9 @@ from autograder import layout
 from autograder.building.colcon import HOST
 from autograder.harness import Workspace
 from autograder.ros import environment
-from autograder.sandbox import Mount, Sandbox
-from autograder.sandbox.launcher import launch
-from autograder.sandbox.limits import BUILD
+from autograder.run.sandbox import Mount, Sandbox
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import BUILD
 from tests.e2e.cell_support import in_cell, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")

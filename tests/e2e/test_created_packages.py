@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-from autograder.checks import suites
-from autograder.proof.cases import Case
-from autograder.proof.claims import CaseKind, verify_full_marks
-from autograder.proof.mutants import write_reference
-from autograder.proof.prove import prove
-from autograder.proof.worker_pool import WorkerPool
-from autograder.sandbox import Tier
+from autograder.author.verification.cases import Case
+from autograder.author.verification.claims import CaseKind, verify_full_marks
+from autograder.author.verification.mutants import write_reference
+from autograder.author.verification.prove import prove
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 from tests.e2e.created_packages import RECORD, create, facts, fill_in, written
 
 # The packages of a chapter that its student could make by the tool.

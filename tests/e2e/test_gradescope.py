@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner
 
 from autograder import layout
-from autograder.checks import suites
+from autograder.author.verification.mutants import write_reference
 from autograder.cli import group
-from autograder.proof.mutants import write_reference
+from autograder.suite import suites
 
 ASSIGNMENT = "01_package_structure"
 

@@ -16,14 +16,14 @@ from click.testing import CliRunner
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder import cli
-from autograder.checks import Outcome, suites
+from autograder.author.verification.mutants import write_reference
 from autograder.diagnosis import Kind
 from autograder.exceptions import IsolationError, UsageError
-from autograder.grading import grade_submission, own_cell
-from autograder.grading.batch import Entry, grade_all
-from autograder.proof.mutants import write_reference
-from autograder.result import Result, Status, write_json
-from autograder.sandbox import Tier, tiers
+from autograder.grade import grade_submission, own_cell
+from autograder.grade.batch import Entry, grade_all
+from autograder.result.model import Result, Status, write_json
+from autograder.run.sandbox import Tier, tiers
+from autograder.suite import Outcome, suites
 from tests.e2e.results import without_times
 
 ASSIGNMENT = "02_nodes"
@@ -216,9 +216,9 @@ def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     return put
 
 
-RUN = "\nfrom autograder.grading.worker import main\nmain()"
+RUN = "\nfrom autograder.grade.worker import main\nmain()"
 BROKEN_SUITE = """
-import autograder.grading.plugin as plugin
+import autograder.grade.plugin as plugin
 def run(files, plugin):
     plugin.failures.append("def test_secret(): CANARY")
     return 3

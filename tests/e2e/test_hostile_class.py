@@ -13,14 +13,14 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder.checks import suites
+from autograder.author.verification.cases import cases
+from autograder.author.verification.claims import Attack, CaseKind, first_sentence
 from autograder.checks.ch02_nodes.attacks import ASSIGNMENT, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
-from autograder.grading.batch import Entry
-from autograder.grading.store import NOTEBOOK, RESULT
-from autograder.proof.cases import cases
-from autograder.proof.claims import Attack, CaseKind, first_sentence
-from autograder.result import Result, from_json
-from autograder.sandbox import cgroup
+from autograder.grade.batch import Entry
+from autograder.grade.store import NOTEBOOK, RESULT
+from autograder.result.model import Result, from_json
+from autograder.run.sandbox import cgroup
+from autograder.suite import suites
 from tests.e2e.leak_monitor import grade_monitored
 from tests.e2e.results import without_times
 

@@ -12,7 +12,7 @@ from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.ros import activate
-from autograder.sandbox.limits import MIB
+from autograder.run.sandbox.limits import MIB
 
 MANIFEST = """<package format="3"><name>{name}</name><version>0.0.1</version><description>x</description>
 <maintainer email="a@b.c">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>

@@ -26,11 +26,11 @@ LINK = "target_sources(${PROJECT_NAME}__rosidl_generator_c PRIVATE payload.c)\n"
 def talk(scratch: Path) -> dict[str, Any]:
     """Build messages with code in their library, and talk to a node that uses them; return what ran where."""
     from autograder import layout
+    from autograder.author.verification.mutants import write_reference
     from autograder.building.build import build
     from autograder.checks.ch03_interfaces.support.reporter import Reporter
     from autograder.checks.ch03_interfaces.support.types import load_types
     from autograder.harness import Workspace
-    from autograder.proof.mutants import write_reference
     from autograder.ros import activate
 
     (scratch / "home").mkdir()

@@ -8,8 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from autograder.interfaces import Cache
-from autograder.interfaces.prefix import build
+from autograder.building.interfaces import Cache
+from autograder.building.interfaces.prefix import build
 from autograder.ros.environment import site_packages
 from tests.e2e.trigraph import trigraph_text
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from autograder.course.forms import CODE_STUB
+from autograder.author.course.forms import CODE_STUB
+from autograder.building.interfaces import load_from
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.interfaces import load_from
 from tests.e2e.cell_support import in_cell
 
 PACKAGE, OUTER = "my_robot_interfaces", "fleet_interfaces"
@@ -33,8 +33,8 @@ rclpy.spin(node)
 
 
 def _workspace(scratch: Path) -> Any:
+    from autograder.author.verification.mutants import write_reference
     from autograder.harness import Workspace
-    from autograder.proof.mutants import write_reference
     from autograder.ros import activate
 
     (scratch / "home").mkdir()
@@ -51,7 +51,7 @@ def talk(scratch: Path) -> dict[str, Any]:
     import rclpy
 
     from autograder.building.build import build as colcon
-    from autograder.sandbox.launcher import launch
+    from autograder.run.sandbox.launcher import launch
 
     workspace = _workspace(scratch)
     colcon(workspace, (PACKAGE,))

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import suites
-from autograder.export import load
-from autograder.proof.mutants import mutants, write_mutant, write_reference
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
+from autograder.report.export import load
+from autograder.suite import suites
 
 NAMES = ("Zoë Müller-Żak", "Jane Doe", "José  Ñandú", "王 小明", "Søren O'Neill, Jr.", "Ольга Ким")
 HEADINGS = ("Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade", "Grade can be changed")

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from autograder.sandbox import Limits, Process
+from autograder.run.sandbox import Limits, Process
 from tests.e2e import lockstep_programs as programs
 from tests.e2e.cell_support import in_cell
 
@@ -23,7 +23,7 @@ INTERFACES = {
 @lru_cache(maxsize=1)
 def interfaces() -> Path:
     """Build the message package of these tests."""
-    from autograder.interfaces.prefix import build
+    from autograder.building.interfaces.prefix import build
 
     return build("lockstep_interfaces", INTERFACES)
 
@@ -118,7 +118,7 @@ def test_a_program_gets_its_arguments_in_lockstep_and_in_real_time() -> None:
 
 
 def goals(scratch: Path, program: str) -> Any:
-    from autograder.interfaces.loading import classes
+    from autograder.building.interfaces.loading import classes
 
     count = classes((("lockstep_interfaces", tuple(INTERFACES.items())),)).action.Count
     workspace = write_workspace(scratch, node=program)
@@ -324,7 +324,7 @@ def test_programs_exchange_messages_of_a_type_that_the_grader_does_not_know() ->
 
 
 def forged(scratch: Path) -> Any:
-    from autograder.interfaces.loading import classes
+    from autograder.building.interfaces.loading import classes
 
     word = classes((("lockstep_interfaces", tuple(INTERFACES.items())),)).msg.Word
     workspace = write_workspace(scratch, talker=programs.FORGED_WORDS)

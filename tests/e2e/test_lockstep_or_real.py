@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from autograder.checks import suites
-from autograder.grading.job import Scope
-from autograder.grading.pipeline import grade_submission
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
+from autograder.grade.job import Scope
+from autograder.grade.pipeline import grade_submission
 from autograder.harness.auto import TIME_VARIABLE
-from autograder.proof.mutants import mutants, write_mutant, write_reference
-from autograder.result import Result
+from autograder.result.model import Result
+from autograder.suite import suites
 from tests.e2e import lockstep_programs as programs
 from tests.e2e.cell_support import in_cell
 

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import suites
-from autograder.proof.cases import Case, cases, rewritten_cases
-from autograder.proof.mutation_run import prepared_run
-from autograder.proof.population import population
-from autograder.proof.prove import prove
-from autograder.proof.survivors import reasons
-from autograder.proof.worker_pool import WorkerPool
-from autograder.sandbox import Tier
+from autograder.author.verification.cases import Case, cases, rewritten_cases
+from autograder.author.verification.mutation_run import prepared_run
+from autograder.author.verification.population import population
+from autograder.author.verification.prove import prove
+from autograder.author.verification.survivors import reasons
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 
 PROOF = {
     f"{case.assignment}-{case.kind.value}-{case.name}": case

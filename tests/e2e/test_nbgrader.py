@@ -13,9 +13,9 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
 from autograder import layout
-from autograder.checks import Outcome, suites
-from autograder.export import load
-from autograder.result import Result
+from autograder.report.export import load
+from autograder.result.model import Result
+from autograder.suite import Outcome, suites
 from tests.e2e.classroom import Classroom, fill_in
 
 pytestmark = [

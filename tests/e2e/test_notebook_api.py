@@ -11,15 +11,15 @@ import pytest
 from nbformat.v4 import new_code_cell
 from nbgrader.validator import Validator
 
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import chapters
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import chapters
+from autograder.author.verification.mutants import mutants, write_mutant, write_reference
 from autograder.layout import SOLUTIONS
 from autograder.notebook import check, drive, ros
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.driving import FAULTS, DriveReport
 from autograder.notebook.notices import Notice
 from autograder.notebook.terminal import shell
-from autograder.proof.mutants import mutants, write_mutant, write_reference
 from sim import Pose, RobotSpec, Simulation, World
 from sim.codec import to_json
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from autograder.author.verification.mutants import write_reference
 from autograder.exceptions import UsageError
 from autograder.notebook import drive, side_by_side
 from autograder.notebook.driving import DriveReport
 from autograder.notebook.notices import Notice
-from autograder.proof.mutants import write_reference
 
 PROGRAM = ("my_robot_package", "configured_node")
 WALL = 3.0  # m: the east wall of the empty room, straight ahead of the start

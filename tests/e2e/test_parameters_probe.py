@@ -41,11 +41,11 @@ rclpy.spin(node)
 
 
 def asked(scratch: Path) -> Any:
-    from autograder.checks import CheckFailed
     from autograder.exceptions import StudentError
     from autograder.harness import RealTimeHarness, SteppedHarness, Workspace
     from autograder.probes.parameters import NodeParameters
     from autograder.ros import activate
+    from autograder.suite import CheckFailed
 
     folder = scratch / "ws" / "install" / "pkg" / "lib" / "pkg"
     folder.mkdir(parents=True)

@@ -10,8 +10,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from autograder.interfaces import Cache
-from autograder.interfaces.prefix import build
+from autograder.building.interfaces import Cache
+from autograder.building.interfaces.prefix import build
 from autograder.ros.environment import site_packages
 from tests.e2e.cell_support import in_cell
 
@@ -89,8 +89,8 @@ def compare(scratch: Path) -> dict[str, Any]:
     from rclpy.serialization import deserialize_message, serialize_message
     from rosidl_parser.definition import NamespacedType
 
-    from autograder.interfaces import messages
-    from autograder.interfaces.loading import classes
+    from autograder.building.interfaces import messages
+    from autograder.building.interfaces.loading import classes
 
     prefix = build(PACKAGE, TEXTS, cache=Cache(scratch / "cache"))
     sys.path.insert(0, str(site_packages(prefix)))

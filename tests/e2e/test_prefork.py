@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
-from autograder.sandbox import Limits, Mount, Process, Sandbox, launcher
-from autograder.sandbox.launcher import launch, warm_up
-from autograder.sandbox.spec import INTERPRETER
+from autograder.run.sandbox import Limits, Mount, Process, Sandbox, launcher
+from autograder.run.sandbox.launcher import launch, warm_up
+from autograder.run.sandbox.spec import INTERPRETER
 from tests.e2e.cell_support import in_cell, is_forked
 
 pytestmark = pytest.mark.usefixtures("forks")

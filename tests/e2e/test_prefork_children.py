@@ -14,8 +14,8 @@ import pytest
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.ros import environment
-from autograder.sandbox import Sandbox
-from autograder.sandbox.launcher import launch
+from autograder.run.sandbox import Sandbox
+from autograder.run.sandbox.launcher import launch
 from tests.e2e.cell_support import in_cell
 from tests.e2e.test_prefork import ENDS, LONG, REPORT, in_any_order, workplace
 

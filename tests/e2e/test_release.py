@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from autograder import layout
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import chapters
 from autograder.cli import group
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import chapters
 
 
 @pytest.fixture(scope="module")

@@ -21,10 +21,10 @@ import pytest
 
 from autograder.doctor import security
 from autograder.doctor.escapes import CANARY, ESCAPES
-from autograder.prefork import seccomp
-from autograder.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup, procfs
-from autograder.sandbox.launcher import launch, warm_up
-from autograder.sandbox.limits import GIB, MIB
+from autograder.run.fork_server import seccomp
+from autograder.run.sandbox import Ending, Limits, Mount, Process, Sandbox, Tier, cgroup, procfs
+from autograder.run.sandbox.launcher import launch, warm_up
+from autograder.run.sandbox.limits import GIB, MIB
 from tests.e2e.cell_support import ROOT, in_cell, is_forked, started_in_cell
 
 SMALL = {"wall_seconds": 60.0, "threads": 40, "memory": 200 * MIB, "output": 50_000, "scratch": 4 * MIB}

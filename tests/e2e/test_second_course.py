@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from autograder import layout
-from autograder.sandbox import Tier
+from autograder.run.sandbox import Tier
 
 SECOND = layout.ROOT / "tests" / "second_course"
 RIGHT = {"01_greeting": "greeting", "02_beat": "beat"}  # each assignment with the package that answers it
@@ -117,8 +117,8 @@ def test_a_sandbox_hides_checks_reference_and_notebooks_of_a_second_course(cours
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from autograder.sandbox import Mount, Sandbox\n"
-        "from autograder.sandbox.launcher import launch\n"
+        "from autograder.run.sandbox import Mount, Sandbox\n"
+        "from autograder.run.sandbox.launcher import launch\n"
         "course = Path(sys.argv[1])\n"
         "shown = Sandbox(course.parent, mounts=(Mount(course.parent),))\n"
         "with launch(['find', str(course), '-type', 'f'], shown) as found:\n"

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import suites
-from autograder.proof.cases import Case, cases
-from autograder.proof.claims import CaseKind
-from autograder.proof.prove import prove
-from autograder.proof.worker_pool import WorkerPool
-from autograder.sandbox import Tier
+from autograder.author.verification.cases import Case, cases
+from autograder.author.verification.claims import CaseKind
+from autograder.author.verification.prove import prove
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.run.sandbox import Tier
+from autograder.suite import suites
 
 EACH_TIME = (1, 77, 424242)
 AT_NIGHT = tuple(range(1000, 1047))

@@ -18,9 +18,9 @@ from std_msgs.msg import String
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.layout import SOLUTIONS
-from autograder.packages import find_packages
 from autograder.probes import launch_probe
 from autograder.ros import environment
+from autograder.submission.packages import find_packages
 from tests.e2e.conftest import Terminal
 
 PACKAGES, _ = find_packages(SOLUTIONS)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autograder.checks import Outcome
+from autograder.author.verification.mutants import write_reference
 from autograder.diagnosis import Kind
-from autograder.grading import grade_submission, own_cell
-from autograder.grading.job import Job
-from autograder.proof.mutants import write_reference
-from autograder.result import Status
-from autograder.sandbox.cell import CellReport
+from autograder.grade import grade_submission, own_cell
+from autograder.grade.job import Job
+from autograder.result.model import Status
+from autograder.run.sandbox.cell import CellReport
+from autograder.suite import Outcome
 
 SLOW = "import rclpy.publisher, time\n_publish = rclpy.publisher.Publisher.publish\n" + (
     "rclpy.publisher.Publisher.publish = lambda self, message: (time.sleep(2.5), _publish(self, message))[1]\n"

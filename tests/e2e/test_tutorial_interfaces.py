@@ -11,7 +11,7 @@ import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 
-from autograder.interfaces import tutorials
+from autograder.building.interfaces import tutorials
 from autograder.ros import activate
 
 # REP 2011's hash of the type; `ros2 service info --verbose` of a Jazzy shows it.
@@ -88,4 +88,4 @@ def test_without_a_compiler_the_set_up_says_how_to_install_interface_packages_la
     assert tutorials.main() == 0
     told = capsys.readouterr().out
     assert "g++ is missing" in told
-    assert "-m autograder.interfaces.tutorials" in told
+    assert "-m autograder.building.interfaces.tutorials" in told

@@ -12,11 +12,11 @@ import pytest
 
 from autograder import layout
 from autograder.building import keeper
-from autograder.grading import grade_submission, own_cell
-from autograder.result import Result, Status
-from autograder.sandbox import Tier
-from autograder.sandbox.limits import SOURCES
-from autograder.sandbox.trees import read_tree
+from autograder.grade import grade_submission, own_cell
+from autograder.result.model import Result, Status
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.limits import SOURCES
+from autograder.run.sandbox.trees import read_tree
 
 ASSIGNMENT = "02_nodes"
 SECRET = "a secret of bob's"
@@ -24,7 +24,7 @@ BEGIN = """
 import ctypes, json, os, sys
 from multiprocessing.connection import Connection
 from pathlib import Path
-from autograder.grading.job import Job
+from autograder.grade.job import Job
 job, line = Job.from_json(sys.argv[1]), Connection(int(sys.argv[2]))
 def out(*what): print("OUT", *what, flush=True)
 """
@@ -68,8 +68,8 @@ for path in Path("/proc/sys/user").iterdir():
     except OSError: pass
 """
 FORGE = """
-from autograder.sandbox.parcel import send_message, send_tree
-from autograder.sandbox.trees import Entry
+from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.trees import Entry
 send_message(line, {"do": "result"})
 answer = json.loads(RESULT)
 answer["student"] = "bob"
@@ -82,8 +82,8 @@ FLOOD = """
 while True: line.send_bytes(bytes(3 << 20))
 """
 CLIMB = """
-from autograder.sandbox.parcel import send_message, send_tree
-from autograder.sandbox.trees import Entry
+from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.trees import Entry
 send_message(line, {"do": "result"})
 send_tree(line, {Entry("../bob/result.json", "file", False, 4): b"mine"})
 """
@@ -173,8 +173,8 @@ PACKAGE = """<package format="3"><name>forged_msgs</name><version>0.0.1</version
 CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(forged_msgs NONE)\ninstall(FILES package.xml DESTINATION share)\n"
 ASK = """
 from autograder.building import keeper
-from autograder.sandbox.limits import SOURCES
-from autograder.sandbox.trees import read_tree
+from autograder.run.sandbox.limits import SOURCES
+from autograder.run.sandbox.trees import read_tree
 for name, text in FILES.items():
     path = job.scratch / "mine" / "forged_msgs" / name
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pytest
 
+from autograder.author.verification.mutants import write_reference
+from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
-from autograder.grading import grade_submission
-from autograder.grading.job import ALL, Scope
-from autograder.grading.pipeline import RunJob, in_own_cell
-from autograder.grading.store import LOG
-from autograder.proof.mutants import write_reference
-from autograder.proof.worker_pool import WorkerPool
-from autograder.result import Result, Status
-from autograder.sandbox import Tier
+from autograder.grade import grade_submission
+from autograder.grade.job import ALL, Scope
+from autograder.grade.pipeline import RunJob, in_own_cell
+from autograder.grade.store import LOG
+from autograder.result.model import Result, Status
+from autograder.run.sandbox import Tier
 
 ASSIGNMENT = "02_nodes"
 PACKAGE = "my_robot_package"
@@ -61,7 +61,7 @@ def _running() -> set[int]:
     for task in Path("/proc/self/task").iterdir():
         with contextlib.suppress(OSError):  # a thread, or a child, that has ended since
             for child in (task / "children").read_text().split():
-                if "autograder.proof.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
+                if "autograder.author.verification.fork_server" in Path(f"/proc/{child}/cmdline").read_text():
                     found.add(int(child))
     return found
 

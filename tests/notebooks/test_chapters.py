@@ -14,13 +14,13 @@ import pytest
 import yaml
 from _pytest.mark import ParameterSet
 
-from autograder.checks import suites
-from autograder.course.execute import run_notebook
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter, chapters
-from autograder.intake.exercises import SOURCE, exercises_of
-from autograder.intake.writefile import written_file
+from autograder.author.course.execute import run_notebook
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter, chapters
 from autograder.layout import ROOT
+from autograder.submission.intake.exercises import SOURCE, exercises_of
+from autograder.submission.intake.writefile import written_file
+from autograder.suite import suites
 from tests.notebooks.alternative_texts import images_without_alt
 from tests.notebooks.outputs import said
 

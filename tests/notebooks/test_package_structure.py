@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter
 from autograder.layout import SOLUTIONS, chapter
 from autograder.probes import imports, manifest
 

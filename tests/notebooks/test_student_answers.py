@@ -17,14 +17,14 @@ import pytest
 from _pytest.mark import ParameterSet
 from nbformat import NotebookNode
 
-from autograder.checks import suites
-from autograder.course.cells import is_solution, metadata
-from autograder.course.execute import execute
-from autograder.course.forms import Form, in_form
-from autograder.course.release import write_bundle
-from autograder.course.sync import Chapter, chapters
-from autograder.proof.mutants import mutants
+from autograder.author.course.cells import is_solution, metadata
+from autograder.author.course.execute import execute
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.release import write_bundle
+from autograder.author.course.sync import Chapter, chapters
+from autograder.author.verification.mutants import mutants
 from autograder.ros.domains import Domain
+from autograder.suite import suites
 from tests.notebooks.outputs import said
 
 EACH_TIME = "07_best_practices"

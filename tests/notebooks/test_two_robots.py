@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from nbformat.v4 import new_code_cell
 
-from autograder.course.execute import execute, working_copy
-from autograder.course.forms import Form, in_form
-from autograder.course.sync import Chapter, chapters
+from autograder.author.course.execute import execute, working_copy
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter, chapters
 from autograder.ros.domains import Domain
 from tests.notebooks.outputs import said
 

@@ -1,7 +1,7 @@
 """Configures nbgrader, with this folder as the course directory.
 
-The isolated grader (`autograder.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
-exchange folder of a class. Without it the folder is `.build/exchange`.
+The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE`
+names the exchange folder of a class. Without it the folder is `.build/exchange`.
 
 `nbgrader autograde` grades one submission after the other. These commands grade a class on all cores and then book it:
 
@@ -11,6 +11,6 @@ exchange folder of a class. Without it the folder is `.build/exchange`.
 
 from pathlib import Path
 
-from autograder.nbgrader.configuration import configure
+from autograder.lms.nbgrader.configuration import configure
 
 configure(get_config(), Path(__file__).resolve().parent)  # noqa: F821 (traitlets defines it for a configuration file)

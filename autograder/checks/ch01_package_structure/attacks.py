@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.proof.attack_writer import Chapter
-from autograder.proof.claims import Attack
-from autograder.proof.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL
 
 CHAPTER = Chapter("01_package_structure")
 SETUP, TESTS = "square_dance/setup.py", "square_dance/test"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS
+from autograder.author.verification.payloads import FORGE_PASSES, STEAL_SECRETS
 
 PACKAGE = "my_robot_package"
 

@@ -11,7 +11,9 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder.checks import suites
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.mutants import Mutant, mutants, write_mutant, write_reference
+from autograder.author.verification.payloads import FORGE_PASSES, HOLD_KERNEL, STEAL_SECRETS, STOP_PARENT
 from autograder.checks.ch02_nodes.attack_payloads import (
     CALL_SPOOF,
     FORGE_PROTOCOL,
@@ -26,9 +28,7 @@ from autograder.checks.ch02_nodes.attack_payloads import (
     SPOOF_ROS,
 )
 from autograder.diagnosis import Kind
-from autograder.proof.claims import Attack
-from autograder.proof.mutants import Mutant, mutants, write_mutant, write_reference
-from autograder.proof.payloads import FORGE_PASSES, HOLD_KERNEL, STEAL_SECRETS, STOP_PARENT
+from autograder.suite import suites
 
 ASSIGNMENT = "02_nodes"
 CONTROLLER = f"{PACKAGE}/nodes/robot_controller.py"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import time
 
-from autograder.proof.attack_writer import Chapter
-from autograder.proof.claims import Attack
-from autograder.proof.payloads import STEAL_SECRETS
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import STEAL_SECRETS
 
 CHAPTER = Chapter("03_interfaces")
 HOME = "my_robot_interfaces"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from autograder import layout
-from autograder.proof.attack_writer import Chapter
-from autograder.proof.claims import Attack
-from autograder.proof.payloads import FORGE_REPORT, SEARCH, TELL_ALL
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import FORGE_REPORT, SEARCH, TELL_ALL
 
 CHAPTER = Chapter("06_testing")
 TESTS = "speed_guard/test"

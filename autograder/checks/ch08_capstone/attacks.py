@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.proof.attack_writer import Chapter
-from autograder.proof.claims import Attack
-from autograder.proof.payloads import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL
 
 CHAPTER = Chapter("08_capstone")
 PACKAGE = "robot_navigation_tutorial"

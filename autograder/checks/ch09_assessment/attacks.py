@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.proof.attack_writer import Chapter
-from autograder.proof.claims import Attack
-from autograder.proof.payloads import FORGE_PASSES, STEAL_SECRETS
+from autograder.author.verification.attack_writer import Chapter
+from autograder.author.verification.claims import Attack
+from autograder.author.verification.payloads import FORGE_PASSES, STEAL_SECRETS
 
 CHAPTER = Chapter("09_assessment")
 SHEET, GUARD = "assessment/answers.yaml", "motor_guard/motor_guard/guard.py"

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from std_msgs.msg import String
 
-from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe, short_lived
 from autograder.ros import environment
-from autograder.sandbox.procfs import children
+from autograder.run.sandbox.procfs import children
+from autograder.suite import CheckFailed
 
 PATIENCE = 60.0  # seconds: a deadline, not an expectation
 LEAVES_ONE = """

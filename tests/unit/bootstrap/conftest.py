@@ -66,7 +66,7 @@ def clone(tmp_path: Path) -> Path:
         "requirements-dev.lock",
         "pyproject.toml",
         "autograder/ros/patch_wheels.py",
-        "autograder/interfaces/tutorials.yaml",
+        "autograder/building/interfaces/tutorials.yaml",
     ):
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(LOCK)

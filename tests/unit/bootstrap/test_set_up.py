@@ -52,7 +52,7 @@ def test_packages_of_the_tests_are_installed_at_once_if_there_is_no_set_up(set_u
         ("requirements.lock", ["venv", "base", "project", "patch", "tutorials"]),
         ("autograder/ros/patch_wheels.py", ["venv", "base", "project", "patch", "tutorials"]),
         ("pyproject.toml", ["project", "patch", "tutorials"]),
-        ("autograder/interfaces/tutorials.yaml", ["project", "patch", "tutorials"]),
+        ("autograder/building/interfaces/tutorials.yaml", ["project", "patch", "tutorials"]),
         ("requirements-dev.lock", []),
     ],
 )

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from autograder import packages
 from autograder.building import build, colcon
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
+from autograder.submission import packages
 
 NAME = "my_robot_package"
 FILES = {

@@ -8,9 +8,9 @@ import pytest
 
 from autograder.building import keeper
 from autograder.building.interface_bundle import interface_bundle, relocate
-from autograder.packages import find_packages
-from autograder.sandbox.limits import SOURCES
-from autograder.sandbox.trees import read_tree
+from autograder.run.sandbox.limits import SOURCES
+from autograder.run.sandbox.trees import read_tree
+from autograder.submission.packages import find_packages
 
 GROUP = "<member_of_group>rosidl_interface_packages</member_of_group>"
 

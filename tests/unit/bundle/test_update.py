@@ -9,7 +9,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder.bundle import read_manifest, update_bundle, write_manifest
+from autograder.author.bundle import read_manifest, update_bundle, write_manifest
 from autograder.exceptions import UsageError
 
 NOTEBOOK = "chapters/02_nodes/02_nodes.ipynb"

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from autograder.causes import causes, dearest
-from autograder.checks import Check, Outcome
-from autograder.result import CheckResult
+from autograder.result.causes import causes, dearest
+from autograder.result.model import CheckResult
+from autograder.suite import Check, Outcome
 
 MakeCheck = Callable[..., Check]
 Make = Callable[..., CheckResult]

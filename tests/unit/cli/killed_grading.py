@@ -18,14 +18,14 @@ from typing import Any
 from PIL import Image
 
 from autograder import cli
-from autograder.checks import Outcome, suites
-from autograder.checks.suites import Suite
-from autograder.grading import batch, grade_submission
-from autograder.grading.job import Job
-from autograder.intake import read_submission
-from autograder.result import Artifact, CheckResult, Result
-from autograder.sandbox.cell import CellReport
-from autograder.sandbox.process import Ending
+from autograder.grade import batch, grade_submission
+from autograder.grade.job import Job
+from autograder.result.model import Artifact, CheckResult, Result
+from autograder.run.sandbox.cell import CellReport
+from autograder.run.sandbox.process import Ending
+from autograder.submission.intake import read_submission
+from autograder.suite import Outcome, suites
+from autograder.suite.suites import Suite
 
 CHAPTER = "02_nodes"
 NOTEBOOK = b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'

@@ -14,12 +14,13 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from autograder import cli, result
-from autograder.checks import Check, Outcome, Visibility
+from autograder import cli
 from autograder.cli.grade import grade as grade_verb
 from autograder.cli.text_tables import table
 from autograder.exceptions import GraderError, UsageError
 from autograder.notebook.checking import CheckReport
+from autograder.result import model as result
+from autograder.suite import Check, Outcome, Visibility
 
 MakeResult = Callable[..., result.Result]
 

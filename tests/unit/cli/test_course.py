@@ -12,14 +12,14 @@ import pytest
 from click.testing import CliRunner, Result
 
 from autograder import layout
-from autograder.checks import Check, Outcome, Visibility, suites
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.tables import titles
 from autograder.cli import course as command
-from autograder.course.exceptions import CourseError
-from autograder.course.tables import titles
 from autograder.exceptions import UsageError
 from autograder.notebook import checking
 from autograder.notebook.checking import CheckReport
-from autograder.result import CheckResult
+from autograder.result.model import CheckResult
+from autograder.suite import Check, Outcome, Visibility, suites
 from tests.unit.course.notebooks import chapter, code, grade, notebook, prose, solution
 
 CHECKS = (Check("named", "It has its name.", 2.0, "graph", Visibility.HIDDEN, (), None, (), ("runs",)),)

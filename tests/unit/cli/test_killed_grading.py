@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.export import load
+from autograder.report.export import load
 from tests.unit.cli.killed_grading import grade
 
 FORKS = multiprocessing.get_context("forkserver")

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.exceptions import UsageError
-from autograder.gallery import Gallery
-from autograder.result import Result, write_json
+from autograder.result.artifacts import Gallery
+from autograder.result.model import Result, write_json
 from sim import Command, Simulation, World, box, run
 
 RECORDING = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)

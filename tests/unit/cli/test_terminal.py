@@ -20,7 +20,7 @@ from autograder.exceptions import UsageError
 from autograder.layout import ROOT
 from autograder.notebook.checking import CheckReport
 from autograder.plain_text import visible
-from autograder.result import Outcome, Result, write_json
+from autograder.result.model import Outcome, Result, write_json
 
 # A window title, the clipboard, a cursor that moves up, controls of the second set, marks that turn a line round or are
 # not seen, ends of lines, and half of a surrogate pair.

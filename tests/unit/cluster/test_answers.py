@@ -13,16 +13,16 @@ import msgpack
 import pytest
 from PIL import Image
 
-from autograder.checks import Outcome, suites
-from autograder.cluster.accept import accept, give_up
-from autograder.cluster.exceptions import AnswerError, ClusterError
-from autograder.cluster.parcel import MAX_ANSWER, Answer, Parcel
 from autograder.exceptions import StudentError
-from autograder.grading.batch import GradingRequest
-from autograder.grading.pipeline import refused
-from autograder.intake import SubmittedFile, read_submission
-from autograder.result import Artifact, CheckResult, Result, Status
-from autograder.sandbox import Tier
+from autograder.grade.batch import GradingRequest
+from autograder.grade.cluster.accept import accept, give_up
+from autograder.grade.cluster.exceptions import AnswerError, ClusterError
+from autograder.grade.cluster.parcel import MAX_ANSWER, Answer, Parcel
+from autograder.grade.pipeline import refused
+from autograder.result.model import Artifact, CheckResult, Result, Status
+from autograder.run.sandbox import Tier
+from autograder.submission.intake import SubmittedFile, read_submission
+from autograder.suite import Outcome, suites
 
 CHAPTER = "02_nodes"
 SHA256 = "a" * 64

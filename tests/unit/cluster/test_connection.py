@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from autograder import layout
-from autograder.cluster.connection import CERTIFICATE, KEY, connected, require_address
-from autograder.cluster.machine import difference, resource, resources
 from autograder.exceptions import UsageError
-from autograder.sandbox import Tier
+from autograder.grade.cluster.connection import CERTIFICATE, KEY, connected, require_address
+from autograder.grade.cluster.machine import difference, resource, resources
+from autograder.run.sandbox import Tier
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ HERE = "autograder 02_nodes 5ca1ab1e0000 10cc10cc10cc 3.12 bubblewrap"
         ([HERE.replace("10cc10cc10cc", "0")], "its requirements.lock is 0"),
         ([HERE.replace("3.12", "3.10")], "its Python is 3.10, and here it is 3.12"),
         ([HERE.replace("bubblewrap", "process")], "it cannot isolate submissions by bubblewrap: `autograder doctor`"),
-        (["GPU"], "it does not say what it grades with: start it with `--preload autograder.cluster`"),
+        (["GPU"], "it does not say what it grades with: start it with `--preload autograder.grade.cluster`"),
     ],
 )
 def test_a_worker_that_differs_is_refused_with_the_reason(offered: list[str], why: str) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from nbformat import NotebookNode
 
-from autograder.checks import Check, Visibility, suites
-from autograder.checks.contract import contract, sentences
-from autograder.course.contract_rules import broken_contract
-from autograder.course.sync import chapters
+from autograder.author.course.contract_rules import broken_contract
+from autograder.author.course.sync import chapters
+from autograder.suite import Check, Visibility, suites
+from autograder.suite.contract import contract, sentences
 
 from .notebooks import code, notebook, prose, solution
 

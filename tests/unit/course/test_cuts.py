@@ -9,10 +9,10 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder import layout
-from autograder.course.cells import copied_file
-from autograder.course.exceptions import CourseError
-from autograder.course.forms import Form, in_form
-from autograder.course.solution_markers import mark_lines, strip_markers
+from autograder.author.course.cells import copied_file
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.solution_markers import mark_lines, strip_markers
 
 MANIFEST = """<package>
   <name>a</name>

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.course.execute import run_notebook
-from autograder.course.forms import Form, in_form
+from autograder.author.course.execute import run_notebook
+from autograder.author.course.forms import Form, in_form
 
 from .notebooks import chapter, code, grade, notebook, prose, solution
 

@@ -6,7 +6,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_output
 
-from autograder.course.notebook_rules import broken_rules
+from autograder.author.course.notebook_rules import broken_rules
 from tests.notebooks.alternative_texts import images_without_alt
 
 from .notebooks import code, grade, manual, notebook, prose, solution

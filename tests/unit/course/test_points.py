@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from nbformat import NotebookNode
 
-from autograder.course.points import point_differences
+from autograder.author.course.points import point_differences
 
 from .notebooks import code, grade, manual, notebook, prose
 

@@ -6,9 +6,9 @@ import ast
 
 import pytest
 
-from autograder.course.exceptions import CourseError
-from autograder.course.forms import CODE_STUB
-from autograder.course.solution_markers import mark_functions, strip_markers
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.forms import CODE_STUB
+from autograder.author.course.solution_markers import mark_functions, strip_markers
 
 MODULE = '''"""A module."""
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import Check, Visibility
-from autograder.course.syllabus import Location, Syllabus, find_coverage
-from autograder.course.tables import PAGE, course_page, page
-from autograder.course.workload import Effort
-from autograder.proof import checks_page
+from autograder.author.course.syllabus import Location, Syllabus, find_coverage
+from autograder.author.course.tables import PAGE, course_page, page
+from autograder.author.course.workload import Effort
+from autograder.author.verification import checks_page
+from autograder.suite import Check, Visibility
 
 from .notebooks import code, notebook, prose
 

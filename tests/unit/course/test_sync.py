@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from autograder import layout
-from autograder.course.exceptions import CourseError
-from autograder.course.sync import Chapter, chapters, find_outdated, sync_chapter
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.sync import Chapter, chapters, find_outdated, sync_chapter
 
 from .notebooks import chapter, code, notebook, prose, solution
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder.course.sync import Chapter, chapters
-from autograder.course.workload import Effort, duration_text, effort, outdated_time_sentence, time_sentence
+from autograder.author.course.sync import Chapter, chapters
+from autograder.author.course.workload import Effort, duration_text, effort, outdated_time_sentence, time_sentence
 
 from .notebooks import code, prose, solution
 

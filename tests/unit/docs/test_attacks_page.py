@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import runpy
 
-from autograder.checks import suites
+from autograder.author.verification.cases import attacks
 from autograder.layout import ROOT
-from autograder.proof.cases import attacks
+from autograder.suite import suites
 
 MADE = runpy.run_path(str(ROOT / "docs" / "attacks_page.py"))
 ROWS = MADE["ROWS"]

@@ -10,7 +10,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import layout
-from autograder.course.sync import Chapter
+from autograder.author.course.sync import Chapter
 
 GLOSSARY = layout.CHAPTERS / "glossary.md"
 MADE = runpy.run_path(str(layout.ROOT / "docs" / "build_site.py"))

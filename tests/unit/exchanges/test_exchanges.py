@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.exchanges import MAX_CHARACTERS, MAX_ROWS, Exchange, ExchangeLog
+from autograder.run.exchanges import MAX_CHARACTERS, MAX_ROWS, Exchange, ExchangeLog
 
 
 def test_exchanges_are_returned_once() -> None:

@@ -11,9 +11,9 @@ import pytest
 from click.testing import CliRunner
 
 from autograder.cli import group
-from autograder.export.changes import CheckChange, changes
-from autograder.export.stored import Stored
-from autograder.result import Result, write_json
+from autograder.report.export.changes import CheckChange, changes
+from autograder.report.export.stored import Stored
+from autograder.result.model import Result, write_json
 
 MakeResult = Callable[..., Result]
 

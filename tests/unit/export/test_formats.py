@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 from nbconvert.filters.markdown import markdown2html
 
-from autograder.checks import Check, Outcome
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.export import FORMATS, Stored, formats, write
-from autograder.feedback.text import NOT_GRADED
-from autograder.result import Artifact, CheckResult, Result
+from autograder.report.export import FORMATS, Stored, formats, write
+from autograder.report.feedback.text import NOT_GRADED
+from autograder.result.model import Artifact, CheckResult, Result
+from autograder.suite import Check, Outcome
 
 MakeResult = Callable[..., Result]
 Class = list[Stored]

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.export import load
-from autograder.result import Result, write_json
+from autograder.report.export import load
+from autograder.result.model import Result, write_json
 
 MakeResult = Callable[..., Result]
 

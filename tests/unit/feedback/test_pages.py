@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder import feedback
-from autograder.checks import Check, Outcome
-from autograder.checks.contract import contract
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
-from autograder.exchanges import Exchange
-from autograder.feedback.text import NOT_GRADED
-from autograder.result import Artifact, CheckResult, Result, from_json
+from autograder.report import feedback
+from autograder.report.feedback.text import NOT_GRADED
+from autograder.result.model import Artifact, CheckResult, Result, from_json
+from autograder.run.exchanges import Exchange
+from autograder.suite import Check, Outcome
+from autograder.suite.contract import contract
 
 MakeResult = Callable[..., Result]
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from autograder.checks import Outcome
-from autograder.feedback.statistics import class_statistics
-from autograder.result import Result
+from autograder.report.feedback.statistics import class_statistics
+from autograder.result.model import Result
+from autograder.suite import Outcome
 
 MakeResult = Callable[..., Result]
 

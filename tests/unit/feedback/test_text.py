@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.feedback.text import number, one_line
+from autograder.report.feedback.text import number, one_line
 
 
 def test_one_line_replaces_white_space_by_single_spaces() -> None:

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from autograder import fingerprint, layout
-from autograder.checks import suites
-from autograder.fingerprint import GRADER_VERSION, digest, files, version
+from autograder import layout
 from autograder.layout import Course
+from autograder.suite import fingerprint, suites
+from autograder.suite.fingerprint import GRADER_VERSION, digest, files, version
 
 CHAPTER = "02_nodes"
 SHARED = {
-    "autograder/workspace.py": "",
+    "autograder/run/workspace.py": "",
     "autograder/harness/grader_node.py": "",
-    "autograder/checks/suites.py": "",
+    "autograder/suite/suites.py": "",
     "sim/world.py": "",
     "assets/worlds/lab.yaml": "",
 }
@@ -106,7 +106,7 @@ def test_the_version_of_another_course_does_not_depend_on_checks_of_this_course(
     monkeypatch.setattr(layout, "COURSE", Course.read(other))
     read = {str(path.relative_to(course)) for path in files(CHAPTER)}
     assert "other/checks/ch02_nodes/hidden/graph.py" in read
-    assert {"sim/world.py", "autograder/checks/suites.py", "assets/worlds/lab.yaml"} <= read
+    assert {"sim/world.py", "autograder/suite/suites.py", "assets/worlds/lab.yaml"} <= read
     assert not [path for path in read if path.startswith(("autograder/checks/ch", "chapters"))]
 
 
@@ -135,8 +135,8 @@ def test_a_suite_has_the_version_and_the_digest_of_what_it_declares_to_read() ->
 def test_every_module_that_a_grading_imports_is_among_the_files() -> None:
     code = (
         "import json, sys\n"
-        "import autograder.grading.worker, autograder.grading.run_notebook, autograder.building.interface_bundle\n"
-        "from autograder.checks import suites\n"
+        "import autograder.grade.worker, autograder.grade.run_notebook, autograder.building.interface_bundle\n"
+        "from autograder.suite import suites\n"
         "[suites.hidden(name) for name in suites.graded_assignments()]\n"
         "places = [getattr(module, '__file__', None) for module in list(sys.modules.values())]\n"
         "print(json.dumps([place for place in places if place]))\n"

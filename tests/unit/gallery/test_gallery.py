@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from autograder.gallery import Gallery
+from autograder.result.artifacts import Gallery
 from sim import Command, Simulation, World, box, run
 
 RECORDING = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)

@@ -8,7 +8,7 @@ import pytest
 
 from autograder.harness.grader_node import GraderNode
 from autograder.harness.matching import connected
-from autograder.lockstep.protocol import Description
+from autograder.run.lockstep.protocol import Description
 
 SCAN, ASK = "/scan T reliable volatile", "/ask T request"
 

@@ -10,7 +10,7 @@ import pytest
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Shared
-from autograder.sandbox import Ending
+from autograder.run.sandbox import Ending
 
 
 class Fake:

@@ -13,12 +13,12 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
-from autograder import intake
 from autograder.exceptions import StudentError
-from autograder.grading import digests
-from autograder.intake import SubmittedFile, detect_layout, read_submission
-from autograder.intake import archives as unpacking
-from autograder.sandbox import Tier
+from autograder.grade import digests
+from autograder.run.sandbox import Tier
+from autograder.submission import intake
+from autograder.submission.intake import SubmittedFile, detect_layout, read_submission
+from autograder.submission.intake import archives as unpacking
 
 CHAPTER = "02_nodes"
 MIB = 1024 * 1024

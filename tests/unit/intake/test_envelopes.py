@@ -20,7 +20,7 @@ import pytest
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.intake import Submission, read_submission
+from autograder.submission.intake import Submission, read_submission
 from tests.answers import BOOK, CHAPTER, TARGET, Answer, Files, filled, make_answer, tarred, write, zipped
 
 

@@ -16,10 +16,10 @@ import pytest
 from hypothesis import event, given
 from hypothesis import strategies as st
 
-from autograder import intake
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError, UsageError
-from autograder.intake import (
+from autograder.submission import intake
+from autograder.submission.intake import (
     SubmittedFile,
     archives,
     detect_layout,
@@ -28,7 +28,7 @@ from autograder.intake import (
     reading,
     write_tree,
 )
-from autograder.intake.notebooks import without_outputs
+from autograder.submission.intake.notebooks import without_outputs
 
 CHAPTER = "02_nodes"
 NOTEBOOK = b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": []}'

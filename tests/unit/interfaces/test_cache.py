@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder.interfaces.cache import IN_USE, Cache
+from autograder.building.interfaces.cache import IN_USE, Cache
 
 A, B, C = "a" * 40, "b" * 40, "c" * 40
 
 WORKER = """
 import sys
 from pathlib import Path
-from autograder.interfaces.cache import Cache
+from autograder.building.interfaces.cache import Cache
 
 root, log, after = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.interfaces import rosidl
-from autograder.interfaces.definitions import (
+from autograder.building.interfaces import rosidl
+from autograder.building.interfaces.definitions import (
     MAX_BYTES,
     MAX_FILES,
     DefinitionError,

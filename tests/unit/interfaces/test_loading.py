@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from autograder.building.interfaces.loading import load_from
 from autograder.exceptions import StudentError
-from autograder.interfaces.loading import load_from
 from autograder.ros import find
-from autograder.workspace import Workspace
+from autograder.run.workspace import Workspace
 
 MANIFEST = """<package format="3"><name>{name}</name><version>0.0.0</version><description>d</description>
 <maintainer email="a@b.cd">m</maintainer><license>x</license></package>"""

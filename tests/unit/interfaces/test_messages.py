@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autograder.building.interfaces import type_support
+from autograder.building.interfaces.cdr import MAX_BYTES, MAX_OBJECTS
+from autograder.building.interfaces.loading import classes
+from autograder.building.interfaces.messages import from_bytes, to_bytes
 from autograder.exceptions import GraderError, StudentError
 from autograder.harness.message_text import format_message
-from autograder.interfaces import type_support
-from autograder.interfaces.cdr import MAX_BYTES, MAX_OBJECTS
-from autograder.interfaces.loading import classes
-from autograder.interfaces.messages import from_bytes, to_bytes
 
 TEXTS = {
     "msg/Inner.msg": "uint8 OK=0\nstring WHO='me'\nbool flag true\nfloat32[2] pair [1, 2]\nstring<=3 word\n",

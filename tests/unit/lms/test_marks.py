@@ -11,10 +11,10 @@ from click.testing import CliRunner
 
 from autograder.cli import group
 from autograder.exceptions import UsageError
-from autograder.export import Stored
 from autograder.lms.marks import write_marks
 from autograder.lms.roster import read_roster
-from autograder.result import Result, Status, write_json
+from autograder.report.export import Stored
+from autograder.result.model import Result, Status, write_json
 from tests.unit.lms.test_collect import CANVAS, MOODLE
 
 MakeResult = Callable[..., Result]

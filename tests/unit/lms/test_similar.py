@@ -9,9 +9,9 @@ import nbformat
 import pytest
 
 from autograder.cli import main
-from autograder.intake import SubmittedFile, detect_layout
 from autograder.lms import similar
 from autograder.lms.similar import code, pairs, write_pairs
+from autograder.submission.intake import SubmittedFile, detect_layout
 
 GIVEN = "\n".join(f"def given_{n}(a, b):\n    return [a * {n} + b, (a - b) / {n + 1}]" for n in range(9))
 OWN = """

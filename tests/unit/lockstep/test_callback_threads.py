@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from autograder.lockstep.lockstep_host.callback_threads import CallbackThreads, Worker
+from autograder.run.lockstep.lockstep_host.callback_threads import CallbackThreads, Worker
 
 
 class Task:

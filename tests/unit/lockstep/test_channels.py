@@ -15,8 +15,8 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from autograder.lockstep.lockstep_host import channels
-from autograder.lockstep.protocol import answers
+from autograder.run.lockstep.lockstep_host import channels
+from autograder.run.lockstep.protocol import answers
 
 SECONDS = 30.0
 PROFILES = [

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from autograder.diagnosis import Kind
-from autograder.lockstep.failures import (
+from autograder.run.lockstep.failures import (
     diagnose_crash,
     diagnose_deadlock,
     diagnose_ending,
@@ -16,8 +16,8 @@ from autograder.lockstep.failures import (
     diagnose_unsteppable,
     tail,
 )
-from autograder.lockstep.protocol import REASONS, Crash, Deadlock
-from autograder.sandbox import Limits, Process
+from autograder.run.lockstep.protocol import REASONS, Crash, Deadlock
+from autograder.run.sandbox import Limits, Process
 
 
 def _ended(code: str, **limits: float) -> Process:

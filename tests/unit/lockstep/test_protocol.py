@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.lockstep import protocol
-from autograder.lockstep.protocol import MAX_LINE, MAX_TEXT, ProtocolError
-from autograder.lockstep.stepper import HOST
+from autograder.run.lockstep import protocol
+from autograder.run.lockstep.protocol import MAX_LINE, MAX_TEXT, ProtocolError
+from autograder.run.lockstep.stepper import HOST
 
 DONE: dict[str, Any] = {"event": "done", "sent": {}, "lost": [], "changed": False, "wake": None, "notes": []}
 CRASH: dict[str, Any] = {"event": "crash", "phase": "spin", "type": "E", "message": "m", "traceback": "t"}

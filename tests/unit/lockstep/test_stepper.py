@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from autograder import patience
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.lockstep import Stepper, UnsteppableError, stepper
-from autograder.lockstep.stepper import Timeout
-from autograder.sandbox import Ending, Sandbox, launcher
+from autograder.run import patience
+from autograder.run.lockstep import Stepper, UnsteppableError, stepper
+from autograder.run.lockstep.stepper import Timeout
+from autograder.run.sandbox import Ending, Sandbox, launcher
 
 START = "import os, sys, signal\nread, write = int(sys.argv[1]), int(sys.argv[2])\n"
 DONE = '{"event": "done", "sent": {"/cmd_vel": 3}, "lost": [], "changed": false, "wake": null, "notes": []}\\n'

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from autograder.diagnosis import Kind
-from autograder.lockstep.failures import diagnose_crash
-from autograder.lockstep.protocol import Crash
-from autograder.lockstep.tracebacks import own_frames, with_source_paths
+from autograder.run.lockstep.failures import diagnose_crash
+from autograder.run.lockstep.protocol import Crash
+from autograder.run.lockstep.tracebacks import own_frames, with_source_paths
 
 INSTALL = "/tmp/cell-1/ws/install/my_robot"
 MODULES = f"{INSTALL}/lib/python3.12/site-packages"
 LOADER = f"""Traceback (most recent call last):
-  File "/opt/course/autograder/lockstep/lockstep_host/__main__.py", line 27, in main
+  File "/opt/course/autograder/run/lockstep/lockstep_host/__main__.py", line 27, in main
     runpy.run_path(program, run_name="__main__")
   File "<frozen runpy>", line 291, in run_path
   File "{INSTALL}/lib/my_robot/driver", line 33, in <module>

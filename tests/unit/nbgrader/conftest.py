@@ -20,10 +20,10 @@ from nbgrader.apps import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from traitlets.config import PyFileConfigLoader
 
-import autograder.grading.batch
-from autograder.checks import Check, Outcome
-from autograder.grading.store import NOTEBOOK
-from autograder.result import CheckResult, Result
+import autograder.grade.batch
+from autograder.grade.store import NOTEBOOK
+from autograder.result.model import CheckResult, Result
+from autograder.suite import Check, Outcome
 
 ROOT = Path(__file__).resolve().parents[3]
 ASSIGNMENT = "tiny"
@@ -138,7 +138,7 @@ def course(generated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
             nbformat.write(graded.notebook, out / NOTEBOOK)
         return replace(graded.result, student=student)
 
-    monkeypatch.setattr(autograder.grading.batch, "grade_submission", grade)
+    monkeypatch.setattr(autograder.grade.batch, "grade_submission", grade)
     return made
 
 

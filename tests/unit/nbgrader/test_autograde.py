@@ -11,10 +11,10 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 
-from autograder.checks import Check, Outcome
 from autograder.exceptions import IsolationError
-from autograder.grading import DEFAULT_SEED
-from autograder.result import Artifact, CheckResult, Status
+from autograder.grade import DEFAULT_SEED
+from autograder.result.model import Artifact, CheckResult, Status
+from autograder.suite import Check, Outcome
 
 # nbgrader's own use of SQLAlchemy.
 pytestmark = [

@@ -17,12 +17,12 @@ from nbconvert import HTMLExporter
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_raw_cell
 from nbgrader.utils import determine_grade
 
-from autograder.checks import Check, Outcome
-from autograder.feedback.model import PageView, page_view
-from autograder.nbgrader.outputs import grade_outputs, sanitized_outputs
-from autograder.nbgrader.restore import restored
-from autograder.nbgrader.sanitizing import sanitized_markdown
-from autograder.result import Artifact, CheckResult, Result
+from autograder.lms.nbgrader.outputs import grade_outputs, sanitized_outputs
+from autograder.lms.nbgrader.restore import restored
+from autograder.lms.nbgrader.sanitizing import sanitized_markdown
+from autograder.report.feedback.model import PageView, page_view
+from autograder.result.model import Artifact, CheckResult, Result
+from autograder.suite import Check, Outcome
 
 TEXT = st.text(st.sampled_from("ab <>'&\x00\x1b[31m\udcff\ud800é\n"), max_size=20)
 JSON = st.recursive(

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.exercise_stubs import CODE_STUB
 from autograder.notebook.cells_and_files import differences
 from autograder.notebook.writefile import RECORD, digest
+from autograder.submission.exercise_stubs import CODE_STUB
 
 FILE = "src/robot/robot/node.py"
 STUB = f"def main():\n    {CODE_STUB}\n"

@@ -8,12 +8,12 @@ import pytest
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 
-from autograder.checks import Check, Outcome, Visibility
 from autograder.exceptions import UsageError
 from autograder.notebook import check, drive, grade
 from autograder.notebook.checking import CheckReport
 from autograder.notebook.notices import Notice
-from autograder.result import CheckResult
+from autograder.result.model import CheckResult
+from autograder.suite import Check, Outcome, Visibility
 from sim.grading import GRADING_VARIABLE
 
 GRADED = {"grade": True, "solution": False, "locked": True, "grade_id": "g", "schema_version": 3}

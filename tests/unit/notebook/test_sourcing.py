@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from autograder.building.interfaces.prefix import build
 from autograder.exceptions import UsageError
-from autograder.interfaces.prefix import build
 from autograder.notebook import source
 from autograder.notebook.notices import Notice
 from sim.grading import GRADING_VARIABLE

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.notebook import terminal
 from autograder.notebook.terminal import running, shell
+from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
 from sim.grading import GRADING_VARIABLE
 
 STUBBORN = f"""{sys.executable} -c "

@@ -9,7 +9,7 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.testing.globalipapp import start_ipython
 
-from autograder.course.forms import CODE_STUB
+from autograder.author.course.forms import CODE_STUB
 from autograder.notebook.writefile import RECORD, REPLACED, STUB, register
 
 UNSOLVED = f"def main():\n    {CODE_STUB}\n"

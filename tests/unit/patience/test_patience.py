@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from autograder import patience
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
-from autograder.sandbox import Sandbox
-from autograder.sandbox.launcher import launch
+from autograder.run import patience
+from autograder.run.sandbox import Sandbox
+from autograder.run.sandbox.launcher import launch
 
 
 @pytest.fixture(autouse=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import CheckFailed
 from autograder.exceptions import StudentError
 from autograder.harness.launch import Stop
 from autograder.probes import launch_probe
 from autograder.probes.launch_arguments import Argument, parse_arguments
+from autograder.suite import CheckFailed
 
 SHOWN = """Arguments (pass arguments as '<name>:=<value>'):
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import CheckFailed
 from autograder.harness import Workspace
 from autograder.probes.linters import expect_tidy, objections
 from autograder.probes.student_test_runs import take
 from autograder.ros import environment
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
+from autograder.suite import CheckFailed
 
 pytestmark = pytest.mark.slow  # each run is a pytest of its own
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks import CheckFailed
-from autograder.course.forms import CODE_STUB
+from autograder.author.course.forms import CODE_STUB
 from autograder.layout import SOLUTIONS
 from autograder.probes import manifest
+from autograder.suite import CheckFailed
 
 TEXT = """<package format="3">
   <name>lamp</name>

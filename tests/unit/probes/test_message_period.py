@@ -9,7 +9,7 @@ import pytest
 
 from autograder.harness import ReceivedMessage
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP, REAL
+from autograder.run.time_record import LOCKSTEP, REAL
 
 PERIOD = 0.1  # s
 STEADY = [PERIOD] * 40

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autograder.checks import CheckFailed
 from autograder.probes.parameters import (
     MAX_FILE,
     SHOWN,
@@ -24,6 +23,7 @@ from autograder.probes.parameters import (
     same,
     shortened,
 )
+from autograder.suite import CheckFailed
 
 WANTED = ("safety_distance", "slow_distance")
 

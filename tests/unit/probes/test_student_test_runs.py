@@ -19,8 +19,8 @@ from autograder.probes.student_test_reports import Report, TestRun
 from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
 from autograder.ros import environment
-from autograder.sandbox import Ending
-from autograder.sandbox.limits import TEST_RUN
+from autograder.run.sandbox import Ending
+from autograder.run.sandbox.limits import TEST_RUN
 
 pytestmark = pytest.mark.slow  # each run is a pytest of its own
 

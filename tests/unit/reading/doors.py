@@ -15,19 +15,15 @@ from typing import Any
 import nbformat
 from hypothesis import strategies as st
 
-from autograder import exercise_stubs, intake, packages
 from autograder.building import build_log
+from autograder.building.interfaces import definitions
 from autograder.diagnosis import Diagnosis, Kind
-from autograder.grading import submitted_notebook
-from autograder.grading.run_notebook import _would_overwrite, read_answer
+from autograder.grade import submitted_notebook
+from autograder.grade.run_notebook import _would_overwrite, read_answer
 from autograder.harness.launch import LaunchHarness
 from autograder.harness.matching import connected
 from autograder.harness.stepped import _sum
 from autograder.harness.steps import next_instant, tick_of
-from autograder.intake.notebooks import read_cells
-from autograder.intake.writefile import written_file
-from autograder.interfaces import definitions
-from autograder.lockstep import failures, protocol, tracebacks
 from autograder.probes import (
     calls,
     imports,
@@ -39,7 +35,11 @@ from autograder.probes import (
     rclpy_races,
     student_test_reports,
 )
-from autograder.sandbox import Ending
+from autograder.run.lockstep import failures, protocol, tracebacks
+from autograder.run.sandbox import Ending
+from autograder.submission import exercise_stubs, intake, packages
+from autograder.submission.intake.notebooks import read_cells
+from autograder.submission.intake.writefile import written_file
 from tests.unit.reading import chapter_doors, ros_doors
 from tests.unit.reading.door import Door
 from tests.unit.reading.made_up import JSON, altered, altered_json, texts

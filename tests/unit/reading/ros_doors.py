@@ -18,12 +18,12 @@ from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from sensor_msgs.msg import BatteryState, JointState, LaserScan
 from std_msgs.msg import String
 
+from autograder.building.interfaces.loading import classes
+from autograder.building.interfaces.messages import from_bytes
 from autograder.harness.drive import _command, _move
 from autograder.harness.goals import Actions, Goal, ReceivedMessage
 from autograder.harness.message_text import format_message
 from autograder.harness.parameter_values import value_of
-from autograder.interfaces.loading import classes
-from autograder.interfaces.messages import from_bytes
 from autograder.probes import parameters
 from sim import Recorder, Simulation, load_world, start
 from tests.unit.reading.door import Door

@@ -10,17 +10,17 @@ PARSES = re.compile(
     r"json\.loads?\(|yaml\.(?:safe_)?load|SafeLoader\(|ET\.(?:fromstring|parse)\(|ast\.parse\(|literal_eval|nbformat\.reads?\("
     r"|\.read_string\(|HeaderParser\(|struct\.unpack|tarfile\.open|zipfile\.ZipFile\(|parse_package_string\(|rosidl_adapter\b"
 )
-PARTS = ("building", "checks", "grading", "harness", "intake", "interfaces", "lockstep", "packages.py", "probes")
+PARTS = ("building", "checks", "grade", "harness", "probes", "run/lockstep", "submission", "suite")
 # Modules with a door that `doors` tries, each with the door's name.
 TRIED = {
     "checks/ch01_package_structure/hidden/run.py": "configuration of 01",
-    "grading/run_notebook.py": "outputs of a notebook",
-    "intake/archives.py": "archive",
-    "intake/notebooks.py": "cells of a notebook",
-    "interfaces/cdr.py": "bytes of a message of the student's own type",
-    "interfaces/rosidl.py": "definition that is built",
-    "lockstep/protocol.py": "event of a stepped program",
-    "packages.py": "package.xml by its name",
+    "grade/run_notebook.py": "outputs of a notebook",
+    "submission/intake/archives.py": "archive",
+    "submission/intake/notebooks.py": "cells of a notebook",
+    "building/interfaces/cdr.py": "bytes of a message of the student's own type",
+    "building/interfaces/rosidl.py": "definition that is built",
+    "run/lockstep/protocol.py": "event of a stepped program",
+    "submission/packages.py": "package.xml by its name",
     "probes/calls.py": "answer of a function",
     "probes/files.py": "imports of a module",
     "probes/installed.py": "metadata of an installed package",
@@ -32,10 +32,11 @@ TRIED = {
 }
 # What these read, the grader or a course's author has written, or a program of the sandbox reads it there.
 OWN = {
-    *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "checks/contract.py"),
-    *("grading/answer.py", "grading/batch.py", "grading/digests.py", "grading/job.py", "grading/notebook_host.py"),
-    *("grading/store.py", "interfaces/generate.py", "interfaces/tutorials.py"),
-    *("lockstep/lockstep_host/pipes.py", "probes/call_host.py", "probes/versions.py"),
+    *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "suite/contract.py"),
+    *("grade/answer.py", "grade/batch.py", "grade/digests.py", "grade/job.py", "grade/notebook_host.py"),
+    *("grade/store.py", "building/interfaces/generate.py", "building/interfaces/tutorials.py"),
+    *("run/lockstep/lockstep_host/pipes.py", "probes/call_host.py", "probes/versions.py"),
+    "submission/reading.py",  # an example in its docstring
 }
 
 
@@ -43,9 +44,7 @@ def test_each_module_of_the_worker_that_parses_has_a_door_that_is_tried() -> Non
     from tests.unit.reading.doors import DOORS
 
     package = ROOT / "autograder"
-    files = [
-        path for part in PARTS for path in ((package / part).rglob("*.py") if "." not in part else [package / part])
-    ]
+    files = [path for part in PARTS for path in (package / part).rglob("*.py")]
     left_out = {"variants", "versions"}  # answers, and packages under test
     parsing = {
         path.relative_to(package).as_posix()

@@ -14,8 +14,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autograder.checks import CheckFailed
 from autograder.exceptions import StudentError
+from autograder.suite import CheckFailed
 from tests.unit.reading.door import Door
 from tests.unit.reading.doors import DOORS
 

@@ -6,10 +6,10 @@ import errno
 
 import pytest
 
-from autograder.checks import CheckFailed
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError, StudentError, UsageError
-from autograder.reading import hold, in_hand, put_down, reading
+from autograder.submission.reading import hold, in_hand, put_down, reading
+from autograder.suite import CheckFailed
 
 
 @pytest.mark.parametrize(

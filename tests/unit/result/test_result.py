@@ -15,10 +15,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autograder.checks import Check, Outcome, Visibility
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import AutograderError, GraderError, IsolationError, StudentError, UsageError
-from autograder.result import Artifact, CheckResult, Result, Status, from_json, schema, write_json
+from autograder.result.model import Artifact, CheckResult, Result, Status, from_json, schema, write_json
+from autograder.suite import Check, Outcome, Visibility
 
 MakeResult = Callable[..., Result]
 
@@ -211,7 +211,7 @@ def test_a_result_with_anything_in_any_place_is_read_or_refused(make_result: Mak
 STAGGERED = """
 import threading, time
 from autograder.exceptions import UsageError
-from autograder.result import from_json
+from autograder.result.model import from_json
 
 failures = []
 

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 from autograder import layout
-from autograder.sandbox import Limits, Mount, Sandbox, bubblewrap
-from autograder.sandbox.limits import CELL_SCRATCH
-from autograder.sandbox.spec import View
+from autograder.run.sandbox import Limits, Mount, Sandbox, bubblewrap
+from autograder.run.sandbox.limits import CELL_SCRATCH
+from autograder.run.sandbox.spec import View
 
 
 def _pairs(arguments: list[str], flag: str) -> list[str]:

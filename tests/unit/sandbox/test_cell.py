@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.sandbox import Tier
-from autograder.sandbox.cell import run_in_cell
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import run_in_cell
 
 
 def test_only_folders_of_cells_without_a_lock_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -43,7 +43,7 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
         (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
     monkeypatch.chdir(tmp_path)
     for tier in (Tier.PROCESS, Tier.BUBBLEWRAP):
-        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grading.worker", "{}"], tier)
+        report = run_in_cell(lambda scratch: [sys.executable, "-m", "autograder.grade.worker", "{}"], tier)
         assert "JSON" not in report.output
         assert "TypeError" in report.output  # it came as far as reading its job
     assert not (tmp_path / "ran").exists()

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.sandbox import Ending, Limits, Process, cgroup
-from autograder.sandbox.limits import MIB
+from autograder.run.sandbox import Ending, Limits, Process, cgroup
+from autograder.run.sandbox.limits import MIB
 
 NEEDED = pytest.mark.skipif(
     os.geteuid() != 0 or "pids" not in cgroup.bounds(), reason="not root, or no control group can be made"

@@ -10,7 +10,7 @@ import pytest
 CHILD = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)"
 PARENT = f"""
 import subprocess, sys
-from autograder.sandbox.launcher import restore_sigint
+from autograder.run.sandbox.launcher import restore_sigint
 if sys.argv[1] == "restore":
     restore_sigint()
 subprocess.run([sys.executable, "-c", {CHILD!r}], check=True)

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.sandbox import Ending, Limits, Process
-from autograder.sandbox.limits import MIB
-from autograder.sandbox.procfs import measure
+from autograder.run.sandbox import Ending, Limits, Process
+from autograder.run.sandbox.limits import MIB
+from autograder.run.sandbox.procfs import measure
 
 LONG = 60.0
 

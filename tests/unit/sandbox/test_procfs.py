@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from autograder.sandbox.procfs import TICK, start_seconds
+from autograder.run.sandbox.procfs import TICK, start_seconds
 
 
 def test_the_start_time_of_a_process_lies_between_two_readings_of_the_clock() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from autograder.exceptions import IsolationError
-from autograder.sandbox import Tier, best_tier, launcher, require, tiers
+from autograder.run.sandbox import Tier, best_tier, launcher, require, tiers
 
 
 @pytest.fixture

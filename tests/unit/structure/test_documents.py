@@ -103,6 +103,6 @@ def test_each_row_of_i_want_to_names_at_most_two_files() -> None:
 
 
 def test_the_listed_fixtures_are_those_of_the_plug_in() -> None:
-    source = (ROOT / "autograder/grading/plugin.py").read_text(encoding="utf-8")
+    source = (ROOT / "autograder/grade/plugin.py").read_text(encoding="utf-8")
     fixtures = set(re.findall(r"@pytest\.fixture.*\n    def (\w+)", source))
     assert {row[0].strip("`") for row in table("Fixtures")} == fixtures != set()

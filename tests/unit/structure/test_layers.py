@@ -23,11 +23,11 @@ CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["import
 
 # What breaks each contract: the module that imports, what it imports, and the sentence of the report.
 BREACHES = {
-    "layers": ("autograder/sandbox/spec.py", "autograder.grading.pipeline", "autograder.sandbox is not allowed to"),
+    "layers": ("autograder/run/sandbox/spec.py", "autograder.grade.pipeline", "autograder.run is not allowed to"),
     "chapters": (
         "autograder/checks/ch02_nodes/support/robot.py",
-        "autograder.proof.cases",
-        "autograder.checks.ch02_nodes.support is not allowed to import autograder.proof",
+        "autograder.author.verification.cases",
+        "autograder.checks.ch02_nodes.support is not allowed to import autograder.author.verification",
     ),
     "chapters-by-path": (
         "autograder/probes/linters.py",
@@ -45,9 +45,9 @@ BREACHES = {
         "autograder.checks.ch02_nodes.hidden.graph -> autograder.checks.ch02_nodes.conftest",
     ),
     "sandboxed": (
-        "autograder/lockstep/stepper.py",
-        "autograder.lockstep.lockstep_host.host",
-        "autograder.lockstep.stepper -> autograder.lockstep.lockstep_host.host",
+        "autograder/run/lockstep/stepper.py",
+        "autograder.run.lockstep.lockstep_host.host",
+        "autograder.run.lockstep.stepper -> autograder.run.lockstep.lockstep_host.host",
     ),
     "sim": ("sim/world.py", "autograder.layout", "sim is not allowed to import autograder"),
     "circles": ("sim/engine/shapes.py", "sim.engine.motion", "No cycles are allowed in sim.engine"),
@@ -150,6 +150,6 @@ def test_the_contract_of_the_sandbox_names_every_program_that_runs_there() -> No
         if path.is_dir() or not any(parent.name.endswith("_host") for parent in path.parents)
     }
     inside = {
-        f"autograder.prefork.{name}" for name in ("children", "confinement", "emulation")
+        f"autograder.run.fork_server.{name}" for name in ("children", "confinement", "emulation")
     }  # a forked program's own
     assert found | inside == set(contract["protected_modules"])

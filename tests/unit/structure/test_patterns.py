@@ -23,9 +23,9 @@ FUNCTIONS = {"compile", "match", "fullmatch", "search", "split", "sub", "subn", 
 # What is never given a student's text by the grader.
 APART = {
     "autograder/bootstrap.py": "lock files",
-    "autograder/course/": "the course's own notebooks",
+    "autograder/author/course/": "the course's own notebooks",
     "autograder/notebook/": "runs in the student's own kernel",
-    "autograder/proof/": "the reference and its mutants",
+    "autograder/author/verification/": "the reference and its mutants",
     "autograder/ros/": "runs in students' own programs",
 }
 

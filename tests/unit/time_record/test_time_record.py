@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from autograder.ros import environment
-from autograder.time_record import LOCKSTEP, REAL, TimeRecord
-from autograder.workspace import Workspace
+from autograder.run.time_record import LOCKSTEP, REAL, TimeRecord
+from autograder.run.workspace import Workspace
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ import math
 
 from geometry_msgs.msg import Twist
 
-from autograder.checks import expect, group, hint
 from autograder.harness import SteppedHarness, Workspace
 from autograder.probes.calls import call, calls, value
+from autograder.suite import expect, group, hint
 
 check = group("square")
 MODULE = "first_robot.square"

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder import layout
-from autograder.checks import expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.harness import Workspace
 from autograder.probes import student_test_runs
@@ -18,6 +17,7 @@ from autograder.probes.fault_injection import UNTIDY, expect_failures
 from autograder.probes.given_files import changed_files
 from autograder.probes.student_test_reports import Source, TestRun, shown_name
 from autograder.probes.versions import planted, read, read_files
+from autograder.suite import expect
 
 HINTS = (
     "The tests were right from the start, the linters' too: take them as they were given.",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage
@@ -22,6 +21,7 @@ from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes.installed import Installed
 from autograder.probes.packaging import expect_installs_itself, expect_pytest, expect_same_facts
+from autograder.suite import expect, group, hint
 
 check = group("install")
 

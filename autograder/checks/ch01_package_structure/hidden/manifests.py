@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.assertions import (
     expect_declared,
@@ -14,6 +13,7 @@ from autograder.checks.ch01_package_structure.support.assertions import (
 from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.manifest import PLACEHOLDER
+from autograder.suite import expect, group, hint
 
 check = group("manifest")
 DECLARE = (

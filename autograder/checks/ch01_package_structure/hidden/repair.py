@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.hidden.given import ALARM, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.assertions import (
@@ -22,6 +21,7 @@ from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.installed import Installed
 from autograder.probes.packaging import expect_pytest, licence
+from autograder.suite import expect, group, hint
 
 check = group("repair")
 MISSING_AT_FIRST = 4  # numpy and the three packages of the launch file

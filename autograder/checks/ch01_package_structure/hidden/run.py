@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.harness import SteppedHarness, Workspace
 from autograder.probes import student_yaml
 from autograder.probes.installed import Installed
-from autograder.reading import reading
+from autograder.submission.reading import reading
+from autograder.suite import expect, group, hint
 
 check = group("run")
 HINTS = (

@@ -8,16 +8,16 @@ import difflib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from autograder.checks import CheckFailed, expect
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.packages import find_packages
 from autograder.probes import imports, manifest
 from autograder.probes.files import read_plain
 from autograder.probes.installed import Installed
 from autograder.probes.manifest import Manifest
+from autograder.submission.packages import find_packages
+from autograder.suite import CheckFailed, expect
 
 MAX_BYTES = 1024 * 1024  # of a file that is read
 

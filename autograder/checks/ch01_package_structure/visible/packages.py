@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch01_package_structure.support import contract, robots
 from autograder.checks.ch01_package_structure.support.added_files import extend
 from autograder.checks.ch01_package_structure.support.assertions import (
@@ -22,6 +21,7 @@ from autograder.harness import Workspace
 from autograder.probes import imports
 from autograder.probes.installed import Installed
 from autograder.probes.packaging import expect_pytest, expect_same_facts, licence
+from autograder.suite import expect, group, hint
 
 check = group("packages")
 

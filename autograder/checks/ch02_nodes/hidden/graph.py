@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import Robot, qos_mismatch
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.lockstep.failures import diagnose_ending
 from autograder.probes.namespaces import missing_in_namespace
 from autograder.probes.qos import non_default_qos
+from autograder.run.lockstep.failures import diagnose_ending
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("graph")
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import signal
 import sys
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end
 from autograder.harness import Workspace
-from autograder.lockstep.failures import tail
-from autograder.sandbox.launcher import launch
+from autograder.run.lockstep.failures import tail
+from autograder.run.sandbox.launcher import launch
+from autograder.suite import expect, group, hint
 
 check = group("lifecycle")
 LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more

@@ -7,7 +7,6 @@ import statistics
 
 from sensor_msgs.msg import LaserScan
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support import contract
 from autograder.checks.ch02_nodes.support.robot import (
     SETTLED,
@@ -19,7 +18,8 @@ from autograder.checks.ch02_nodes.support.robot import (
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.harness import Workspace
 from autograder.harness.drive import SCAN_SECONDS
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("safety")
 TALKS = ("subscribes_scan", "publishes_cmd_vel")

@@ -8,12 +8,12 @@ import re
 
 from std_msgs.msg import String
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.contract import BLOCKED_SECONDS, MIN_WARNINGS, PERIOD, SILENT_SECONDS
 from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS, Reactions, Robot
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, Part, scan
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("timing")
 SECONDS = 20.0

@@ -9,11 +9,11 @@ import time
 from geometry_msgs.msg import Twist
 from rcl_interfaces.srv import GetParameters
 
-from autograder.checks import expect
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
 from autograder.harness import RealTimeHarness, Workspace
-from autograder.lockstep.failures import tail
 from autograder.probes.rclpy_races import lost_a_race
+from autograder.run.lockstep.failures import tail
+from autograder.suite import expect
 
 START_SECONDS = 30.0  # of real time
 COMMAND = "geometry_msgs/msg/Twist"

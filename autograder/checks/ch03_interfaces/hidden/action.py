@@ -10,13 +10,13 @@ from geometry_msgs.msg import Twist
 from rclpy.action import get_action_names_and_types
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
 from autograder.checks.ch03_interfaces.support.driver import ACTION, COMMANDS, ODOMETRY, Driver, is_left, stopped
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("action")
 SERVES, MOVES = ("drive_serves",), ("drive_moves",)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like, read
 from autograder.harness import Workspace
 from autograder.probes.interfaces import Aspect, compare, elements
+from autograder.suite import CheckFailed, group, hint
 
 check = group("definitions")
 AFTER = ("readable",)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.packages import find_packages
 from autograder.probes import manifest
 from autograder.probes.installed import look
 from autograder.probes.packaging import wrong_for_interfaces
+from autograder.submission.packages import find_packages
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("package", doc=contract.DEFINE)
 USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}

@@ -8,7 +8,6 @@ import random
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import UNKNOWN
 from autograder.checks.ch03_interfaces.support.driver_qos import expect_heard
@@ -16,7 +15,8 @@ from autograder.checks.ch03_interfaces.support.reporter import BATTERY, JOINTS, 
 from autograder.harness import ReceivedMessage
 from autograder.probes.late_joiner import kept_messages
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("status")
 NEEDS = ("status_starts", "robot_status")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, expect
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 from autograder.harness import Workspace
-from autograder.packages import find_packages
 from autograder.probes.interfaces import MAX_BYTES, Aspect, Interface, Unreadable, closest, compare, parse, share
+from autograder.submission.packages import find_packages
+from autograder.suite import CheckFailed, expect
 
 STUB = "YOUR CODE HERE"  # what a released cell holds where the answer belongs
 

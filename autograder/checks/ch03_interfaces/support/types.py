@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from autograder.building.interfaces import load_from
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 from autograder.harness import Workspace
-from autograder.interfaces import load_from
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import group, hint
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.reading import expect_like
 from autograder.diagnosis import OK, Diagnosis
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes.interfaces import Aspect
+from autograder.suite import group, hint
 
 check = group("definitions")
 ALL = tuple(Aspect)

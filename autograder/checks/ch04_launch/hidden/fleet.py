@@ -5,7 +5,6 @@ from __future__ import annotations
 from contextlib import suppress
 from functools import partial
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
@@ -23,6 +22,7 @@ from autograder.checks.ch04_launch.support.status import HEAR_SECONDS
 from autograder.exceptions import StudentError
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
+from autograder.suite import expect, group, hint
 
 check = group("fleet")
 MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is

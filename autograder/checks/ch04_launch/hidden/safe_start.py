@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import UNUSUAL, Launches
 from autograder.checks.ch04_launch.support import contract
@@ -12,7 +11,8 @@ from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
-from autograder.sandbox.procfs import children
+from autograder.run.sandbox.procfs import children
+from autograder.suite import expect, group, hint
 
 check = group("safe_start")
 END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s

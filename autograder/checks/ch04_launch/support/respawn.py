@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 
-from autograder.checks import expect
 from autograder.harness.launch import LaunchHarness
-from autograder.sandbox.procfs import TICK, start_seconds
+from autograder.run.sandbox.procfs import TICK, start_seconds
+from autograder.suite import expect
 
 RESPAWN_SECONDS = 10.0  # real time, generous for a machine that is busy
 DELAY = 0.5  # s

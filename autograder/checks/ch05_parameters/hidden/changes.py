@@ -6,14 +6,14 @@ import math
 import random
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, EXECUTABLE, PACKAGE
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, scan
 from autograder.harness import Workspace
 from autograder.probes.calls import Plan, call, calls, look, made
 from autograder.probes.parameters import Value, as_declared, differences, shortened
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("changes")
 DISTANCES = ("safety_distance", "slow_distance")

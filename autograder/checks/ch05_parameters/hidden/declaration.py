@@ -6,7 +6,6 @@ import random
 
 from rcl_interfaces.msg import ParameterDescriptor
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED, Wanted
 from autograder.checks.ch05_parameters.support.robot import Robot
@@ -20,6 +19,7 @@ from autograder.probes.parameters import (
     shortened,
     value_text,
 )
+from autograder.suite import expect, group, hint
 
 check = group("declaration")
 SPELT = {

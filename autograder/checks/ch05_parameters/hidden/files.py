@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, OWN, SHARED, WANTED, fleet_values
 from autograder.checks.ch05_parameters.support.robot import fleet_path
 from autograder.harness import Workspace
 from autograder.probes.calls import Plan, call, calls, look
 from autograder.probes.parameters import Value, differences, near_misses, read_file, shortened
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("files", needs=("file",))
 JOINER = "joiner"  # a robot that no file names

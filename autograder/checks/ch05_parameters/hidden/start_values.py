@@ -8,13 +8,13 @@ from random import Random
 
 import pytest
 
-from autograder.checks import CheckFailed, expect, group, hint, temporal
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
-from autograder.gallery import Gallery
 from autograder.harness import Shared, Workspace, drive
 from autograder.probes.calls import StepResult, call, calls, made
 from autograder.probes.parameters import Value, as_declared, differences, override_arguments, shortened
+from autograder.result.artifacts import Gallery
+from autograder.suite import CheckFailed, expect, group, hint, temporal
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")

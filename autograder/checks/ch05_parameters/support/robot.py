@@ -11,7 +11,6 @@ from pathlib import Path
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from autograder.checks import expect
 from autograder.checks.ch05_parameters.support.contract import CHANGEABLE, EXECUTABLE, FLEET, NODE, PACKAGE, WANTED
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
@@ -27,6 +26,7 @@ from autograder.probes.parameters import (
     differences,
     override_arguments,
 )
+from autograder.suite import expect
 
 BEAMS = 360
 SETTLED = 0.2  # s: a node at 10 Hz has answered a scan by then

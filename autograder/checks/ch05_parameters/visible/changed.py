@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed
 from autograder.probes.parameters import Value
+from autograder.suite import expect, group, hint
 
 check = group("changes")
 PAIR: dict[str, Value] = {"safety_distance": 1.5, "slow_distance": 2.0}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
 from autograder.checks.ch05_parameters.support.robot import Robot, refusal
 from autograder.harness import Workspace
 from autograder.probes.parameters import TYPES, Value, differences, missing_sentence, value_text
+from autograder.suite import expect, group, hint
 
 check = group("declaration")
 

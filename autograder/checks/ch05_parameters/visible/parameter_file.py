@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch05_parameters.support import contract
 from autograder.checks.ch05_parameters.support.contract import OWN, fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 from autograder.harness import Workspace
 from autograder.probes.parameters import differences, read_file
+from autograder.suite import expect, group, hint
 
 check = group("files")
 

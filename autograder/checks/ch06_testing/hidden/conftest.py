@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import check_of
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.harness import Workspace
+from autograder.suite import check_of
 
 
 @pytest.fixture(scope="session")

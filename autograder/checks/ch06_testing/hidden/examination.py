@@ -14,7 +14,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from autograder.checks import CheckFailed, CheckRow, expect
 from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import (
@@ -30,7 +29,8 @@ from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.colcon_test import colcon_test
 from autograder.probes.student_test_reports import Report, Source, TestRun
-from autograder.sandbox import Ending
+from autograder.run.sandbox import Ending
+from autograder.suite import CheckFailed, CheckRow, expect
 
 RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
 FILES = {

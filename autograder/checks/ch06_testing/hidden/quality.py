@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch06_testing.hidden.examination import Examination
 from autograder.checks.ch06_testing.hidden.faults import STYLES, style
 from autograder.checks.ch06_testing.support import contract
@@ -14,6 +13,7 @@ from autograder.probes.colcon_test import expect_ended
 from autograder.probes.given_files import changed_files
 from autograder.probes.installed import look
 from autograder.probes.student_test_reports import ClaimedOutcome
+from autograder.suite import expect, group, hint
 
 check = group("craft")
 SHARED = ("launch", "config")  # folders of which setup.py installs the files

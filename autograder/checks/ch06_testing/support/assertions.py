@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from autograder.checks import CheckFailed, expect
 from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
 from autograder.probes.student_test_reports import UNNAMED, Report, Source, shown_name
-from autograder.sandbox import Ending
+from autograder.run.sandbox import Ending
+from autograder.suite import CheckFailed, expect
 
 UNFINISHED = "still to be written"
 

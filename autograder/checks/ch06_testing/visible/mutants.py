@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep, expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS, MIN_TESTS, PACKAGE, SCRIPTS
@@ -13,6 +12,7 @@ from autograder.probes import linters
 from autograder.probes.student_test_reports import Report, Source, TestRun
 from autograder.probes.student_test_runs import run, take
 from autograder.probes.versions import Version
+from autograder.suite import check, expect, hint
 
 Reports = dict[tuple[str, str], Report]
 GUARD_FILE = "speed_guard/guard.py"

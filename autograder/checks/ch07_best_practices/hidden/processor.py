@@ -9,7 +9,6 @@ from statistics import fmean
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import (
     HISTORY,
     LOGGING,
@@ -25,6 +24,7 @@ from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.calls import Plan, call, calls, made
 from autograder.probes.namespaces import missing_in_namespace
 from autograder.probes.qos import non_default_qos
+from autograder.suite import expect, group, hint
 
 check = group("processor")
 SECONDS = 20.0

@@ -9,7 +9,6 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy
 from std_msgs.msg import String
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.hidden.bugs import BUGS, with_bugs
 from autograder.checks.ch07_best_practices.support.contract import (
     ERRORS,
@@ -28,7 +27,8 @@ from autograder.probes.calls import call, calls, made
 from autograder.probes.late_joiner import kept_messages
 from autograder.probes.namespaces import missing_in_namespace
 from autograder.probes.parameters import NodeParameters, Value, differences, missing_sentence, override_arguments
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("robust")
 DEFAULTS: dict[str, Value] = {"failure_probability": 0.1, "seed": 0, "max_errors": 10}

@@ -7,7 +7,6 @@ from math import inf, nan
 from statistics import fmean
 from typing import Any
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch07_best_practices.support.contract import (
     DEQUE,
     REP_117,
@@ -18,6 +17,7 @@ from autograder.checks.ch07_best_practices.support.contract import (
 )
 from autograder.harness import Workspace
 from autograder.probes.calls import StepResult, call, calls, look, made, same, value
+from autograder.suite import expect, group, hint
 
 check = group("utils")
 LOW, HIGH = 0.2, 6.0

@@ -14,7 +14,7 @@ from autograder.checks.ch07_best_practices.support.contract import MAX_ERRORS, P
 from autograder.harness import AutoHarness, Workspace
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.parameters import override_arguments
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
 
 FILTERED, MEAN, STATUS = "/scan_filtered", "/mean_distance", "/status"
 PATIENCE = 3.0  # s of ROS time for a reading, which should take one

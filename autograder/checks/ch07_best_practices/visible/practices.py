@@ -6,12 +6,12 @@ from math import inf, isnan, nan
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch07_best_practices.support import contract
 from autograder.checks.ch07_best_practices.support.robot import STATUS, Processor, Robust, expected, logged, scan
 from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, made, same, value
 from autograder.probes.parameters import NodeParameters
+from autograder.suite import check, expect, hint
 
 BLIND_SECONDS = 6  # of scans without a distance
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 from std_srvs.srv import SetBool
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_exact_limits
 from autograder.checks.ch08_capstone.hidden.judges import JudgeDriving
@@ -23,7 +22,8 @@ from autograder.checks.ch08_capstone.support.system import (
     expect_turning,
 )
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("step_2")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
-from autograder.checks import expect
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, INTERFACES, MONITOR, PROCESSOR
 from autograder.harness.grader_node import NAME
+from autograder.suite import expect
 
 _SCAN, _CLEARANCE = "sensor_msgs/msg/LaserScan", f"{INTERFACES}/msg/Clearance"
 _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"

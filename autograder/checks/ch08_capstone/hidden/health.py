@@ -8,7 +8,6 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -26,7 +25,8 @@ from autograder.checks.ch08_capstone.support.system import SETTLED, SharedSystem
 from autograder.harness import ReceivedMessage
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.message_period import describe_pace, is_paced
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import expect, group, hint
 
 check = group("step_2")
 DEAD = {"scan", "clearance"}  # what falls silent with the lidar

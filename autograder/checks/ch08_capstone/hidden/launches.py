@@ -11,7 +11,6 @@ from random import Random
 import pytest
 import yaml
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -26,6 +25,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 from autograder.probes.files import read_plain
+from autograder.suite import expect, group, hint
 
 check = group("step_4", doc=contract.LAUNCH_DOC)
 SHARED = ("shares",)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences, load_messages
@@ -13,6 +12,7 @@ from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import manifest
 from autograder.probes.installed import look
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_3", doc=contract.INTERFACES_DOC)
 NEEDS = {

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.hidden.graph import expect_endpoints, names_of
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR, PROGRAMS
 from autograder.checks.ch08_capstone.support.system import SharedSystem
 from autograder.harness import Workspace
 from autograder.probes.namespaces import missing_in_namespace
+from autograder.suite import expect, group, hint
 
 check = group("step_2")
 MESSAGES = ("clearance_message", "interface_package")

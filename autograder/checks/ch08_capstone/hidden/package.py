@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE, PACKAGE, PROGRAMS, VERSION
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
@@ -15,6 +14,7 @@ from autograder.probes import imports, manifest
 from autograder.probes.added_files import install_with
 from autograder.probes.installed import look
 from autograder.probes.packaging import expect_installs_itself
+from autograder.suite import expect, group, hint
 
 check = group("step_1", doc=contract.PACKAGES_DOC)
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support import contract
@@ -20,6 +19,7 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_turning
 from autograder.harness import ReceivedMessage, Workspace
 from autograder.probes.parameters import differences, for_node, missing_sentence, read_file
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from autograder import layout
-from autograder.checks import expect, group, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.harness import Workspace
@@ -14,6 +13,7 @@ from autograder.probes.colcon_test import colcon_test, expect_ended
 from autograder.probes.given_files import changed_files
 from autograder.probes.student_test_reports import ClaimedOutcome, Report
 from autograder.probes.student_test_runs import take
+from autograder.suite import expect, group, hint
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")

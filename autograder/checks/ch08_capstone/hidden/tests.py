@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import pytest
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, faulty, right
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
@@ -15,6 +14,7 @@ from autograder.checks.ch08_capstone.support.sources import source_of
 from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.student_test_reports import Report, TestRun, shown_name
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("step_6")
 FILE = "test_sectors.py"

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from autograder.checks import expect
+from autograder.building.interfaces import load_from
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, LEVELS
 from autograder.harness import Workspace
-from autograder.interfaces import load_from
+from autograder.suite import expect
 
 
 @dataclass(frozen=True)

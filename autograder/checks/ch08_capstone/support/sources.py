@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from autograder.checks import CheckFailed
 from autograder.diagnosis import OK, Diagnosis, Kind
-from autograder.exercise_stubs import explain
 from autograder.harness import Workspace
-from autograder.packages import find_packages
+from autograder.submission.exercise_stubs import explain
+from autograder.submission.packages import find_packages
+from autograder.suite import CheckFailed
 
 
 def source_of(workspace: Workspace, package: str) -> Path:

@@ -11,7 +11,6 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
-from autograder.checks import CheckFailed, expect
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch08_capstone.support.clearances import right_clearance
 from autograder.checks.ch08_capstone.support.contract import (
@@ -28,7 +27,8 @@ from autograder.harness import AutoHarness, Program, ReceivedMessage, Shared, Wo
 from autograder.harness.drive import SCAN_SECONDS
 from autograder.probes.installed import look
 from autograder.probes.parameters import NodeParameters, SetParametersReply
-from autograder.sandbox import Process
+from autograder.run.sandbox import Process
+from autograder.suite import CheckFailed, expect
 
 SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
 ANSWER_SECONDS = 5.0  # s of ROS time for a service

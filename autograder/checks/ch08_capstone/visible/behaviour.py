@@ -7,7 +7,6 @@ import math
 from rclpy.qos import DurabilityPolicy
 from std_srvs.srv import SetBool
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
@@ -23,6 +22,7 @@ from autograder.checks.ch08_capstone.support.contract import (
 )
 from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
 from autograder.probes.parameters import differences, missing_sentence
+from autograder.suite import check, expect, hint
 
 OPEN = scan(fill=3.0)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, differences, load_messages
@@ -13,6 +12,7 @@ from autograder.diagnosis import Diagnosis
 from autograder.harness import Workspace
 from autograder.probes import imports, manifest
 from autograder.probes.installed import look
+from autograder.suite import check, expect, hint
 
 
 @check(points=1, holds=("installs", "imports"), group="step_1", doc=contract.PACKAGES_DOC)

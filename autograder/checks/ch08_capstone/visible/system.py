@@ -7,7 +7,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import (
     CONFIG,
@@ -19,7 +18,6 @@ from autograder.checks.ch08_capstone.support.contract import (
     name_of,
 )
 from autograder.checks.ch08_capstone.support.sources import source_of
-from autograder.exercise_stubs import STILL_TO_BE_WRITTEN
 from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe, linters, student_test_runs
@@ -28,6 +26,8 @@ from autograder.probes.installed import look
 from autograder.probes.parameters import differences, for_node, read_file
 from autograder.probes.student_test_reports import Report, TestRun
 from autograder.probes.versions import Version
+from autograder.submission.exercise_stubs import STILL_TO_BE_WRITTEN
+from autograder.suite import check, expect, hint
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
 MUTANT = ("a mutant",)

@@ -8,7 +8,6 @@ from random import Random
 
 import pytest
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import COOL, GUARD, LAUNCH_FILE, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.robot import Types
@@ -16,6 +15,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import launch_probe
 from autograder.probes.installed import look
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("launch", doc=contract.LAUNCH_DOC)
 NODES = tuple(f"/{name}" for name in PROGRAMS)

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from random import Random
 
-from autograder.checks import CheckFailed, expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     COOL,
@@ -25,7 +24,8 @@ from autograder.checks.ch09_assessment.support.contract import (
 from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, NodeHarness, Start, Types, near, refuses
 from autograder.harness import ReceivedMessage, Workspace
 from autograder.probes.namespaces import missing_in_namespace
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.suite import CheckFailed, expect, group, hint
 
 check = group("nodes")
 BUILT = ("installs",)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from autograder.checks import expect, group, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import INTERFACES, PACKAGE, PROGRAMS
 from autograder.checks.ch09_assessment.support.definitions import expect_definitions
@@ -19,6 +18,7 @@ from autograder.probes.packaging import (
     expect_same_facts,
     wrong_for_interfaces,
 )
+from autograder.suite import expect, group, hint
 
 check = group("packages")
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from autograder.checks import CheckFailed, expect
+from autograder.building.interfaces import load_from
 from autograder.checks.ch09_assessment.support.contract import (
     GUARD,
     INTERFACES,
@@ -22,12 +22,12 @@ from autograder.checks.ch09_assessment.support.contract import (
 )
 from autograder.diagnosis import OK, Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.exercise_stubs import explain
 from autograder.harness import AutoHarness, ReceivedMessage, Workspace
-from autograder.interfaces import load_from
-from autograder.packages import find_packages
 from autograder.probes.parameters import NodeParameters, Value, override_arguments
-from autograder.time_record import LOCKSTEP
+from autograder.run.time_record import LOCKSTEP
+from autograder.submission.exercise_stubs import explain
+from autograder.submission.packages import find_packages
+from autograder.suite import CheckFailed, expect
 
 FIELDS = {"Temperature": ("stamp", "celsius"), "Decision": ("stamp", "cooling", "celsius")}
 STEP = 0.1  # s between two messages

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from autograder.checks import check, expect, hint
 from autograder.checks.ch09_assessment.support import contract
 from autograder.checks.ch09_assessment.support.contract import (
     GUARD,
@@ -22,6 +21,7 @@ from autograder.harness import Workspace
 from autograder.harness.launch import LaunchHarness
 from autograder.probes import imports, launch_probe, manifest
 from autograder.probes.installed import look
+from autograder.suite import check, expect, hint
 
 
 @check(points=1, holds=("temperature", "decision"), group="packages", doc=contract.INTERFACES_DOC)

@@ -2,9 +2,9 @@
 
 import random
 
-from autograder.checks import group, hint
 from autograder.checks.ch01_greeting.support.asking import expect_greeting
 from autograder.harness import Workspace
+from autograder.suite import group, hint
 
 check = group("greet")
 NAMES = ("Karel", "Grace", "Unimate", "Elektro")

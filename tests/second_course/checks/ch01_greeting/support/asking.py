@@ -1,8 +1,8 @@
 """Asks for a greeting."""
 
-from autograder.checks import expect
 from autograder.harness import Workspace
 from autograder.probes.calls import call, calls, value
+from autograder.suite import expect
 
 
 def expect_greeting(workspace: Workspace, given: str, greeting: str) -> None:

@@ -1,8 +1,8 @@
 """One greeting."""
 
-from autograder.checks import group, hint
 from autograder.checks.ch01_greeting.support.asking import expect_greeting
 from autograder.harness import Workspace
+from autograder.suite import group, hint
 
 check = group("greet")
 

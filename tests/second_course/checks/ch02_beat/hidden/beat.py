@@ -2,9 +2,9 @@
 
 import random
 
-from autograder.checks import group, hint
 from autograder.checks.ch02_beat.support.beating import expect_beats
 from autograder.harness import Workspace
+from autograder.suite import group, hint
 
 check = group("beat")
 

@@ -2,8 +2,8 @@
 
 from std_msgs.msg import UInt32
 
-from autograder.checks import expect
 from autograder.harness import AutoHarness, Workspace
+from autograder.suite import expect
 
 
 def expect_beats(workspace: Workspace, seconds: float, count: int) -> None:

@@ -1,0 +1,160 @@
+"""The students' bundle as it was released, and how a later release updates it.
+
+`release.json` in a bundle has the version, the digest of each file, and those of each notebook's cells. A file or a
+cell with another digest was changed by the student. An update leaves it alone in `chapters/`. Elsewhere, the course's
+own file takes its place, and the student's is kept beside it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder.exceptions import UsageError
+from autograder.result.model import write_atomically, write_json
+
+MANIFEST = "release.json"
+STUDENT_FOLDER = "chapters"  # where students write; all other files of a bundle are the course's
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a release says of itself.
+
+    Attributes:
+        version: when it was made, in UTC, so that a later one sorts after an earlier one.
+        course: the folder where the class finds its newest release, or an empty string.
+        files: the digest of each file, by its path in the bundle.
+        cells: for each notebook, the digest of each cell's text, by the cell's id.
+    """
+
+    version: str
+    course: str
+    files: dict[str, str]
+    cells: dict[str, dict[str, str]]
+
+
+def write_manifest(bundle: Path, version: str, course: str) -> None:
+    """Write the manifest of a bundle that is otherwise complete."""
+    files = {str(path.relative_to(bundle)): _digest(path.read_bytes()) for path in _files(bundle)}
+    cells = {
+        name: {cell.id: _digest(cell.source.encode()) for cell in nbformat.read(bundle / name, as_version=4).cells}
+        for name in files
+        if name.endswith(".ipynb")
+    }
+    write_json(bundle / MANIFEST, asdict(Manifest(version, course, files, cells)))
+
+
+def read_manifest(bundle: Path) -> Manifest:
+    """Read the manifest of a bundle.
+
+    Raises:
+        UsageError: there is none, or it cannot be read.
+    """
+    try:
+        return Manifest(**json.loads((bundle / MANIFEST).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError) as error:
+        raise UsageError(f"{bundle}: no release of the course: {error}") from None
+
+
+@dataclass(frozen=True)
+class Update:
+    """What an update did with the files of the release, by their paths in the bundle.
+
+    Attributes:
+        written: the files that were written.
+        kept: the files in `chapters/` that were not, because the student has changed them.
+        set_aside: for each changed file elsewhere that was written over, the path of the copy of the student's.
+    """
+
+    written: Sequence[str]
+    kept: Sequence[str]
+    set_aside: Mapping[str, str]
+
+
+def update_bundle(bundle: Path, newer: Path) -> Update:
+    """Update a student's bundle to a later release, of all chapters or of some.
+
+    Raises:
+        UsageError: one of the folders is no bundle, or `newer` is the older one.
+    """
+    old, new = read_manifest(bundle), read_manifest(newer)
+    if new.version < old.version:
+        raise UsageError(f"{newer} is of {new.version}, and what is here is newer, of {old.version}")
+    written: list[str] = []
+    kept: list[str] = []
+    set_aside: dict[str, str] = {}
+    for name, digest in new.files.items():
+        source, target = newer / name, bundle / name
+        there = _digest(target.read_bytes()) if target.is_file() else None
+        changed = there not in (None, old.files.get(name))
+        if there == digest:
+            continue
+        if changed and name.startswith(f"{STUDENT_FOLDER}/"):
+            if name.endswith(".ipynb"):
+                merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
+                write_atomically(target, nbformat.writes(merged).encode())
+                written.append(name)
+            else:
+                kept.append(name)
+            continue
+        if changed:
+            set_aside[name] = str(_set_aside(target).relative_to(bundle))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source, target)
+        written.append(name)
+    chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{STUDENT_FOLDER}/")}
+    others = {
+        name for name in old.files if name.startswith(f"{STUDENT_FOLDER}/") and name.split("/")[1] not in chapters
+    }
+    for name in old.files.keys() - new.files.keys() - others:
+        if (bundle / name).is_file() and _digest((bundle / name).read_bytes()) == old.files[name]:
+            (bundle / name).unlink()
+    files = {name: old.files[name] for name in others} | new.files
+    cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
+    write_json(bundle / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
+    return Update(written, kept, set_aside)
+
+
+def _set_aside(file: Path) -> Path:
+    """Copy a file to a free name beside it, and return the copy."""
+    names = (f"{file.name}.yours{number or ''}" for number in itertools.count())
+    copy = next(path for path in map(file.with_name, names) if not path.exists())
+    shutil.copy2(file, copy)
+    return copy
+
+
+def _merged(students: NotebookNode, released: NotebookNode, old: dict[str, str]) -> NotebookNode:
+    """Return a student's notebook with the released cells in place of those that the student has not changed."""
+    new = {cell.id: cell for cell in released.cells}
+    cells = []
+    for cell in students.cells:
+        untouched = old.get(cell.id) == _digest(cell.source.encode())
+        if untouched and cell.id in new and cell.source != new[cell.id].source:
+            cells.append(new[cell.id])
+        elif not untouched or cell.id in new:
+            cells.append(cell)
+    before = None
+    for cell in released.cells:  # what is new comes after what stands before it in the release
+        if cell.id not in old:
+            place = next((index for index, there in enumerate(cells, start=1) if there.id == before), len(cells))
+            cells.insert(place if before else 0, cell)
+        before = cell.id
+    students.cells = cells
+    return students
+
+
+def _files(bundle: Path) -> Iterator[Path]:
+    return (path for path in sorted(bundle.rglob("*")) if path.is_file() and path.name != MANIFEST)
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

@@ -1,0 +1,103 @@
+"""Reads the course's own metadata of notebooks and cells, of which `metadata.schema.json` beside this module has all.
+
+A cell that writes a file into the student's workspace names the file of the reference that it copies:
+
+    {"course": {"source": "wheels/wheels/wheel_node.py", "target": "ws/src/wheels/wheels/wheel_node.py",
+                "hide": ["WheelNode.turn"]}}
+
+Sources are paths in `solutions/`, targets are paths in the chapter's folder.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from jsonschema import Draft202012Validator, ValidationError
+from nbformat import NotebookNode
+
+from autograder import layout
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.solution_markers import mark_functions, mark_lines
+from autograder.probes.given_files import strip_licence
+
+_METADATA = Draft202012Validator(json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8")))
+
+
+@dataclass(frozen=True)
+class CopiedFile:
+    """The reference file that a cell copies. The metadata call its hidden functions `hide`, its hidden lines `cut`."""
+
+    source: PurePosixPath
+    target: PurePosixPath
+    hidden_functions: tuple[str, ...]
+    hidden_lines: tuple[tuple[str, str], ...]
+
+    def expected_text(self) -> str:
+        """Return the source that the cell must have. Raises CourseError if the reference does not have it all."""
+        text = strip_licence(read_solution(self.source))
+        try:
+            text = mark_functions(text, self.hidden_functions) if self.hidden_functions else text
+            text = mark_lines(text, self.hidden_lines) if self.hidden_lines else text
+        except CourseError as error:
+            raise CourseError(f"{self.source}: {error}") from error
+        return f"%%writefile {self.target}\n{text.rstrip()}"
+
+
+def copied_file(cell: NotebookNode) -> CopiedFile | None:
+    """Return the reference file that a code cell copies, or None if it copies none."""
+    course = metadata(cell)
+    if "source" not in course:
+        return None
+    cut = tuple((before, after) for before, after in course.get("cut", ()))
+    return CopiedFile(
+        PurePosixPath(course["source"]), PurePosixPath(course["target"]), tuple(course.get("hide", ())), cut
+    )
+
+
+def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
+    """Return the chapter's files that are copies of reference files, as target to source."""
+    pairs = metadata(notebook).get("given", {})
+    return {PurePosixPath(target): PurePosixPath(source) for target, source in pairs.items()}
+
+
+def group(cell: NotebookNode) -> str | None:
+    """Return the group of checks that a grade cell stands for, or None."""
+    return metadata(cell).get("group")
+
+
+def is_graded(cell: NotebookNode) -> bool:
+    """Return whether nbgrader takes points from this cell."""
+    return bool(cell.metadata.get("nbgrader", {}).get("grade"))
+
+
+def is_manually_graded(cell: NotebookNode) -> bool:
+    """Return whether students write in this cell and a person gives the points in nbgrader's formgrader."""
+    return is_graded(cell) and is_solution(cell)
+
+
+def is_solution(cell: NotebookNode) -> bool:
+    """Return whether students write in this cell."""
+    return bool(cell.metadata.get("nbgrader", {}).get("solution"))
+
+
+def metadata(node: NotebookNode) -> Mapping[str, Any]:
+    """Return the `course` part of a cell's or a notebook's metadata. Raises CourseError if it breaks the schema."""
+    course: Mapping[str, Any] = node.metadata.get("course", {})
+    try:
+        _METADATA.validate(course)
+    except ValidationError as error:
+        place = error.json_path.replace("$", "course", 1)
+        raise CourseError(f"the metadata {place} are wrong: {error.message}") from error
+    return course
+
+
+def read_solution(source: PurePosixPath) -> str:
+    """Return the text of a reference file. Raises CourseError if there is none."""
+    path = layout.SOLUTIONS / source
+    if not path.is_file():
+        raise CourseError(f"the reference has no file {source}; look in solutions/")
+    return path.read_text(encoding="utf-8")

@@ -1,0 +1,99 @@
+"""The rules for a chapter's contract: each sentence is in the cell that names it, and has a check.
+
+A cell that names sentences of the contract has to name all of them. Each row of a table, each bullet, and the docstring
+of each function that the student writes has to contain one of these sentences, or a text in `explains`.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from nbformat import NotebookNode
+
+from autograder.author.course.cells import metadata
+from autograder.author.course.findings import Finding
+from autograder.author.course.forms import Form, in_form
+from autograder.suite import Check
+from autograder.suite.contract import sentences
+from autograder.suite.quotation import quote
+
+
+def broken_contract(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
+    """Return the sentences without a check, the checks without a sentence, and what students are not shown.
+
+    Findings call the notebook by `name`. `checks` are all of its chapter, visible and hidden.
+    """
+    found = []
+    for cell in in_form(notebook, Form.RELEASED).cells:
+        found += [Finding(name, cell.id, message) for message in _cell(cell)]
+    known = sentences(notebook.cells)
+    held = {sentence for check in checks for sentence in check.holds}
+    for sentence in known.values():
+        if not sentence.unchecked and sentence.id not in held:
+            found.append(Finding(name, None, f"no check holds the sentence {sentence.id!r} of the contract"))
+        if sentence.unchecked and sentence.id in held:
+            found.append(
+                Finding(name, None, f"the sentence {sentence.id!r} is said to be unchecked, and a check holds it")
+            )
+    for check in checks:
+        unknown = ", ".join(repr(each) for each in check.holds if each not in known)
+        if unknown or not check.holds:
+            message = f"holds {unknown}, which no cell names" if unknown else "holds no sentence of the contract"
+            found.append(Finding(name, None, f"the {check.visibility.value} check {check.id!r} {message}"))
+    return found
+
+
+def _cell(cell: NotebookNode) -> Iterator[str]:
+    """Yield what is wrong with the contract of a released cell."""
+    course = metadata(cell)
+    contract, explains = course.get("contract", {}), course.get("explains", [])
+    named = {name: [texts] if isinstance(texts, str) else texts for name, texts in contract.items()}
+    shown = _words(cell.source)
+    for name, text in [(name, text) for name, texts in named.items() for text in texts] + [
+        ("explains", text) for text in explains
+    ]:
+        if _words(text) not in shown:
+            yield f"{name!r}: its released text does not hold the sentence {text!r}"
+        elif quote(cell, text) is None:
+            yield f"{name!r}: {text!r} is not a row, a sentence or a part of one in what a student reads"
+    for name in course.get("unchecked", {}):
+        if name not in named:
+            yield f"{name!r} is said to be unchecked, and the cell's contract does not have it"
+    texts = [_words(text) for each in (*named.values(), explains) for text in each]
+    hidden = course.get("hide", [])
+    for piece in _pieces(cell, hidden) if contract or hidden else ():
+        if not any(text in piece for text in texts):
+            yield f"neither its contract nor `explains` names a sentence of {piece!r}"
+
+
+def _pieces(cell: NotebookNode, hidden: Sequence[str]) -> Iterator[str]:
+    """Yield the rows and bullets of a Markdown cell, and the docstrings of the functions that a student writes."""
+    if cell.cell_type == "code":
+        functions = {name.rpartition(".")[2] for name in hidden}
+        try:
+            tree = ast.parse(cell.source.partition("\n")[2]) if functions else ast.Module([], [])
+        except SyntaxError:  # the cell differs from the reference then, which is found elsewhere
+            return
+        for node in ast.walk(tree):
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name in functions:
+                yield _words(ast.get_docstring(node) or "")
+        return
+    pieces: list[list[str]] = []
+    lines = cell.source.splitlines()
+    for line, after in zip(lines, [*lines[1:], ""], strict=True):
+        row = line.startswith("|") and not _is_rule(line)
+        if line.startswith("- ") or (row and not _is_rule(after)):
+            pieces.append([line])
+        elif line.startswith("  ") and pieces:
+            pieces[-1].append(line)
+    yield from (_words(" ".join(piece)) for piece in pieces)
+
+
+def _words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _is_rule(line: str) -> bool:
+    """Return whether a line is the rule below the head of a table."""
+    return line.startswith("|") and set(line) <= set("|-: ")

@@ -1,0 +1,109 @@
+"""Executes a chapter's notebook in a fresh kernel, on a copy of the chapter's folder, with warnings as errors."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell
+
+from autograder import layout
+from autograder.author.course.forms import Form, in_form
+from autograder.author.course.sync import Chapter
+from autograder.plain_text import clean
+from autograder.ros.domains import Domain
+
+# Run before the first cell rather than set in the environment: Jupyter's own start-up and the tools that a cell calls
+# (colcon, CMake) are not the notebook's to answer for.
+STRICT = """import warnings
+warnings.simplefilter('error')
+# ipykernel's word about itself, when it shuts down; as an error it would keep the kernel from ending.
+warnings.filterwarnings('default', message='For consistency across implementations')
+"""
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How a notebook ran: the executed notebook, as far as it came, and which cell failed and what it said, or None."""
+
+    chapter: str
+    form: Form
+    notebook: NotebookNode
+    seconds: float
+    failure: str | None
+
+    @property
+    def ok(self) -> bool:
+        """Say whether it ran to its end."""
+        return self.failure is None
+
+
+def run_notebook(
+    chapter: Chapter,
+    form: Form = Form.SOURCE,
+    *,
+    timeout: float = 120.0,
+    report: Path | None = None,
+    packages: Path | None = None,
+) -> Execution:
+    """Execute a chapter's notebook in a ROS domain of its own; the chapter's folder is left as it is.
+
+    A cell may take `timeout` seconds. The executed notebook is kept at `report`, and `ws/src` in
+    the folder `packages`.
+    """
+    notebook = in_form(chapter.read(), form)
+    started = time.monotonic()
+    with working_copy(chapter.folder) as folder, Domain() as domain:
+        failure = execute(notebook, folder, timeout, domain.number)
+        if packages is not None and (folder / "ws" / "src").is_dir():
+            shutil.copytree(folder / "ws" / "src", packages, ignore=layout.NOT_COPIED, dirs_exist_ok=True)
+    seconds = time.monotonic() - started
+    if report is not None:
+        report.parent.mkdir(parents=True, exist_ok=True)
+        nbformat.write(notebook, report)
+    return Execution(chapter.assignment, form, notebook, seconds, failure)
+
+
+@contextmanager
+def working_copy(folder: Path) -> Iterator[Path]:
+    """Copy a chapter's folder, without what was built there; yield the copy and remove it afterwards."""
+    with tempfile.TemporaryDirectory(prefix=f"{folder.name}-") as scratch:
+        copy = Path(scratch) / folder.name
+        shutil.copytree(folder, copy, ignore=layout.NOT_COPIED)
+        yield copy
+
+
+def execute(notebook: NotebookNode, folder: Path, timeout: float, domain: int) -> str | None:
+    """Execute a notebook in place, in a kernel of its own that runs in `folder`; return what went wrong, or None.
+
+    A cell may take `timeout` seconds. `domain` is the kernel's `ROS_DOMAIN_ID`.
+    """
+    client = NotebookClient(
+        notebook, kernel_name="python3", timeout=timeout, resources={"metadata": {"path": str(folder)}}
+    )
+    # Sockets in a folder of ours: a port can be taken by somebody else between choosing and binding it.
+    manager = client.create_kernel_manager()
+    manager.transport = "ipc"
+    manager.ip, manager.connection_file = str(folder.parent / "k"), str(folder.parent / "k.json")
+    notebook.cells.insert(0, new_code_cell(STRICT))
+    begun: list[str] = []
+    client.on_cell_start = lambda cell, cell_index: begun.append(cell.id)
+    try:
+        # A loop that is closed at its end; nbclient's own call leaves one in each thread.
+        asyncio.run(client.async_execute(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}))
+    except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
+        return f"cell {begun[-1]!r}: {clean(str(error))}"
+    finally:
+        del notebook.cells[0]
+    return None

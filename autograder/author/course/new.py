@@ -1,0 +1,85 @@
+"""Writes a new chapter, or a new course, from the files in `assets/new`.
+
+A new chapter is a small one that works: a notebook, a contract, a reference, visible and hidden checks, mutants and a
+variant, which pass the proof. Its author makes it into another one, step by step.
+"""
+
+from __future__ import annotations
+
+import importlib
+import keyword
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from autograder import layout
+from autograder.author.course.syllabus import SYLLABUS
+from autograder.author.course.sync import Chapter, sync_chapter
+from autograder.author.course.tables import titles
+from autograder.author.course.workload import effort, time_sentence
+from autograder.exceptions import UsageError
+
+TEMPLATES = layout.ROOT / "assets" / "new"
+NAME = re.compile(r"\d\d_([a-z][a-z0-9_]*)")
+OBJECTIVES = "objectives:\n"
+
+
+def write_chapter(assignment: str) -> tuple[Path, ...]:
+    """Write a chapter of this name into the course, and return its folders: notebook, checks and reference.
+
+    Raises UsageError if the name is not like `10_mapping` or one of the folders is there. Nothing is written then.
+    """
+    named = NAME.fullmatch(assignment)
+    if named is None or keyword.iskeyword(named[1]):
+        raise UsageError(f"{assignment!r} is no name for a chapter: take two digits and a name, such as 10_mapping")
+    package = named[1]
+    title = package.replace("_", " ").capitalize()
+    folders = (layout.CHAPTERS / assignment, layout.CHECKS / f"ch{assignment}", layout.SOLUTIONS / package)
+    words = {"NEW_CHAPTER": assignment, "NEW_PACKAGE": package, "NEW_TITLE": title}
+    _require_new(*folders)
+    for part, folder in zip(("chapter", "checks", "solution"), folders, strict=True):
+        _write(TEMPLATES / "chapter" / part, folder, words)
+    listed = SYLLABUS.read_text(encoding="utf-8") if SYLLABUS.is_file() else OBJECTIVES
+    objective = f"{OBJECTIVES}  {package}: {title}\n"
+    SYLLABUS.write_text(listed.replace(OBJECTIVES, objective, 1), encoding="utf-8")
+    _complete(Chapter(folders[0]))
+    return folders
+
+
+def write_course(folder: Path) -> None:
+    """Write a course without chapters to a new folder. Raises UsageError if the folder is there."""
+    _require_new(folder)
+    title = folder.name.replace("_", " ").replace("-", " ").capitalize()
+    _write(TEMPLATES / "course", folder, {"NEW_COURSE": folder.name, "NEW_TITLE": title})
+
+
+def _require_new(*folders: Path) -> None:
+    for folder in folders:
+        if folder.exists():
+            raise UsageError(f"{folder} exists already: take another name")
+
+
+def _write(template: Path, folder: Path, words: Mapping[str, str]) -> None:
+    """Copy a folder of text files, with words replaced in names and texts."""
+
+    def worded(text: str) -> str:
+        for word, put in words.items():
+            text = text.replace(word, put)
+        return text
+
+    for source in sorted(path for path in template.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
+        target = folder / worded(str(source.relative_to(template)))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(worded(source.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def _complete(chapter: Chapter) -> None:
+    """Write what follows from the rest: copies of the reference, points, minutes, and what will be judged later."""
+    importlib.invalidate_caches()  # the checks were not there when their folder was last looked at
+    sync_chapter(chapter)
+    notebook = chapter.read()
+    first = notebook.cells[0]
+    first.source = first.source.replace("NEW_MINUTES", time_sentence(effort(notebook)))
+    chapter.write(notebook)
+    later = layout.judged_later(chapter.assignment)
+    later.write_text(titles()[later], encoding="utf-8")

@@ -1,0 +1,147 @@
+"""The syllabus, and which cells and hidden checks of the course cover it.
+
+A syllabus is a YAML file. It lists a text's objectives, sections, examples, steps and questions, and its errors. The
+metadata of cells name the items that they cover (`covers`) and the `errata` that they correct. Those of a notebook name
+the errata that its packages correct, and for each objective the cell with the exercise's heading and the groups of
+hidden checks that test it (`objectives`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from nbformat import NotebookNode
+
+from autograder import layout
+from autograder.author.course.cells import metadata
+from autograder.author.course.findings import Finding
+from autograder.suite import Check
+
+SYLLABUS = layout.COURSE.root / layout.COURSE.syllabus
+PARTS = ("sections", "examples", "steps", "questions")
+_HEADING = re.compile(r"^#{1,6} +(?!BEGIN |END )(.+)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Syllabus:
+    """The contents of the chapter that the course teaches, by key.
+
+    `items` are sections, examples, steps and questions. `errata` are pairs of an error and its correction.
+    """
+
+    objectives: dict[str, str]
+    items: dict[str, str]
+    errata: dict[int, tuple[str, str]]
+
+    @classmethod
+    def read(cls, path: Path = SYLLABUS) -> Syllabus:
+        """Read the YAML file."""
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        items = {key: text for part in PARTS for key, text in data.get(part, {}).items()}
+        errata = data.get("errata", {}).items()
+        return cls(data["objectives"], items, {n: (wrong, right) for n, (wrong, right) in errata})
+
+
+@dataclass(frozen=True)
+class Location:
+    """A chapter, and the heading above a cell of its notebook."""
+
+    chapter: str
+    heading: str
+
+
+@dataclass(frozen=True)
+class ExerciseRow:
+    """The heading of an exercise, the key of the objective that it serves, and the hidden checks that test it."""
+
+    objective: str
+    chapter: str
+    exercise: str
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True)
+class SyllabusCoverage:
+    """The parts of the syllabus that notebooks cover: exercises, and the locations of each item and erratum.
+
+    The findings name what nothing covers, and what the syllabus does not have.
+    """
+
+    rows: tuple[ExerciseRow, ...]
+    items: dict[str, list[Location]]
+    errata: dict[int, list[Location]]
+    findings: tuple[Finding, ...]
+
+
+def find_coverage(
+    syllabus: Syllabus, chapters: Sequence[tuple[str, NotebookNode, Sequence[Check]]]
+) -> SyllabusCoverage:
+    """Find what chapters cover, each given as its name, its source notebook and its hidden checks."""
+    rows: list[ExerciseRow] = []
+    items: dict[str, list[Location]] = {key: [] for key in syllabus.items}
+    errata: dict[int, list[Location]] = {number: [] for number in syllabus.errata}
+    findings: list[Finding] = []
+    for name, notebook, checks in chapters:
+        for cell, location, course in _locations(name, notebook):
+            for key, covered in [(k, items) for k in course.get("covers", [])] + [
+                (n, errata) for n in course.get("errata", [])
+            ]:
+                if key not in covered:
+                    findings.append(Finding(f"{name}.ipynb", cell, f"the syllabus has no {key!r}"))
+                elif location not in covered[key]:
+                    covered[key].append(location)
+        exercises, wrong = _rows(name, notebook, checks, syllabus)
+        rows += exercises
+        findings += wrong
+    served = {row.objective for row in rows if row.checks}
+    findings += [
+        Finding(layout.COURSE.syllabus, None, f"no {what} covers {key!r}: {text}")
+        for what, missing in (
+            ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in served}),
+            ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),
+            ("notebook", {n: wrong for n, (wrong, _) in syllabus.errata.items() if not errata[n]}),
+        )
+        for key, text in missing.items()
+    ]
+    return SyllabusCoverage(tuple(rows), items, errata, tuple(findings))
+
+
+def _locations(name: str, notebook: NotebookNode) -> Iterator[tuple[str | None, Location, Any]]:
+    """Yield (cell id, location, course metadata) of the notebook, whose id is None, and of each cell."""
+    title = next((found[1] for cell in notebook.cells if (found := _HEADING.search(cell.source))), name)
+    yield None, Location(name, title), metadata(notebook)
+    heading = title
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown" and (found := _HEADING.search(cell.source)):
+            heading = found[1]
+        yield cell.id, Location(name, heading), metadata(cell)
+
+
+def _rows(
+    name: str, notebook: NotebookNode, checks: Sequence[Check], syllabus: Syllabus
+) -> tuple[list[ExerciseRow], list[Finding]]:
+    rows, findings = [], []
+    headings = {cell: location.heading for cell, location, _ in _locations(name, notebook)}
+    groups = {check.group for check in checks}
+    named_groups: set[str] = set()
+    for entry in metadata(notebook).get("objectives", []):
+        objective, exercise, named = entry["objective"], entry["exercise"], set(entry["groups"])
+        named_groups |= named
+        for wrong, what in (
+            (objective not in syllabus.objectives, f"the syllabus has no objective {objective!r}"),
+            (exercise not in headings, f"there is no cell {exercise!r}"),
+            (not named <= groups, f"the suite has no group {', '.join(sorted(named - groups))}"),
+        ):
+            if wrong:
+                findings.append(Finding(f"{name}.ipynb", None, what))
+        tested_by = tuple(check for check in checks if check.group in named)
+        rows.append(ExerciseRow(objective, name, headings.get(exercise, exercise), tested_by))
+    if groups - named_groups:
+        message = f"no objective names the groups {', '.join(sorted(groups - named_groups))}"
+        findings.append(Finding(f"{name}.ipynb", None, message))
+    return rows, findings

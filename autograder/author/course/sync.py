@@ -1,0 +1,131 @@
+"""Copies the reference solutions and the points of the suites into the notebooks, and finds what differs from them."""
+
+from __future__ import annotations
+
+import difflib
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from autograder import layout
+from autograder.author.course.cells import copied_file, given_files, is_graded, read_solution
+from autograder.author.course.exceptions import CourseError
+from autograder.author.course.findings import Difference, Finding
+from autograder.author.course.points import point_differences
+from autograder.result.model import write_atomically
+from autograder.suite import suites
+
+SHOWN_LINES = 12
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """The folder of a chapter. Its notebook has the same name."""
+
+    folder: Path
+
+    @property
+    def assignment(self) -> str:
+        """The name that nbgrader uses."""
+        return self.folder.name
+
+    @property
+    def notebook_path(self) -> Path:
+        """The path of the notebook."""
+        return self.folder / f"{self.folder.name}.ipynb"
+
+    def read(self) -> NotebookNode:
+        """Read the notebook. Raises CourseError if there is none, or it is none of this format."""
+        if not self.notebook_path.is_file():
+            raise CourseError(f"{self.folder.name}: the folder has no notebook {self.folder.name}.ipynb: create it")
+        text = self.notebook_path.read_text(encoding="utf-8")
+        try:
+            with warnings.catch_warnings():
+                # nbformat would assign new ids, but grades and findings refer to the old ones.
+                warnings.simplefilter("error", nbformat.warnings.DuplicateCellId)
+                warnings.simplefilter("error", nbformat.warnings.MissingIDFieldWarning)
+                notebook: NotebookNode = nbformat.reads(text, as_version=nbformat.NO_CONVERT)
+        except (nbformat.warnings.DuplicateCellId, nbformat.warnings.MissingIDFieldWarning) as error:
+            raise CourseError(f"{self.notebook_path.name}: each cell needs an id of its own: {error}") from error
+        except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:
+            raise CourseError(f"{self.notebook_path.name} is not a notebook: {error}") from error
+        if notebook.get("nbformat") != nbformat.current_nbformat:
+            raise CourseError(f"{self.notebook_path.name} is not a notebook of format {nbformat.current_nbformat}")
+        return notebook
+
+    def write(self, notebook: NotebookNode) -> None:
+        """Write the notebook."""
+        nbformat.write(notebook, self.notebook_path)
+
+
+def chapters(names: Sequence[str] = ()) -> list[Chapter]:
+    """Return the chapters of these names, or all in order; a UsageError lists the existing ones."""
+    return [Chapter(layout.chapter(name)) for name in names or layout.assignments()]
+
+
+def find_outdated(chapter: Chapter) -> list[Finding]:
+    """Return the cells and files that differ from the reference or the suite, and those with wrong metadata."""
+    notebook = chapter.read()
+    return [finding for finding, _ in _differences(chapter, notebook)]
+
+
+def sync_chapter(chapter: Chapter) -> list[Finding]:
+    """Copy the reference and the suite's points into a chapter, and return the cells and files that differed.
+
+    Raises CourseError for what only an author can correct. Nothing is written then.
+    """
+    notebook = chapter.read()
+    differences = list(_differences(chapter, notebook))
+    for finding, correct in differences:
+        if correct is None:
+            raise CourseError(str(finding))
+    for _, correct in differences:
+        if correct is not None:
+            correct()
+    if any(finding.cell is not None for finding, _ in differences):
+        chapter.write(notebook)
+    return [finding for finding, _ in differences]
+
+
+def _differences(chapter: Chapter, notebook: NotebookNode) -> Iterator[Difference]:
+    name = chapter.notebook_path.name
+    if any(map(is_graded, notebook.cells)):
+        yield from point_differences(name, notebook, suites.hidden(chapter.assignment).groups)
+    for cell in notebook.cells:
+        try:
+            source = copied_file(cell)
+            expected = None if source is None else source.expected_text()
+        except CourseError as error:
+            yield Finding(name, cell.id, str(error)), None
+            continue
+        if expected is not None and source is not None and cell.source != expected:
+            message = f"differs from solutions/{source.source}; run `autograder course sync`"
+            finding = Finding(name, cell.id, message + _diff(cell.source, expected))
+            yield finding, partial(setattr, cell, "source", expected)
+    try:
+        pairs = given_files(notebook)
+        texts = {target: read_solution(source) for target, source in pairs.items()}
+    except CourseError as error:
+        yield Finding(name, None, str(error)), None
+        return
+    for target, text in texts.items():
+        path = chapter.folder / target
+        current = path.read_text(encoding="utf-8") if path.is_file() else None
+        if current != text:
+            what = "is missing" if current is None else "differs"
+            message = f"the given file {target} {what}; solutions/{pairs[target]} holds it; "
+            message += "run `autograder course sync`" + _diff(current or "", text)
+            yield Finding(name, None, message), partial(write_atomically, path, text.encode())
+
+
+def _diff(current: str, expected: str) -> str:
+    """Return the first differing lines, indented."""
+    lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
+    shown = list(lines)[2:]
+    more = [f"... and {len(shown) - SHOWN_LINES} more lines"] if len(shown) > SHOWN_LINES else []
+    return "".join(f"\n    {line}" for line in shown[:SHOWN_LINES] + more)

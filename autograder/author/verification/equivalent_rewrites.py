@@ -1,0 +1,212 @@
+"""Rewrites right answers as other people would write them: they do the same, and have to keep every point.
+
+Like the operators, a rewriting changes the text at the positions that `ast` gives.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import io
+import re
+import subprocess
+import sys
+import tokenize
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from importlib.util import find_spec
+
+from autograder.author.verification.python_operators import (
+    FUNCTIONS,
+    SYMBOLS,
+    NodeInContext,
+    Replacement,
+    Source,
+    nodes_in_context,
+    replaced,
+)
+
+MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+# Operands that bind tighter than a comparison.
+TIGHT = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
+LONGEST_LINE = 99  # columns, of the linters of ROS
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def rewritten(text: str) -> str:
+    """Return the text of a module that does the same in other words.
+
+    Comparisons are mirrored, conditional expressions turned round, sums written out, local variables renamed, methods
+    reordered, and functions have type hints, which are not evaluated.
+    """
+    for rewriting in REWRITINGS:
+        source = Source(text)
+        found = [context for _, context in nodes_in_context(source, None)]
+        text = replaced(source.data, tuple(rewriting(source, found))).decode()
+    return text
+
+
+def formatted(text: str) -> str:
+    """Return a module's text in the style of black, as ruff formats it; the quotes stay, because ROS has its own."""
+    command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={LONGEST_LINE}"]
+    command += ["--config", "format.quote-style='preserve'", "-"]
+    return subprocess.run(command, input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def rewrites() -> Mapping[str, Callable[[str], str]]:
+    """Return the ways to rewrite an answer. `formatted` needs ruff, which only the developers of a course have."""
+    return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
+
+
+def _where_it_fits(
+    rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
+) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
+    """Keep of a rewriting what lies in no other replacement, and in one line, which it does not make too long."""
+
+    @functools.wraps(rewriting)
+    def fitting(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+        reached = -1
+        for start, end, new in sorted(rewriting(source, found), key=lambda one: (one[0], -one[1])):
+            first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
+            columns = (start - first) + len(new) + (last - end)
+            if start > reached and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
+                yield start, end, new
+                reached = end
+
+    return fitting
+
+
+@_where_it_fits
+def mirrored_comparisons(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `b > a` for `a < b`, unless both sides call something: the order of the calls may matter."""
+    for context in found:
+        node = context.node
+        if isinstance(node, ast.Compare) and len(node.ops) == 1:
+            sides = (node.left, node.comparators[0])
+            symbol = MIRRORED.get(SYMBOLS[type(node.ops[0])])
+            if symbol and not all(_calls(side) for side in sides):
+                left, right = (_operand(source, side) for side in sides)
+                yield (*source.span(node), f"{right} {symbol} {left}")
+
+
+@_where_it_fits
+def turned_conditions(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `b if not c else a` for `a if c else b`."""
+    for context in found:
+        node = context.node
+        if isinstance(node, ast.IfExp):
+            body, test, other = (_operand(source, part) for part in (node.body, node.test, node.orelse))
+            yield (*source.span(node), f"{other} if not {test} else {body}")
+
+
+@_where_it_fits
+def written_out_sums(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `x = x + 1` for `x += 1`: of numbers only, as a list would become another list."""
+    for context in found:
+        node = context.node
+        if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
+            target = source.text(node.target)
+            yield (*source.span(node), f"{target} = {target} + {source.text(node.value)}")
+
+
+def renamed_variables(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield another name for each local variable, of the same length, so that continued lines stay in their columns."""
+    taken = set(re.findall(r"\w+", source.data.decode()))
+    for context in found:
+        function = context.node
+        if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
+            continue
+        names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
+        once = {name for name, count in Counter(names.values()).items() if count == 1} - taken
+        for node in ast.walk(function):
+            if isinstance(node, ast.Name) and names.get(node.id) in once:
+                yield (*source.span(node), names[node.id])
+
+
+def reordered_methods(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield the methods of each class in the opposite order, after `__init__`."""
+    for node in (context.node for context in found if isinstance(context.node, ast.ClassDef)):
+        methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
+        names = {each.name for each in methods}
+        decorators = [ast.walk(decorator) for each in methods for decorator in each.decorator_list]
+        needed = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
+        if len(names) == len(methods) and not needed & names:
+            spans = [_with_decorators(source, each) for each in methods]
+            for (start, end), (first, last) in zip(spans, reversed(spans), strict=True):
+                yield start, end, source.data[first:last].decode()
+
+
+@_where_it_fits
+def return_types(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `-> None` for each function that returns nothing."""
+    for node in (context.node for context in found if isinstance(context.node, FUNCTIONS)):
+        inside = list(ast.walk(node))
+        gives = any(isinstance(each, ast.Return) and each.value for each in inside)
+        if (
+            node.returns is None
+            and not gives
+            and not any(isinstance(each, ast.Yield | ast.YieldFrom) for each in inside)
+        ):
+            colon = _end_of_header(source, node)
+            yield colon, colon, " -> None"
+
+
+def postponed_annotations(source: Source, found: list[NodeInContext]) -> Iterator[Replacement]:
+    """Yield `from __future__ import annotations` below the module's docstring."""
+    body = source.tree.body
+    if found and ast.get_docstring(source.tree) and "__future__" not in source.data.decode():
+        end = source.span(body[0])[1]
+        yield end, end, "\n\nfrom __future__ import annotations"
+
+
+def _calls(node: ast.AST) -> bool:
+    return any(isinstance(each, ast.Call | ast.Await) for each in ast.walk(node))
+
+
+def _operand(source: Source, node: ast.expr) -> str:
+    return source.text(node) if isinstance(node, TIGHT) else f"({source.text(node)})"
+
+
+def _variables(function: Function) -> set[str]:
+    """Return the names that a function binds as variables, and as nothing else, and that no f-string holds.
+
+    The positions in f-strings are not those of the file before Python 3.12.
+    """
+    inside = list(ast.walk(function))
+    stored = {node.id for node in inside if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    other = {node.arg for node in inside if isinstance(node, ast.arg)}
+    other |= {name for node in inside if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    other |= {node.name for node in inside if isinstance(node, ast.ExceptHandler) and node.name}
+    for outer in (node for node in inside if isinstance(node, ast.JoinedStr | ast.ClassDef)):
+        other |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
+    return stored - other
+
+
+def _with_decorators(source: Source, function: Function) -> tuple[int, int]:
+    start, end = source.span(function)
+    for decorator in function.decorator_list[:1]:
+        start = source.data.rindex(b"@", 0, source.span(decorator)[0])
+    return start, end
+
+
+def _end_of_header(source: Source, function: Function) -> int:
+    """Return the offset of the colon before a function's body."""
+    depth = 0
+    for token in tokenize.tokenize(io.BytesIO(source.data).readline):
+        if token.start >= (function.lineno, function.col_offset):
+            depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(token.string, 0)
+            if token.string == ":" and depth == 0:
+                break
+    return source.offset(*token.start)
+
+
+REWRITINGS = (
+    mirrored_comparisons,
+    turned_conditions,
+    written_out_sums,
+    renamed_variables,
+    return_types,
+    postponed_annotations,
+    reordered_methods,
+)

@@ -1,0 +1,138 @@
+"""Mutants: copies of the reference solution with one realistic student error each.
+
+The file `mutants.yaml` of a suite holds the edits of each mutant and the check that it is for. All checks that it fails
+are recorded in a snapshot beside that file (`autograder.author.verification.snapshot`).
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from autograder import layout
+from autograder.author.verification import snapshot
+from autograder.diagnosis import Kind
+from autograder.exceptions import GraderError
+from autograder.suite import suites
+
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same, ten times as fast where it was compiled
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One change of a file of the reference.
+
+    Attributes:
+        file: path of the file, below `src`.
+        find: text to replace, which occurs exactly once in the file. None replaces the whole file.
+        replace: the new text. None deletes the file.
+    """
+
+    file: str
+    find: str | None
+    replace: str | None
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A flawed version of the reference solution.
+
+    Attributes:
+        id: unique in the assignment.
+        title: the error in words.
+        edits: changes of the reference.
+        check: id of the check for which the mutant was written.
+        fails: ids of all checks that do not pass, as recorded; empty if the mutant is not recorded.
+        diagnosis: what the result says of building and starting the programs.
+        demo: whether `make demo` grades it.
+        slow: whether grading it waits for a time-out.
+    """
+
+    id: str
+    title: str
+    edits: tuple[Edit, ...]
+    check: str
+    fails: frozenset[str] = frozenset()
+    diagnosis: Kind = Kind.OK
+    demo: bool = False
+    slow: bool = False
+
+
+def mutants(assignment: str) -> tuple[Mutant, ...]:
+    """Return an assignment's mutants.
+
+    Raises:
+        GraderError: `mutants.yaml` names a check that the suite does not have.
+    """
+    suite = suites.hidden(assignment)
+    known, recorded = frozenset(check.id for check in suite.checks), snapshot.recorded(assignment)
+    data = yaml.load((suite.folder / "mutants.yaml").read_text(), LOADER)
+    return tuple(_mutant(entry, data["file"], known, recorded) for entry in data["mutants"])
+
+
+def write_reference(sources: tuple[str, ...], folder: Path) -> None:
+    """Copy packages and other folders of the reference solution to `folder`/src."""
+    for source in sources:
+        shutil.copytree(layout.SOLUTIONS / source, folder / "src" / source)
+
+
+def write_mutant(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None:
+    """Write a mutant as a source tree, `folder`/src.
+
+    Args:
+        mutant: the mutant to write.
+        sources: packages and folders of the reference to copy, by their names below `solutions/`.
+        folder: the folder that gets `src`.
+
+    Raises:
+        GraderError: the text to replace does not occur exactly once in the reference.
+    """
+    write_reference(sources, folder)
+    for edit in mutant.edits:
+        _apply(mutant, edit, folder / "src" / edit.file)
+
+
+def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
+    if edit.replace is None:
+        path.unlink()
+        return
+    if edit.find is None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(edit.replace)
+        return
+    text = path.read_text()
+    if text.count(edit.find) != 1:
+        occurs = f"{edit.find!r} occurs {text.count(edit.find)} times in {edit.file}"
+        raise GraderError(f"mutant {mutant.id}: {occurs}: correct the edit in mutants.yaml")
+    path.write_text(text.replace(edit.find, edit.replace))
+
+
+def _edit(entry: dict[str, Any], file: str) -> Edit:
+    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. An entry without `file` changes the given one."""
+    file = entry.get("file", file)
+    if entry.get("delete"):
+        return Edit(file, None, None)
+    return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
+
+
+def _mutant(entry: dict[str, Any], file: str, known: frozenset[str], recorded: Mapping[str, frozenset[str]]) -> Mutant:
+    check = entry.get("check")
+    if check not in known:
+        raise GraderError(
+            f"mutant {entry['id']}: the suite has no check {check}: correct `check` of this mutant in mutants.yaml"
+        )
+    return Mutant(
+        id=entry["id"],
+        title=entry["title"],
+        edits=tuple(_edit(edit, file) for edit in entry["edits"]),
+        check=check,
+        fails=recorded.get(entry["id"], frozenset()),
+        diagnosis=Kind(entry.get("diagnosis", "ok")),
+        demo=entry.get("demo", False),
+        slow=entry.get("slow", False),
+    )

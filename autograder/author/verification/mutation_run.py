@@ -1,0 +1,189 @@
+"""Grades the mutants of a chapter's population, each up to the first check that it loses, and stores the results.
+
+A mutant costs a second, because of three things. Where colcon would only copy the changed file, the built reference is
+patched. Where checks look at the sources alone, they are asked before anything is built. And the checks that killed the
+mutants of the same function before come first. The reference is graded in each of these ways before any mutant: a way
+counts only for checks that the reference passes in it.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from autograder import layout
+from autograder.author.verification.mutants import write_reference
+from autograder.author.verification.population import GeneratedMutant
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.building.build import build_workspace
+from autograder.diagnosis import Kind
+from autograder.grade.job import Scope
+from autograder.grade.parallel import map_parallel
+from autograder.grade.pipeline import grade_submission
+from autograder.result.model import Result, Status
+from autograder.ros import activate
+from autograder.run.workspace import Workspace
+from autograder.suite import Outcome, suites
+from autograder.suite.fingerprint import digest
+
+COPIED = (".py", ".yaml")  # endings of files that colcon only copies
+NOT_COPIED = ("setup.py",)
+FIRST = 3  # checks that are asked before all others
+FAILED = "not graded"
+
+
+@dataclass(frozen=True)
+class MutantResult:
+    """The result of a mutant. `killer` is the check that it lost, "" if it lost none, FAILED if the grader failed."""
+
+    id: str
+    killer: str
+    seconds: float
+    version: str
+
+    @property
+    def killed(self) -> bool:
+        """Whether a check was lost."""
+        return self.killer not in ("", FAILED)
+
+
+class MutationRun:
+    """Grades mutants of one chapter.
+
+    Args:
+        assignment: the chapter.
+        workers: the pool that grades.
+        seed: seed of every hidden input.
+        folder: a temporary folder, which gets the built reference.
+    """
+
+    def __init__(self, assignment: str, workers: WorkerPool, seed: int, folder: Path) -> None:
+        self._suite, self._workers, self._seed, self._folder = suites.hidden(assignment), workers, seed, folder
+        self._killers: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+        self._ids = tuple(check.id for check in self._suite.checks)
+        for name in ("patched", "unbuilt"):
+            write_reference(self._suite.sources, folder / name)
+        (folder / "home").mkdir()
+        workspace = Workspace(folder / "patched", activate(), folder / "home")
+        build_workspace(workspace, self._suite.packages)
+        self.ways = {name: self._passed(folder / name) for name in ("patched", "unbuilt")}
+
+    def _passed(self, built: Path) -> frozenset[str]:
+        """Return the checks that the reference passes without a build of its own."""
+        result = self._grade({}, Scope(pictures=False, built=str(built)))
+        return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
+
+    def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
+        """Grade a mutant up to the first check that it loses."""
+        began = time.monotonic()
+        killer = next(filter(None, self._stages(mutant)), "")
+        if killer:
+            for place in {(mutant.file, mutant.function), (mutant.file, "")}:
+                self._killers[place][killer] += 1
+        return MutantResult(mutant.id, killer, round(time.monotonic() - began, 2), version)
+
+    def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
+        """Yield the killer of each stage, or "": first what is quick, and what is likely to kill."""
+        texts = mutant.texts()
+        in_tests = all("/test/" in file for file in texts)
+        # The reference's own tests would kill much, and a student has others.
+        counted = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
+        copied = all(file.endswith(COPIED) and not file.endswith(NOT_COPIED) for file in texts)
+        way = "patched" if copied else "unbuilt"
+        able = self.ways[way] & counted
+        likely = self._likely(mutant) & able if copied else able
+        built = str(self._folder / way)
+        if likely:
+            yield self._killer(texts, self._suite.with_dependencies(*likely), built)
+        if copied and able - likely:
+            yield self._killer(texts, self._suite.with_dependencies(*able), built)
+        if counted - able:
+            yield self._killer(texts, self._suite.with_dependencies(*counted), "")
+
+    def _likely(self, mutant: GeneratedMutant) -> frozenset[str]:
+        known = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
+        return frozenset(name for name, _ in known.most_common(FIRST))
+
+    def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
+        result = self._grade(texts, Scope(only=only, first_loss=True, pictures=False, built=built))
+        if result.status is not Status.GRADED or result.unjudged:
+            return FAILED
+        lost = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
+        return lost[0] if lost else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
+
+    def _grade(self, texts: dict[str, str], scope: Scope) -> Result:
+        with tempfile.TemporaryDirectory(prefix="mutant-") as name:
+            folder = Path(name)
+            write_reference(self._suite.sources, folder / "mutant")
+            for file, text in texts.items():
+                (folder / "mutant" / "src" / file).write_text(text, encoding="utf-8")
+            return grade_submission(
+                folder / "mutant",
+                self._suite.assignment,
+                student="mutant",
+                seed=self._seed,
+                out=folder / "out",
+                isolation=self._workers.tier,
+                scope=scope,
+                run_job=self._workers,
+            )
+
+
+def run_mutants(
+    assignment: str,
+    mutants: Iterable[GeneratedMutant],
+    workers: WorkerPool,
+    *,
+    seed: int,
+    kept: Path,
+    on_result: Callable[[MutantResult], None] = lambda result: None,
+) -> tuple[MutantResult, ...]:
+    """Grade mutants of a chapter, and return their results.
+
+    `kept` is a file of results. A result in it counts if suite and reference are the same, so that a stopped run can
+    continue. Each new result is added to it.
+    """
+    version, chosen = _version(assignment), list(mutants)
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept.is_file() else []
+    known = {
+        result.id: result
+        for result in (MutantResult(**json.loads(line)) for line in lines)
+        if result.version == version
+    }
+    missing = [mutant for mutant in chosen if mutant.id not in known]
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with kept.open("a", encoding="utf-8") as file:
+
+        def keep(result: MutantResult) -> None:
+            if result.killer != FAILED:
+                file.write(json.dumps(asdict(result)) + "\n")
+                file.flush()
+            on_result(result)
+
+        made: tuple[MutantResult, ...] = ()
+        if missing:
+            with prepared_run(assignment, workers, seed) as run:
+                made = map_parallel(
+                    lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=keep
+                )
+    known |= {result.id: result for result in made}
+    return tuple(known[mutant.id] for mutant in chosen)
+
+
+@contextmanager
+def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[MutationRun]:
+    """Yield a mutation run of a chapter, with a temporary folder."""
+    with tempfile.TemporaryDirectory(prefix="mutation-run-") as name:
+        yield MutationRun(assignment, workers, seed, Path(name))
+
+
+def _version(assignment: str) -> str:
+    """Return a digest of what the suite and the reference are read from."""
+    suite = suites.hidden(assignment)
+    return digest(assignment, (*suite.reads, *(f"{layout.COURSE.solutions}/{source}" for source in suite.sources)))

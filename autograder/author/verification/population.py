@@ -1,0 +1,186 @@
+"""The population of mutants of a chapter: every mutation by every operator in everything that its students write."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import hashlib
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import CodeType
+
+from autograder import layout
+from autograder.author.course.cells import copied_file, is_solution
+from autograder.author.course.sync import Chapter
+from autograder.author.verification.python_operators import (
+    Mutation,
+    Replacement,
+    Source,
+    classic,
+    left_out,
+    nodes_in_context,
+    replaced,
+)
+from autograder.author.verification.ros_operators import is_queue_length, multi_node_mutations, ros_mutations, wall_time
+from autograder.author.verification.text_operators import text_mutations
+from autograder.suite import suites
+
+PAIRS = 20  # mutants of second order in a chapter
+
+
+@dataclass(frozen=True)
+class GeneratedMutant:
+    """A mutant: what it replaces in the reference, file by file.
+
+    Attributes:
+        id: names the file, the function, the operator and a digest of the change; it outlives changes elsewhere.
+        operator: the operator's name; "pair" for a mutant of second order.
+        function: the qualified name of the changed function, or "".
+        changes: what is replaced, by the path of the file below `solutions/`.
+    """
+
+    id: str
+    operator: str
+    function: str
+    changes: tuple[tuple[str, tuple[Replacement, ...]], ...]
+
+    @property
+    def file(self) -> str:
+        """The path of the first changed file."""
+        return self.changes[0][0]
+
+    def texts(self) -> dict[str, str]:
+        """Return the new text of each changed file."""
+        return {
+            file: replaced((layout.SOLUTIONS / file).read_bytes(), changes).decode() for file, changes in self.changes
+        }
+
+    def diff(self) -> str:
+        """Return the lines that differ, with the line's number, as a person reads them."""
+        shown: list[str] = []
+        for file, text in self.texts().items():
+            old, new = (layout.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
+            matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
+            for tag, first, last, new_first, new_last in matcher.get_opcodes():
+                if tag != "equal":
+                    shown += [f"{file}:{first + 1}"]
+                    shown += [f"- {line.strip()}" for line in old[first:last]]
+                    shown += [f"+ {line.strip()}" for line in new[new_first:new_last]]
+        return "\n".join(shown)
+
+
+@dataclass(frozen=True)
+class Population:
+    """A chapter's mutants, those of second order last, and how many were left out as equivalent or duplicate."""
+
+    mutants: tuple[GeneratedMutant, ...]
+    left_out: int
+
+
+def population(assignment: str) -> Population:
+    """Return the mutants of a chapter, always the same for one reference."""
+    found: dict[str, GeneratedMutant] = {}
+    left_out = 0
+    for file, functions, given in written_by_students(assignment):
+        text = (layout.SOLUTIONS / file).read_text(encoding="utf-8")
+        seen = {_meaning(file, text)}
+        for function, (operator, changes) in mutations(file, text, functions):
+            if given.issuperset(_lines(text.encode(), changes)):
+                continue
+            meaning = _meaning(file, replaced(text.encode(), changes).decode())
+            if meaning in seen:
+                left_out += 1
+                continue
+            seen.add(meaning)
+            mutant = _named(file, function, operator, changes, text)
+            assert mutant.id not in found, f"two mutants are called {mutant.id}"
+            found[mutant.id] = mutant
+    return Population((*found.values(), *_pairs(list(found.values()))), left_out)
+
+
+def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
+    """Yield (path, functions, given lines) of each file that students write or correct; no functions means all."""
+    packages, chapter = suites.hidden(assignment).sources, Chapter(layout.chapter(assignment))
+    copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
+    for cell, copied in copies:
+        if is_solution(cell) and copied.source.parts[0] in packages:
+            yield (
+                str(copied.source),
+                frozenset(copied.hidden_functions) if copied.hidden_functions else None,
+                frozenset(),
+            )
+    given = chapter.folder / "ws" / "src"
+    written = {copied.source.parts[0] for _, copied in copies}
+    for package in set(packages) - written:  # students get it with faults, and correct it
+        for path in sorted((given / package).rglob("*")):
+            right = layout.SOLUTIONS / path.relative_to(given)
+            if right.is_file() and path.is_file() and right.read_bytes() != path.read_bytes():
+                yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
+
+
+def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
+    """Yield (function, mutation) of a file; the function is the name of the one that is changed."""
+    if not file.endswith(".py"):
+        yield from (("", mutation) for mutation in text_mutations(file, text))
+        return
+    source = Source(text)
+    nodes: list[ast.AST] = []
+    for function, context in nodes_in_context(source, functions):
+        nodes.append(context.node)
+        simple = itertools.chain(
+            () if is_queue_length(context) else classic(source, context), ros_mutations(source, context)
+        )
+        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
+        wider = itertools.chain(left_out(source, context.node), multi_node_mutations(source, context))
+        yield from ((function, mutation) for mutation in wider)
+    yield from (("", mutation) for mutation in wall_time(source, nodes))
+
+
+def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
+    """Name a mutant by what stands around its change, so that it keeps its name when other lines move."""
+    data = text.encode()
+    name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
+    for start, end, new in changes:
+        begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
+        before, old = data[begin:start], data[start:end]
+        name_digest.update(b"\0".join((before, old, new.encode(), data[end:stop])))
+        name_digest.update(data[:begin].count(data[begin:stop]).to_bytes(2, "big"))  # the same lines may stand twice
+    where = ".".join(filter(None, (file.rpartition("/")[2], function)))
+    return GeneratedMutant(f"{where} {operator} {name_digest.hexdigest()[:6]}", operator, function, ((file, changes),))
+
+
+def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
+    """Yield mutants of second order: drawn pairs of mutants of different functions or files."""
+    ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
+    for one, other in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
+        changes = dict(one.changes)
+        for file, more in other.changes:
+            both = sorted((*changes.get(file, ()), *more))
+            if any(first[1] > second[0] for first, second in itertools.pairwise(both)):
+                break
+            changes[file] = tuple(both)
+        else:
+            yield GeneratedMutant(f"{one.id} + {other.id}", "pair", one.function, tuple(changes.items()))
+
+
+def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
+    """Yield the lines in which something is replaced."""
+    for start, end, _ in changes:
+        last = start + len(data[start:end].rstrip())
+        yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
+
+
+def _meaning(file: str, text: str) -> object:
+    """Return what two texts have in common that mean the same to the interpreter or to the build."""
+    if file.endswith(".py"):
+        return _code(compile(text, file, "exec", optimize=0))
+    return "\n".join(filter(None, (line.split("#")[0].strip() for line in text.splitlines())))
+
+
+def _code(code: CodeType) -> tuple[object, ...]:
+    constants = tuple(
+        _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
+    )
+    caught = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
+    return code.co_code, constants, code.co_names, code.co_varnames, caught

@@ -1,0 +1,90 @@
+"""Mutation operators for what students write besides Python: definitions, build files, manifests, settings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from autograder.author.verification.python_operators import Mutation, numbers
+
+TYPES = {
+    "float64": "float32",
+    "float32": "float64",
+    "int32": "int64",
+    "int64": "int32",
+    "bool": "uint8",
+    "string": "wstring",
+}
+TAGS = {"depend": "build_depend", "exec_depend": "build_depend", "build_depend": "exec_depend"}
+TAGS |= {"test_depend": "exec_depend", "buildtool_depend": "build_depend"}
+NUMBER = re.compile(r"(?<![\w.<])\d+(?:\.\d+)?(?![\w.])")
+DEFINITION = re.compile(r"(?P<type>[a-z_0-9A-Z/]+)(?P<bound>\[[^]]*\]|<=\d+)?(?P<rest>\[[^]]*\])?\s+(?P<name>\w+)")
+SAID = re.compile(r">(?P<value>[^<>\n]+)</|=(?P<attribute>\"[^\"\n]*)\"")
+TAG = re.compile(r"<(?P<tag>\w+)>(?P<text>[^<>\n]+)</(?P=tag)>")
+WORD = re.compile(r"[\w./${}-]+")
+NO_WORDS = ("<description>", "<maintainer", "<?xml")  # for people, or for programs that no student runs
+
+
+def text_mutations(file: str, text: str) -> Iterator[Mutation]:
+    """Yield the mutations of a text, by the kind of its file; offsets are in bytes."""
+    at = 0
+    before: tuple[int, str] | None = None
+    for line in text.splitlines(keepends=True):
+        code = line if file.endswith((".xml", ".cfg")) else line.split("#")[0].rstrip() + "\n"
+        if code.strip() and not line.startswith(NO_WORDS, len(line) - len(line.lstrip())):
+            yield "no line", ((at, at + len(line.encode()), ""),)
+            for name, start, end, new in _in_line(file, code):
+                begin = at + len(code[:start].encode())
+                yield name, ((begin, begin + len(code[start:end].encode()), new),)
+            if before and file.endswith((".msg", ".srv", ".action")):
+                both = line + before[1]
+                yield "line order", ((before[0], at + len(line.encode()), both),)
+            before = at, line
+        at += len(line.encode())
+
+
+def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
+    """Yield (operator, start, end, new text) in a line."""
+    if file.endswith((".msg", ".srv", ".action")):
+        yield from _in_definition(line)
+    elif file.endswith(".xml"):
+        for found in SAID.finditer(line):
+            end = found.end() - (2 if found["value"] else 1)
+            yield "name", end, end, "s"
+        if (tag := TAG.search(line)) and tag["tag"] in TAGS:
+            new = TAGS[tag["tag"]]
+            yield "tag", tag.start(), tag.end(), f"<{new}>{tag['text']}</{new}>"
+    elif file.endswith(("CMakeLists.txt", ".cfg")):
+        yield from (("name", word.end(), word.end(), "s") for word in WORD.finditer(line))
+    elif file.endswith((".yaml", ".yml")):
+        key, colon, value = line.partition(":")
+        yield "name", len(key), len(key), "s"
+        yield from _numbers(value, len(key) + len(colon))
+        if (word := value.strip()) and not NUMBER.fullmatch(word.lstrip("-")):
+            end = len(line.rstrip()) - (word[-1] in "'\"")
+            yield "value", end, end, "s"
+
+
+def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
+    found = DEFINITION.match(line)
+    if found is None:
+        return
+    if found["type"] in TYPES:
+        yield "type", *found.span("type"), TYPES[found["type"]]
+    yield "name", found.end("name"), found.end("name"), "S" if found["name"].isupper() else "s"
+    for bound in ("bound", "rest"):
+        if found[bound]:
+            yield "bound", *found.span(bound), "[]" if found[bound].startswith("[<") else ""
+            if number := NUMBER.search(found[bound].replace("<=", "  ")):
+                start = found.start(bound) + number.start()
+                yield "bound", start, start + len(number[0]), str(int(number[0]) + 1)
+    yield from _numbers(line[found.end("name") :], found.end("name"))
+
+
+def _numbers(text: str, at: int) -> Iterator[tuple[str, int, int, str]]:
+    for found in NUMBER.finditer(text):
+        value = float(found[0]) if "." in found[0] else int(found[0])
+        negative = text[: found.start()].rstrip().endswith("-")
+        for name, new in numbers(value):
+            if not (negative and new.startswith("(")):
+                yield name, at + found.start(), at + found.end(), new.strip("()")

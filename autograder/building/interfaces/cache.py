@@ -1,0 +1,108 @@
+"""A content-addressed cache of built trees: built once, put in place whole, bounded in size.
+
+Each entry is a folder named by its key, beside a lock file that is held by whoever looks for, builds or evicts it. The
+kernel lets go of locks when a process dies, and a half-built folder is never under an entry's name. An entry that was
+asked for within `IN_USE` is not evicted.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import re
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from autograder.run.sandbox.limits import MIB
+
+LIMIT = 512 * MIB
+IN_USE = 3600.0  # s; no grading lasts so long, so a temporary folder of this age was left by a killed build
+_KEY = re.compile(r"[0-9a-f]{16,64}")
+
+
+class Cache:
+    """A cache in a folder of its own, which this user alone can read; `limit` bounds the bytes of its entries."""
+
+    def __init__(self, root: Path, limit: int = LIMIT) -> None:
+        self.root, self._limit = root, limit
+
+    @classmethod
+    def default(cls, name: str) -> Cache:
+        """Return this user's cache of a name: below `XDG_CACHE_HOME`, or among temporary files where it cannot be."""
+        for base in (_xdg(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
+            root = base / "autograder" / name
+            with contextlib.suppress(OSError):
+                root.mkdir(parents=True, exist_ok=True, mode=0o700)
+                if root.stat().st_uid == os.getuid() and os.access(root, os.W_OK | os.X_OK):
+                    return cls(root)
+        return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
+
+    def get(self, key: str, make: Callable[[Path], None]) -> Path:
+        """Return the folder of an entry, made first if it is not there; it stays for `IN_USE`.
+
+        Args:
+            key: 16 to 64 hexadecimal digits.
+            make: fills the new folder that it is given. If it raises, there is no entry.
+        """
+        self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
+        entry = self.root / key
+        with self._alone(key):  # whoever else wants it waits here, and then finds it made
+            made = not entry.is_dir()
+            if made:
+                self._make(entry, make)
+            os.utime(entry)
+        if made:
+            self._evict()
+        return entry
+
+    @contextlib.contextmanager
+    def _alone(self, key: str) -> Iterator[None]:
+        with (self.root / f"{key}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
+
+    def _make(self, entry: Path, make: Callable[[Path], None]) -> None:
+        fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name[:16]}-", dir=self.root))
+        try:
+            make(fresh)
+            fresh.rename(entry)
+        finally:
+            shutil.rmtree(fresh, ignore_errors=True)
+
+    def _evict(self) -> None:
+        """Remove what was unused for longest until the rest fits, and what killed builds left."""
+        entries: list[tuple[float, int, Path]] = []
+        for folder in self.root.iterdir():
+            with contextlib.suppress(FileNotFoundError):
+                if folder.name.startswith(".") and not _in_use(folder):
+                    shutil.rmtree(folder, ignore_errors=True)
+                elif _KEY.fullmatch(folder.name):
+                    entries.append((folder.stat().st_mtime, _size(folder), folder))
+        total = sum(size for _, size, _ in entries)
+        for _, size, folder in sorted(entries):
+            if total <= self._limit:
+                return
+            with self._alone(folder.name), contextlib.suppress(FileNotFoundError):
+                if not _in_use(folder):
+                    # Renamed first: a removal that is cut short leaves no half an entry.
+                    doomed = folder.with_name(f".{folder.name[:16]}-{os.getpid()}-{time.monotonic_ns()}")
+                    folder.rename(doomed)
+                    shutil.rmtree(doomed, ignore_errors=True)
+                    total -= size
+
+
+def _in_use(folder: Path) -> bool:
+    return time.time() - folder.stat().st_mtime < IN_USE
+
+
+def _xdg() -> Path:
+    chosen = os.environ.get("XDG_CACHE_HOME", "")
+    return Path(chosen) if chosen.startswith("/") else Path(os.environ.get("HOME", "/nonexistent")) / ".cache"
+
+
+def _size(folder: Path) -> int:
+    return sum(path.lstat().st_size for path in folder.rglob("*") if not path.is_symlink())

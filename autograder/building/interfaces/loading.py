@@ -1,0 +1,121 @@
+"""A student's interface packages as message classes of plain values, made of the texts of their definitions."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from autograder.building.interfaces.definitions import (
+    KINDS,
+    MAX_BYTES,
+    MAX_FILES,
+    Definition,
+    DefinitionError,
+    read,
+    require_uses,
+)
+from autograder.building.interfaces.prefix import exists
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.submission.exercise_stubs import explain
+from autograder.submission.packages import find_packages
+
+if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
+    from autograder.run.workspace import Workspace
+
+Texts = tuple[tuple[str, str], ...]
+"""Definitions by their paths in a package, such as `msg/RobotStatus.msg`, sorted."""
+
+
+def load_from(workspace: Workspace, package: str) -> Any:
+    """Return the classes of an interface package of a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
+
+    They are the same objects for the same texts.
+
+    Raises:
+        StudentError: the package or its definitions are missing, or wrong; the sentence says where.
+    """
+    source = workspace.root / "src"
+    packages, broken = find_packages(source)
+    try:
+        if package not in packages and broken:
+            raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, next(iter(broken.values()))))
+        texts: dict[str, Texts] = {}
+        _gather(packages, package, (), texts, {}, workspace.ros.prefixes)
+        return classes(tuple(texts.items()))
+    except StudentError as error:
+        raise StudentError(explain(error.diagnosis, source, package)) from None
+
+
+@lru_cache(maxsize=8)
+def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
+    """Return the classes of the last of these packages, of which each uses only those before it."""
+    from autograder.building.interfaces.known_types import KnownTypes
+    from autograder.building.interfaces.messages import add_package
+
+    known = KnownTypes()
+    return [add_package(name, read(name, dict(texts)), known) for name, texts in packages][-1]
+
+
+def _gather(
+    packages: dict[str, Path],
+    package: str,
+    above: tuple[str, ...],
+    texts: dict[str, Texts],
+    elements: dict[tuple[str, str], int],
+    ros: tuple[Path, ...],
+) -> None:
+    """Add the texts of a package, and the elements of its messages, after those of the packages that it uses."""
+    folder = packages.get(package)
+    if folder is None:
+        sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
+        raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
+    if package in above:
+        sentence = f"The packages {' and '.join(sorted(above))} use each other's messages: let only one use the other."
+        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
+    if package in texts:
+        return
+    try:
+        if exists(ros, package, None):
+            raise DefinitionError("package.xml", f"ROS has a package {package} of its own: give yours another name")
+        own = _texts(folder)
+        definitions = read(package, own)
+        for name in sorted({name for definition in definitions for name, _, _ in definition.uses} & set(packages)):
+            _gather(packages, name, (*above, package), texts, elements, ros)
+        _require_uses(definitions, texts, ros)
+        definitions = read(package, own, elements)
+    except DefinitionError as error:
+        sentence = f"src/{folder.name}: {error}."
+        raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
+    texts[package] = tuple(sorted(own.items()))
+    elements.update({(package, Path(each.path).stem): each.elements for each in definitions if each.path[:3] == "msg"})
+
+
+def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
+    """Raise a DefinitionError unless each message of another package is there."""
+
+    def is_there(package: str, message: str | None) -> bool:
+        if package in texts:
+            return message is None or f"msg/{message}.msg" in dict(texts[package])
+        return exists(ros, package, message)
+
+    require_uses(definitions, is_there)
+
+
+def _texts(folder: Path) -> dict[str, str]:
+    texts: dict[str, str] = {}
+    for kind in KINDS:
+        for path in sorted((folder / kind).glob(f"*.{kind}")):
+            name = f"{kind}/{path.name}"
+            if path.is_symlink() or not path.is_file():
+                raise DefinitionError(name, "it is no plain file")
+            if len(texts) >= MAX_FILES:
+                raise DefinitionError(name, f"more than {MAX_FILES} definitions")
+            with path.open("rb") as file:
+                content = file.read(MAX_BYTES + 1)
+            try:
+                texts[name] = content.decode("utf-8")
+            except UnicodeDecodeError:
+                raise DefinitionError(name, "it is not UTF-8 text: save it as UTF-8") from None
+    return texts

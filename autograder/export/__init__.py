@@ -1,9 +1,0 @@
-"""Exports stored results: CSV, JUnit XML, Gradescope, HTML and Markdown.
-
-`write(load(path), "csv", out)` reads every result below `path` and writes one of `FORMATS`.
-"""
-
-from autograder.export.formats import FORMATS, write
-from autograder.export.stored import Stored, load
-
-__all__ = ["FORMATS", "Stored", "load", "write"]

@@ -1,9 +1,0 @@
-"""Writes feedback as self-contained HTML: a page for each submission, and a table for a class.
-
-`write(result, folder)` writes `folder/feedback.html` with the pictures in the same folder. `write_summary(results,
-folder)` writes `folder/index.html`, which links to `<student>/feedback.html`.
-"""
-
-from autograder.feedback.pages import PAGE, SUMMARY, write, write_summary
-
-__all__ = ["PAGE", "SUMMARY", "write", "write_summary"]

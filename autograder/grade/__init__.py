@@ -1,0 +1,11 @@
+"""Grades a submission and returns its result.
+
+    submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
+
+`grade_submission` starts a worker (`worker.py`) for one submission in a cell of its own. The worker goes through the
+phases and runs students' code only in sandboxes. The proof's many submissions share a few workers.
+"""
+
+from autograder.grade.pipeline import DEFAULT_SEED, grade_submission
+
+__all__ = ["DEFAULT_SEED", "grade_submission"]

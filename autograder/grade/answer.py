@@ -1,0 +1,110 @@
+"""Checks what a worker has left: it may have been taken over, and then it may harm the result of one submission."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from PIL import Image
+
+from autograder.exceptions import GraderError, UsageError
+from autograder.grade.store import LOG, NOTEBOOK, RESULT
+from autograder.result.model import Result, Status, from_json
+from autograder.suite.suites import Suite
+
+PICTURE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.png")
+RUN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.run\.json")
+RECORDING = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}\.npz")
+MAX_PIXELS = 25_000_000
+_UNREAD = "0" * 64  # the digest in the result of a submission that could not be read
+
+
+class AnswerError(GraderError):
+    """A worker's answer is none to what was asked."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a result must be about."""
+
+    suite: Suite
+    student: str
+    seed: int
+    isolation: str
+    sha256: str = ""  # of the submission, where it is known
+
+
+def checked(files: Mapping[str, bytes], asked: Asked) -> Result:
+    """Check the files that a worker left, and return the result among them.
+
+    Raises AnswerError if they are no answer to what was asked.
+    """
+    others = {name: data for name, data in files.items() if name not in (RESULT, NOTEBOOK, LOG)}
+    result = _result(files.get(RESULT, b""), asked)
+    _require_artifacts(others, result)
+    if NOTEBOOK in files:
+        _require_notebook(files[NOTEBOOK])
+    return result
+
+
+def _result(data: bytes, asked: Asked) -> Result:
+    try:
+        result = from_json(json.loads(data), source="a worker's answer")
+    except (ValueError, UsageError, RecursionError) as error:
+        raise AnswerError(f"a worker's answer holds no result: {error}") from None
+    suite, graded = asked.suite, result.status is Status.GRADED
+    versions, theirs = (suite.version, suite.files_digest), (result.suite_version, result.files_digest)
+    found = (result.assignment, result.student, *theirs, result.seed, result.isolation, result.max_score)
+    wanted = (suite.assignment, asked.student, *versions, asked.seed, asked.isolation, suite.max_score)
+    if found != wanted:
+        raise AnswerError(f"a worker graded {found} instead of {wanted}")
+    if graded and asked.sha256 and result.submission_sha256 not in (asked.sha256, _UNREAD):
+        raise AnswerError(f"a worker graded {result.submission_sha256} instead of {asked.sha256}")
+    worth = [(check.id, check.group, check.points) for check in suite.checks]
+    if [(check.id, check.group, check.max_points) for check in result.checks] != worth:
+        raise AnswerError("a worker's answer does not hold the checks of the suite")
+    if any(not 0 <= check.points <= check.max_points for check in result.checks):
+        raise AnswerError("a worker's answer gives more points than a check is worth")
+    return result
+
+
+def _require_artifacts(files: Mapping[str, bytes], result: Result) -> None:
+    pictures = {artifact.name for artifact in result.artifacts}
+    runs = {artifact.run for artifact in result.artifacts if artifact.run}
+    recordings = {name for name in files if RECORDING.fullmatch(name)}  # which a replay asks for
+    if set(files) - recordings != pictures | runs:
+        raise AnswerError(f"a worker's answer holds {sorted(files)} and its result names {sorted(pictures | runs)}")
+    for name, data in files.items():
+        if name in recordings:
+            continue
+        if not (PICTURE if name in pictures else RUN).fullmatch(name):
+            raise AnswerError(f"a worker's answer holds a file of the name {name[:100]!r}")
+        try:
+            _require_picture(data) if name in pictures else _require_run(data)
+        except (OSError, SyntaxError, ValueError, RecursionError, Image.DecompressionBombError) as error:
+            raise AnswerError(f"the file {name} in a worker's answer cannot be read: {error}") from None
+
+
+def _require_picture(data: bytes) -> None:
+    with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
+        width, height = picture.size
+        if width * height > MAX_PIXELS:
+            raise ValueError(f"it has {width} x {height} pixels")
+        picture.verify()
+
+
+def _require_run(data: bytes) -> None:
+    if not isinstance(json.loads(data.decode()), dict):
+        raise ValueError("it is no run")
+
+
+def _require_notebook(data: bytes) -> None:
+    import nbformat  # slow to import, and a source tree has no notebook
+
+    try:
+        nbformat.reads(data.decode(), as_version=4)
+    except Exception as error:  # nbformat's own errors have no common base
+        raise AnswerError(f"the notebook in a worker's answer cannot be read: {error}") from None

@@ -1,0 +1,53 @@
+"""One submission in a cell of its own, and what its worker sees there."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ExitStack
+from dataclasses import replace
+from multiprocessing import Pipe
+from pathlib import Path
+
+from autograder import layout
+from autograder.building.keeper import attend
+from autograder.grade.job import Job
+from autograder.run.sandbox.cell import CellReport, ended, in_cell
+from autograder.run.sandbox.limits import GRADING_CELL
+from autograder.run.sandbox.parcel import ParcelError
+from autograder.run.sandbox.spec import View
+from autograder.suite import fingerprint, suites
+
+GRACE = 30.0  # s in which a worker that knows that its time is over ends what runs, and says what it knows
+
+
+def in_own_cell(job: Job, seconds: float) -> CellReport:
+    """Run a job by a worker of its own in a cell of its own, for at most `seconds`; report the files that it left."""
+    ours, theirs = Pipe()
+
+    def command(scratch: Path) -> list[str]:
+        return _worker(replace(job, scratch=scratch, out=scratch / "out", seconds=seconds), theirs.fileno())
+
+    limits = replace(GRADING_CELL, wall_seconds=seconds + GRACE)
+    with ours, ExitStack() as stack:
+        with theirs:
+            cell = in_cell(command, job.tier, limits, view=view(job), pass_fds=(theirs.fileno(),))
+            process, _ = stack.enter_context(cell)
+        try:
+            files, _ = attend(ours, job.tier, lambda: process.ending is not None)
+            return replace(ended(process), files=files)
+        except ParcelError as error:
+            process.kill()
+            report = ended(process)
+            return replace(report, returncode=report.returncode or 1, output=f"{report.output}\n{error}")
+
+
+def view(job: Job) -> View:
+    """Return what the worker of a job sees: its submission, its chapter, and what its suite reads."""
+    chapter = layout.chapter(job.assignment)
+    own = fingerprint.places(job.assignment, suites.hidden(job.assignment).reads)
+    built = (Path(job.scope.built),) if job.scope.built else ()
+    return View(shown=(chapter, *own, *built), submitted=(job.path,))
+
+
+def _worker(job: Job, line: int) -> list[str]:
+    return [sys.executable, "-m", "autograder.grade.worker", job.to_json(), str(line)]

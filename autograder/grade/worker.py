@@ -1,0 +1,216 @@
+"""The worker: the trusted process that grades one submission inside its cell.
+
+    python -m autograder.grade.worker JOB DESCRIPTOR
+
+It imports no student code; that runs in sandboxes below it. It sends `result.json` and the pictures over the line that
+the descriptor is an end of, or ends with a traceback, which is a failure of the grader.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+import traceback
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from autograder import layout
+from autograder.diagnosis import OK, Diagnosis
+from autograder.exceptions import GraderError, StudentError
+from autograder.grade.job import Job
+from autograder.grade.plugin import GradingPlugin, run
+from autograder.grade.store import LOG, NOTEBOOK, RESULT
+from autograder.result.artifacts import Gallery
+from autograder.result.model import Build, CheckResult, Result, Status, write_json
+from autograder.ros import activate
+from autograder.ros.domains import Domain
+from autograder.run import patience
+from autograder.run.sandbox import line
+from autograder.run.sandbox.launcher import restore_sigint
+from autograder.run.sandbox.limits import RESULT_FILES
+from autograder.run.sandbox.parcel import send_message, send_tree
+from autograder.run.sandbox.tiers import Tier
+from autograder.run.sandbox.trees import read_tree
+from autograder.run.time_record import REAL
+from autograder.run.workspace import Workspace
+from autograder.submission.intake import write_tree
+from autograder.submission.reading import reading
+from autograder.suite import suites
+from autograder.suite.suites import Suite
+
+_NO_DIGEST = "0" * 64
+
+
+class Grading:
+    """One submission on its way from what was handed in to a result."""
+
+    def __init__(self, job: Job, suite: Suite) -> None:
+        self._job, self._suite = job, suite
+        self._folder = job.scratch / "assignment"
+        patience.begin(job.seconds)
+        home = job.scratch / "home"
+        home.mkdir(parents=True)
+        # Without a network namespace, a domain of its own is the least that keeps two submissions apart.
+        domain = 0 if job.tier is Tier.BUBBLEWRAP else Domain().number
+        self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
+        self._gallery = Gallery(job.out, disabled=not job.scope.pictures, recordings=job.scope.recordings)
+        self._phases: dict[str, float] = {}
+        self._sha256 = _NO_DIGEST
+        self._status = Status.UNCLEAR  # until what was handed in has been read
+        self._notices: tuple[str, ...] = ()
+        self._unused: tuple[str, ...] = ()
+        self._build: Build | None = None
+        self._builds: Mapping[str, Diagnosis] = {}
+        self._unjudged: dict[str, str] = {}
+
+    def grade(self) -> Result:
+        """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
+        began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
+        results: dict[str, CheckResult] = {}
+        try:
+            observed = self._prepare()
+            checked = self._check(results)
+            diagnosis = checked if observed is OK else observed
+        except StudentError as error:
+            diagnosis = error.diagnosis
+            if error.__cause__ is not None:  # what no reader of these data is written for
+                self._log(traceback.format_exception(error))
+        if self._build is None and diagnosis is not OK:
+            self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
+        times = self._workspace.time_record
+        return Result(
+            assignment=self._job.assignment,
+            student=self._job.student,
+            submission_sha256=self._sha256,
+            suite_version=self._suite.version,
+            files_digest=self._suite.files_digest,
+            seed=self._job.seed,
+            isolation=self._job.tier.value,
+            checks=tuple(
+                results.get(check.id) or CheckResult.not_checked(check, diagnosis.sentence)
+                for check in self._suite.checks
+            ),
+            max_score=self._suite.max_score,
+            started=started,
+            seconds=round(time.monotonic() - began, 2),
+            diagnosis=diagnosis,
+            build=self._build,
+            artifacts=tuple(self._gallery.artifacts),
+            status=self._status,
+            phases=self._phases,
+            notices=self._notices,
+            unused=self._unused,
+            time=times.time,
+            time_note=times.explain(),
+            unjudged=tuple(self._unjudged),
+            held_up=round(times.longest_wait, 6) if times.time == REAL else 0.0,
+        )
+
+    def _prepare(self) -> Diagnosis:
+        """Read the submission, run its notebook, build; return what was wrong with a build that the suite lets fail."""
+        from autograder.building.build import build_workspace
+        from autograder.building.prebuilt import copy_prebuilt
+        from autograder.submission import intake
+
+        with self._phase("intake"), reading("Your submission"):
+            submission = intake.read_submission(self._job.path, self._job.assignment)
+            self._sha256, self._notices, self._unused = submission.sha256, submission.notices, submission.unused
+            packages = submission.packages
+            self._status = Status.GRADED
+        if packages is None and submission.notebook is not None:
+            with self._phase("notebook"), reading("Your notebook, or what it wrote,"):
+                # Jupyter is slow to import, and not every submission needs it.
+                from autograder.grade import run_notebook
+
+                write_tree(submission.extra, self._folder)
+                start = intake.with_given_packages(submission, self._job.assignment)
+                write_tree(start, self._folder / "ws" / "src")
+                original = layout.source_notebook(self._job.assignment)
+                run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
+                # The notebook could write links and devices to all of this. Only plain files of it are taken.
+                written = intake.read_packages(self._folder / "ws")
+                self._clear()
+                counted = intake.what_counts(submission, written, self._job.assignment)
+                packages, self._notices = counted.packages, counted.notices
+        assert packages is not None, "only a notebook makes packages that were not handed in"
+        source = self._workspace.root / "src"
+        with reading("Your submission"):
+            write_tree(packages, source)
+        with self._phase("build"), reading("Your packages, or what their build left,"):
+            if built := self._job.scope.built:
+                seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
+            else:
+                seen = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
+            # A set-up script could write to the sources as well. Checks read what was handed in.
+            subprocess.run(["rm", "-rf", "--", source], check=True)
+            write_tree(packages, source)
+        self._build, self._builds = seen.build, seen.diagnoses
+        return seen.diagnosis
+
+    def _clear(self) -> None:
+        """Remove what the notebook wrote, however deep it is nested; a full disk has room again."""
+        subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
+        self._workspace.scratch.mkdir()
+
+    def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
+        plugin = GradingPlugin(
+            self._workspace, self._job.seed, self._gallery, self._builds, self._job.scope, self._job.last
+        )
+        with self._phase("checks"):
+            run(self._suite.files, plugin)
+        wanted = self._job.scope.only or [check.id for check in self._suite.checks]
+        missing = set(wanted) - set(plugin.results)
+        if missing and not plugin.failures and not plugin.is_finished:
+            plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
+        if plugin.failures:
+            raise GraderError("\n".join(plugin.failures))
+        results.update(plugin.results)
+        self._unjudged = plugin.unjudged
+        if plugin.unjudged:
+            self._log(plugin.unjudged.values())
+        return plugin.diagnosis
+
+    def _log(self, tracebacks: Iterable[str]) -> None:
+        """Write tracebacks for the instructor. They are never part of the result: they quote hidden checks."""
+        self._job.out.mkdir(parents=True, exist_ok=True)
+        (self._job.out / LOG).write_text("\n".join(tracebacks), errors="backslashreplace")
+
+    @contextmanager
+    def _phase(self, name: str) -> Iterator[None]:
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            self._phases[name] = round(time.monotonic() - began, 3)
+
+
+def prepare() -> None:
+    """Prepare this process for grading: interrupts reach it, and ROS can be imported."""
+    restore_sigint()
+    activate()
+
+
+def work(job: Job, suite: Suite) -> None:
+    """Grade a job, and send what it left over this process's line."""
+    job.out.mkdir(parents=True, exist_ok=True)
+    write_json(job.out / RESULT, Grading(job, suite).grade().to_json())
+    with line.held() as connection:
+        if connection is not None:
+            send_message(connection, {"do": "result"})
+            send_tree(connection, read_tree(job.out, RESULT_FILES))
+
+
+def main() -> None:
+    """Grade the job that the command line holds."""
+    job = Job.from_json(sys.argv[1])
+    line.take(Connection(int(sys.argv[2])))
+    prepare()
+    work(job, suites.hidden(job.assignment))
+
+
+if __name__ == "__main__":
+    main()

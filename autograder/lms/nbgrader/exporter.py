@@ -1,0 +1,33 @@
+"""Reads a submitted file for nbgrader. A file that is not a notebook does not stop the batch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nbconvert.exporters import NotebookExporter
+from nbformat import NotebookNode
+from nbformat.v4 import new_notebook
+
+from autograder.exceptions import StudentError
+from autograder.grade import submitted_notebook
+from autograder.plain_text import visible
+from autograder.submission import intake
+
+
+class SubmissionExporter(NotebookExporter):
+    """Reads a file that is not a notebook as one without cells. The grader reports what is wrong with it."""
+
+    def from_file(self, file_stream: Any, *args: Any, **kwargs: Any) -> Any:
+        data = file_stream.buffer.read(intake.MAX_WRAPPED_BYTES + 1)
+        convert: Any = self.from_notebook_node
+        return convert(self._read(data, file_stream.name), *args, **kwargs)
+
+    def _read(self, data: bytes, name: str) -> NotebookNode:
+        if len(data) > intake.MAX_WRAPPED_BYTES:
+            self.log.warning("%s is larger than %d MiB", visible(name, line=True), intake.MAX_WRAPPED_BYTES // 2**20)
+            return new_notebook()
+        try:
+            return submitted_notebook.read(data, name)
+        except StudentError as error:
+            self.log.warning("%s", visible(str(error), line=True))
+            return new_notebook()

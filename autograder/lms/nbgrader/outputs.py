@@ -1,0 +1,102 @@
+"""Makes the outputs of an autograded notebook: the student's own, and the scores with their feedback.
+
+nbgrader reads the points of a cell from its outputs (`determine_grade`). An error or text on stderr is 0, a number as
+`execute_result` is that many points, and no output is full marks. So a grade cell gets exactly one `execute_result`, a
+float. The feedback is `display_data`, which nbgrader does not read.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Iterable
+from typing import Any
+
+from nbformat import NotebookNode
+from nbformat.v4 import new_output
+
+from autograder.plain_text import clean
+from autograder.report.feedback.model import CheckView, GroupView, PageView
+from autograder.report.feedback.pages import environment
+from autograder.report.feedback.text import number
+from autograder.result.causes import FAILED_AS_WELL
+
+PICTURES = ("image/png", "image/jpeg")
+
+
+def grade_outputs(points: float, page: PageView, group: GroupView, *, first: bool) -> list[NotebookNode]:
+    """Return the outputs of a locked grade cell.
+
+    Args:
+        points: the points that nbgrader records.
+        page: content of the feedback page.
+        group: the checks that count for the cell.
+        first: whether this is the first grade cell of the notebook, which also gets the diagnosis.
+    """
+    html = environment().get_template("group.html.j2").render(page=page, group=group, first=first)
+    lines = [line for check in group.checks for line in _lines(check)]
+    lines += [f"{other.count} did not pass with: {other.cause.title}" for other in group.elsewhere]
+    outputs = [
+        new_output("execute_result", {"text/plain": str(float(points))}, execution_count=1),
+        new_output("display_data", {"text/html": html, "text/plain": clean("\n".join(lines)) or number(points)}),
+    ]
+    for picture in group.pictures:
+        if picture.uri is not None:
+            shown = {"image/png": picture.uri.partition(",")[2], "text/plain": clean(picture.caption)}
+            outputs.append(new_output("display_data", shown, metadata={"image/png": {"alt": clean(picture.caption)}}))
+    return outputs
+
+
+def _lines(check: CheckView) -> list[str]:
+    """Return a check, and what did not pass with it, as lines of text."""
+    lines = [f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip()]
+    if check.also:
+        lines += [FAILED_AS_WELL, *(line for other in check.also for line in _lines(other))]
+    return lines + ([check.not_checked] if check.not_checked else [])
+
+
+def sanitized_outputs(outputs: Iterable[Any]) -> list[NotebookNode]:
+    """Return the text and the pictures of a student's outputs.
+
+    HTML, SVG, scripts, widgets and metadata are removed, because feedback and formgrader would show them unescaped.
+    """
+    kept = []
+    for output in outputs:
+        kind = output.get("output_type")
+        if kind == "stream":
+            name = "stderr" if output.get("name") == "stderr" else "stdout"
+            kept.append(new_output("stream", name=name, text=_text(output.get("text"))))
+        elif kind == "error":
+            traceback = output.get("traceback")
+            lines = traceback if isinstance(traceback, list) else []
+            names = {name: _text(output.get(name)) for name in ("ename", "evalue")}
+            kept.append(new_output("error", **names, traceback=[_text(line) for line in lines]))
+        elif kind in ("display_data", "execute_result") and isinstance(output.get("data"), dict):
+            data = _data(output["data"])
+            if data:
+                kept.append(new_output("display_data", data))
+    return kept
+
+
+def _data(bundle: dict[str, Any]) -> dict[str, str]:
+    kept = {media: data for media in PICTURES if (data := _picture(bundle.get(media))) is not None}
+    if "text/plain" in bundle:
+        kept["text/plain"] = _text(bundle["text/plain"])
+    return kept
+
+
+def _picture(value: object) -> str | None:
+    """Return Base64 data in canonical form, or None if `value` is not such data."""
+    if not isinstance(value, str):
+        return None
+    try:
+        return base64.b64encode(base64.b64decode("".join(value.split()), validate=True)).decode("ascii")
+    except (binascii.Error, ValueError):
+        return None
+
+
+def _text(value: object) -> str:
+    """Return cleaned text with its terminal colours, which pages render, or an empty string for another type."""
+    if isinstance(value, list):
+        value = "".join(part for part in value if isinstance(part, str))
+    return "\x1b".join(clean(part) for part in value.split("\x1b")) if isinstance(value, str) else ""

@@ -1,0 +1,129 @@
+"""Grades the submitted folder in place of nbgrader's execution of the notebook.
+
+The folder is graded in a sandbox. The scores are written into the locked grade cells, from which nbgrader records them.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import nbformat
+from nbformat import NotebookNode
+from nbformat.v4 import new_notebook
+from nbgrader.api import Gradebook
+from nbgrader.preprocessors import NbGraderPreprocessor
+from nbgrader.utils import is_grade, is_solution
+from traitlets import Integer, Unicode
+
+from autograder.author.course.cells import group
+from autograder.exceptions import GraderError
+from autograder.grade import DEFAULT_SEED
+from autograder.grade.batch import Entry, grade_all
+from autograder.grade.store import LOG, NOTEBOOK
+from autograder.grade.submitted_notebook import grade_id
+from autograder.lms.nbgrader.outputs import grade_outputs, sanitized_outputs
+from autograder.plain_text import clean
+from autograder.report import feedback
+from autograder.report.feedback.model import page_view
+from autograder.result.model import Result, Status
+from autograder.run.sandbox import Tier
+
+
+class SandboxedGrade(NbGraderPreprocessor):
+    """Grades a submission and writes the outputs of the notebook. No code of a student runs in this process."""
+
+    seed = Integer(DEFAULT_SEED, help="The seed of every hidden input.").tag(config=True)
+    isolation = Unicode(Tier.BUBBLEWRAP.value, help="The isolation: bubblewrap or process.").tag(config=True)
+    results = Unicode(
+        ".build/nbgrader",
+        help="The folder of results, from the course directory: ASSIGNMENT/STUDENT/result.json. A stored result "
+        "is recorded without another grading if submission, suite, seed and isolation are the same.",
+    ).tag(config=True)
+
+    def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
+        """Grade the submitted folder of this notebook, and write its outputs.
+
+        Args:
+            nb: the submitted notebook, after sanitizing.
+            resources: nbgrader's resources; `resources["nbgrader"]` names assignment, student and database.
+
+        Raises:
+            GraderError: the submission could not be graded, or the grade cells do not match the suite. Nothing is
+                recorded then.
+        """
+        coursedir = self.parent.parent.coursedir
+        marks = resources["nbgrader"]
+        assignment, student = marks["assignment"], marks["student"]
+        submitted = Path(coursedir.format_path(coursedir.submitted_directory, student, assignment))
+        results = Path(coursedir.root) / self.results / assignment
+        try:
+            (result,) = grade_all(
+                (Entry(student, submitted),),
+                assignment,
+                seed=self.seed,
+                out=results,
+                jobs=1,
+                isolation=Tier(self.isolation),
+                resume=True,
+            )
+            if result.status is not Status.GRADED:
+                raise GraderError(f"{student}: not graded, no score is recorded. {result.diagnosis.sentence}")
+            if result.unjudged:
+                checks, log = ", ".join(result.unjudged), results / student / LOG
+                self.log.warning("%s: %s failed, because the check raised an error: read %s", student, checks, log)
+            self._copy_outputs(nb, results / student / NOTEBOOK)
+            self._write_scores(nb, result, results / student)
+            feedback.write(result, results / student)
+        except Exception:
+            self._request_manual_grading(marks)
+            raise
+        return nb, resources
+
+    def _copy_outputs(self, nb: NotebookNode, executed: Path) -> None:
+        """Copy the outputs of the sandboxed run into the cells that have the same source there."""
+        notebook = nbformat.read(executed, as_version=4) if executed.is_file() else new_notebook()
+        cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+        count = Counter(_name(cell) for cell in cells)
+        ran = {_name(cell): cell for cell in cells if count[_name(cell)] == 1}
+        for cell in nb.cells:
+            if cell.cell_type == "code":
+                same = ran.get(_name(cell))
+                outputs = [] if same is None or clean(same.source) != cell.source else same.outputs
+                cell.outputs = sanitized_outputs(outputs)
+                cell.execution_count = None
+
+    def _write_scores(self, nb: NotebookNode, result: Result, out: Path) -> None:
+        """Write the score and the feedback of each group into the outputs of its locked grade cell."""
+        page = page_view(result, out)
+        groups = {view.name: view for view in page.groups}
+        graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
+        named = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in graded]
+        if sorted(named) != sorted(groups):
+            raise GraderError(
+                f"{result.assignment}: its grade cells have the groups {sorted(named)}, but its suite has "
+                f"{sorted(groups)}: correct the source notebook and run `nbgrader generate_assignment` again"
+            )
+        for cell, name in zip(graded, named, strict=True):
+            view, worth = groups[name], float(cell.metadata.nbgrader["points"])
+            if abs(view.max_points - worth) > 1e-6:
+                raise GraderError(
+                    f"{result.assignment}: the cell of group {name!r} is worth {worth:g} points, its checks "
+                    f"{view.max_points:g}: run `nbgrader generate_assignment` again"
+                )
+            points = min(max(round(view.points, 4), 0.0), worth)
+            cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
+
+    def _request_manual_grading(self, marks: dict[str, str]) -> None:
+        """Mark the submission for manual grading. A score that was recorded earlier stays the same."""
+        with Gradebook(marks["db_url"]) as gradebook:
+            submission = gradebook.find_submission_notebook(marks["notebook"], marks["assignment"], marks["student"])
+            for grade in submission.grades:
+                grade.needs_manual_grade = True
+            gradebook.db.commit()
+
+
+def _name(cell: NotebookNode) -> str:
+    """Return the key by which cells are matched: the grade id, or the cell id if there is none."""
+    return f"grade {grade_id(cell)}" if grade_id(cell) else f"cell {cell.get('id')}"

@@ -1,0 +1,1 @@
+"""What people read of a result: feedback pages, and exports for other programs."""

@@ -1,0 +1,40 @@
+"""The export formats. Each module of this folder is a format of the same name.
+
+Such a module has `FOLDER`, which is True if the format is written to a folder and False if it is written to one file.
+Its `write(stored, out)` writes results to the file or folder `out` and returns the file to open first.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from autograder.exceptions import UsageError
+from autograder.report.export.stored import Stored
+
+FORMATS: Mapping[str, ModuleType] = {
+    found.name: import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)
+}
+
+
+def write(stored: Sequence[Stored], name: str, out: Path) -> Path:
+    """Write results in a format and return the file to open first.
+
+    Args:
+        stored: the results, from `load`.
+        name: name of the format, a key of `FORMATS`.
+        out: the file or folder to write.
+
+    Raises:
+        UsageError: `out` is a folder instead of a file or the other way round, or two results need the same file.
+    """
+    format = FORMATS[name]
+    if out.exists() and out.is_dir() is not format.FOLDER:
+        kind = "folder" if format.FOLDER else "file"
+        raise UsageError(f"{out}: {name} is written to a {kind}; give the path of a {kind}")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    first: Path = format.write(stored, out)
+    return first

@@ -1,0 +1,53 @@
+"""CSV: a row for each submission."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder.report.export.stored import Stored
+from autograder.report.feedback.text import one_line
+from autograder.result.model import Result, Status
+
+FOLDER = False
+
+
+def write(stored: Sequence[Stored], out: Path) -> Path:
+    """Write a row for each result, with a column for each check and the points that it earned.
+
+    The file is UTF-8 with commas, quoted as in RFC 4180. A submission that was not graded has no score.
+    """
+    rows = [_row(item.result) for item in stored]
+    with out.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    return out
+
+
+def _row(result: Result) -> dict[str, str | float]:
+    graded = result.status is Status.GRADED
+    return {
+        "assignment": _text(result.assignment),
+        "student": _text(result.student),
+        "status": result.status.value,
+        "score": result.score if graded else "",
+        "max_score": result.max_score,
+        "percent": round(result.percent, 2) if graded else "",
+        "diagnosis": result.diagnosis.kind.value,
+        "reason": _text(result.diagnosis.sentence),
+        "seed": result.seed,
+        "suite_version": _text(result.suite_version),
+        "isolation": _text(result.isolation),
+        "submission_sha256": result.submission_sha256,
+        "started": _text(result.started),
+        "seconds": result.seconds,
+        **{f"check {check.id}": check.points if graded else "" for check in result.checks},
+    }
+
+
+def _text(value: str) -> str:
+    """Return the text on one line. A quote before a leading =, +, - or @ keeps spreadsheets from evaluating it."""
+    line = one_line(value)
+    return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line

@@ -1,0 +1,77 @@
+"""Reads stored results: a JSON file of one result or of a list, or a folder with such files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.exceptions import UsageError
+from autograder.result.model import UNFINISHED, Result, from_json
+
+ONE = "result.json"
+MANY = "results.json"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A result and the folder of its artifacts."""
+
+    result: Result
+    folder: Path
+
+
+def load(path: Path) -> tuple[Stored, ...]:
+    """Read the results at `path`.
+
+    Args:
+        path: a file with a result or a list of results, or a folder with `result.json` files in it or below it. If
+            there is none, `results.json` in the folder is read. The artifacts of a result in a list are in the
+            folder that has the name of the student, beside the file.
+
+    Raises:
+        UsageError: there is nothing to read, or a file holds no result. The message names the file.
+    """
+    if not path.exists():
+        raise UsageError(f"{path}: no such file or folder; give the folder that `autograder grade --out` wrote")
+    if path.is_file():
+        return _read(path)
+    complete = (file for file in path.rglob(ONE) if file.parent.name != UNFINISHED)  # its grading was interrupted
+    files = sorted(complete) or sorted(path.glob(MANY))
+    if not files:
+        raise UsageError(f"{path}: holds no {ONE}; give the folder that `autograder grade --out` wrote")
+    return tuple(stored for file in files for stored in _read(file))
+
+
+def per_student(stored: Sequence[Stored], out: Path) -> list[tuple[Stored, Path]]:
+    """Pair each result with `out/<student>`.
+
+    Raises:
+        UsageError: a student has two results, or a student's name cannot be the name of a folder.
+    """
+    pairs: dict[str, tuple[Stored, Path]] = {}
+    for item in stored:
+        student = item.result.student
+        if student in ("", ".", "..") or "/" in student or "\0" in student:
+            raise UsageError(f"the student {student!r} cannot be the name of a folder; use a format without folders")
+        if student in pairs:
+            raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
+        pairs[student] = (item, out / student)
+    return list(pairs.values())
+
+
+def _read(file: Path) -> tuple[Stored, ...]:
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{file}: cannot be read as JSON: {error}") from None
+    if not isinstance(data, list):
+        return (Stored(from_json(data, source=str(file)), file.parent),)
+    found = (from_json(item, source=f"{file}, entry {index}") for index, item in enumerate(data))
+    return tuple(Stored(result, _folder(result, file.parent)) for result in found)
+
+
+def _folder(result: Result, beside: Path) -> Path:
+    own = beside / result.student
+    return own if own.is_dir() else beside

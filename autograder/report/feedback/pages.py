@@ -1,0 +1,143 @@
+"""Renders the pages from the templates. All text is escaped. A page loads no other file.
+
+The only script that a page lets run is the player's, which it names by its digest. A page without a run has none.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+from collections.abc import Sequence
+from functools import cache
+from html import escape
+from pathlib import Path
+from statistics import mean
+from urllib.parse import quote, urlsplit
+
+import jinja2
+from markupsafe import Markup
+
+from autograder import layout
+from autograder.plain_text import clean
+from autograder.report.feedback.model import page_view
+from autograder.report.feedback.pictures import Picture
+from autograder.report.feedback.statistics import class_statistics
+from autograder.report.feedback.text import no_mark, number
+from autograder.result.causes import FAILED_AS_WELL
+from autograder.result.model import Result, Status, write_atomically
+from autograder.suite.contract import contract
+
+TEMPLATES = layout.ROOT / "assets" / "templates"
+PAGE = "feedback.html"
+SUMMARY = "index.html"
+
+
+@cache
+def environment() -> jinja2.Environment:
+    """Return the template environment. It escapes all text and raises for an unknown name."""
+
+    def presentable(value: object) -> object:
+        return clean(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+    found = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=presentable,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["number"] = number
+    found.filters["player"] = _player
+    found.filters["web_address"] = _web_address
+    found.globals["no_mark"] = no_mark
+    found.globals["failed_as_well"] = FAILED_AS_WELL
+    found.globals["style"] = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
+    return found
+
+
+def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Path:
+    """Write the feedback page of one submission and return its path.
+
+    Args:
+        result: the result to show.
+        folder: folder that gets `feedback.html`.
+        artifacts: folder of the result's pictures; `folder` if it is None.
+
+    Raises:
+        UsageError: the path of an artifact leads out of its folder.
+    """
+    known = contract(result.assignment) if result.assignment in layout.assignments() else {}
+    page = page_view(result, artifacts or folder, known)
+    script, style = _player_assets() if page.plays else ("", "")
+    digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii") if script else ""
+    template = environment().get_template("feedback.html.j2")
+    return _write(
+        folder / PAGE,
+        template.render(page=page, script=Markup(script), script_digest=digest, player_style=Markup(style)),
+    )
+
+
+def _web_address(address: str | None) -> str | None:
+    """Return `address` if it is an http or https address, and None otherwise."""
+    return address if urlsplit(address or "").scheme in ("http", "https") else None
+
+
+def _player_assets() -> tuple[str, str]:
+    """Return the player's script and style sheet."""
+    from sim.view import player  # matplotlib, which it imports, is slow, and most pages have no run
+
+    return player.SCRIPT, player.style()
+
+
+def _player(picture: Picture, first: bool = False) -> Markup:
+    """Return the player of a picture's run. A link to an instant that names no run means the first one."""
+    from sim.view import player
+
+    alt = escape(clean(picture.caption), quote=True)
+    still = f'<img class="run-still" src="{picture.uri}" alt="{alt}">' if picture.uri else ""
+    options = {"id": f"run-{picture.name}", "data-theme": "auto", **({"data-first": "yes"} if first else {})}
+    return Markup(player.markup(picture.run or "", still, **options))
+
+
+def write_summary(results: Sequence[Result], folder: Path) -> Path:
+    """Write the table of a class's submissions and return its path.
+
+    The row of a submission links to `folder/<student>/feedback.html` if that file exists.
+    """
+    graded = [result for result in results if result.status is Status.GRADED]
+    html = (
+        environment()
+        .get_template("summary.html.j2")
+        .render(
+            assignments=list(dict.fromkeys(result.assignment for result in results)),
+            rows=[(result, _link(result, folder), _reason(result)) for result in results],
+            graded=graded,
+            mean=mean(result.percent for result in graded) if graded else None,
+            statistics=class_statistics(graded) if graded else None,
+        )
+    )
+    return _write(folder / SUMMARY, html)
+
+
+def _link(result: Result, folder: Path) -> str | None:
+    if (folder / result.student).resolve().parent != folder.resolve():
+        return None
+    # The name of a folder may be no UTF-8, as that of a zip's member.
+    return f"{quote(os.fsencode(result.student))}/{PAGE}" if (folder / result.student / PAGE).is_file() else None
+
+
+def _reason(result: Result) -> str:
+    """Return a sentence that says why points are missing."""
+    page = page_view(result, None)
+    if not page.graded:
+        return no_mark(result)
+    if not page.started:
+        return result.diagnosis.sentence
+    return (page.first.message or page.first.title) if page.first else ""
+
+
+def _write(path: Path, html: str) -> Path:
+    write_atomically(path, html.encode("utf-8"))
+    return path

@@ -1,0 +1,91 @@
+"""Statistics of a class's results: the distribution of marks, and how difficult each check was."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import StatisticsError, correlation, median
+
+from autograder.result.model import CheckResult, Result
+from autograder.suite import Outcome
+
+BAND_PERCENT = 10  # width of a bar of the distribution
+SHOWN_REASONS = 8
+
+
+@dataclass(frozen=True)
+class CheckStatistics:
+    """How a class did at a check.
+
+    Attributes:
+        passed: how many passed it, of `total`.
+        difficulty: mean share of its points that was reached, 0 to 1. Test theory calls it the difficulty of an item.
+        discrimination: correlation of its points with the points of all other checks, -1 to 1. Near 0 or below, the
+            check tells good answers from weak ones no better than chance. None if everybody has the same points.
+    """
+
+    id: str
+    title: str
+    passed: int
+    total: int
+    difficulty: float
+    discrimination: float | None
+
+
+@dataclass(frozen=True)
+class ClassStatistics:
+    """Figures of a class in an assignment.
+
+    Attributes:
+        bands: number of results in each band of `BAND_PERCENT` per cent, from 0; full marks are in the last.
+        checks: the checks that not everybody passed, the most missed first.
+        reasons: the most frequent messages of failed checks, each with the number of students who got it.
+        seconds: median wall time of a grading.
+    """
+
+    bands: tuple[int, ...]
+    checks: tuple[CheckStatistics, ...]
+    reasons: tuple[tuple[str, int], ...]
+    seconds: float
+
+
+def class_statistics(results: Sequence[Result]) -> ClassStatistics:
+    """Return the figures of graded results; there must be one at least."""
+    bands = Counter(min(int(result.percent // BAND_PERCENT), 100 // BAND_PERCENT - 1) for result in results)
+    by_check: dict[tuple[str, str], list[tuple[Result, CheckResult]]] = {}
+    for result in results:
+        for check in result.checks:
+            by_check.setdefault((result.assignment, check.id), []).append((result, check))
+    checks = [_check(taken) for taken in by_check.values()]
+    missed = sorted((check for check in checks if check.passed < check.total), key=lambda check: check.difficulty)
+    messages = Counter(
+        message
+        for result in results
+        for message in {check.message for check in result.checks if check.outcome is Outcome.FAILED and check.message}
+    )
+    return ClassStatistics(
+        tuple(bands[band] for band in range(100 // BAND_PERCENT)),
+        tuple(missed),
+        tuple((message, count) for message, count in messages.most_common(SHOWN_REASONS) if count > 1),
+        median(result.seconds for result in results),
+    )
+
+
+def _check(taken: Sequence[tuple[Result, CheckResult]]) -> CheckStatistics:
+    points = [check.points for _, check in taken]
+    others = [math.fsum((result.score, -check.points)) for result, check in taken]
+    try:
+        discrimination = correlation(points, others)
+    except StatisticsError:  # fewer than two results, or all the same
+        discrimination = None
+    first = taken[0][1]
+    return CheckStatistics(
+        first.id,
+        first.title,
+        sum(check.outcome is Outcome.PASSED for _, check in taken),
+        len(taken),
+        math.fsum(points) / math.fsum(check.max_points for _, check in taken),
+        discrimination,
+    )

@@ -1,0 +1,1 @@
+"""The result of a grading, and the pictures that belong to it."""

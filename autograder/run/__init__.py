@@ -1,0 +1,1 @@
+"""Runs students' programs: sandboxes, the fork server, and ROS time in lockstep."""

@@ -1,0 +1,76 @@
+"""The grader's end of a fork server."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+from autograder.run.fork_server.request import ForkRequest
+
+# What bubblewrap starts in a forked program's place: it says that the sandbox stands, and ends with the status that it
+# is sent.
+PLACEHOLDER_COMMAND = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
+TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a machine that is busy
+_ARGV_BYTES = 2048  # bytes of command line, which a program's own child can overwrite with its own
+
+
+class ForkError(Exception):
+    """A program could not be forked."""
+
+
+class ForkServer:
+    """One fork server, which forks one program after another.
+
+    Args:
+        profile: what it imports, a name in `PROFILES`.
+        environment: its environment variables, which every program can read in its /proc.
+    """
+
+    def __init__(self, profile: str, environment: Mapping[str, str]) -> None:
+        self._lock = threading.Lock()
+        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._socket.settimeout(TIMEOUT)
+        with theirs:
+            self._popen = subprocess.Popen(
+                [sys.executable, "-m", "autograder.run.fork_server", str(theirs.fileno()), profile, " " * _ARGV_BYTES],
+                stdin=subprocess.DEVNULL,
+                env=dict(environment),
+                pass_fds=(theirs.fileno(),),
+                cwd="/",
+                start_new_session=True,
+            )
+
+    @property
+    def pid(self) -> int:
+        """The server's process id."""
+        return self._popen.pid
+
+    def spawn(self, request: ForkRequest, status: int) -> int:
+        """Fork a program into a sandbox that stands; return its process id, or raise a ForkError.
+
+        Args:
+            request: the program; it gets the descriptors `request.fds`, under the same numbers.
+            status: the descriptor that gets its exit status, as a line.
+        """
+        with self._lock:
+            try:
+                socket.send_fds(self._socket, [request.to_bytes()], [status, *request.fds])
+                answer: dict[str, Any] = {}
+                while not answer.keys() >= {"program", "entered"}:
+                    answer |= json.loads(self._socket.recv(4096) or b'{"failed": "the fork server has ended"}')
+                    if "failed" in answer:
+                        raise ForkError(answer["failed"])
+            except OSError as error:
+                raise ForkError(str(error)) from error
+        return int(answer["program"])
+
+    def close(self) -> None:
+        """End the server; its programs go on."""
+        self._socket.close()
+        self._popen.kill()
+        self._popen.wait()

@@ -1,0 +1,98 @@
+"""Going into a sandbox that bubblewrap has made, and giving up what bubblewrap would not have given.
+
+A forked process has to come by itself to what bubblewrap gives: the sandbox's namespaces, no capability and no way to
+any, its descriptors and limits. See setns(2), ioctl_nsfs(2), capabilities(7), prctl(2), seccomp(2).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+import resource
+import struct
+from pathlib import Path
+
+from autograder.run.fork_server import seccomp
+
+_NAMESPACES = ("ipc", "uts", "net", "cgroup", "pid", "mnt")
+_NS_GET_USERNS = 0xB701
+_PR_SET_DUMPABLE, _PR_SET_SECCOMP, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 4, 22, 24, 38, 47
+_PR_CAP_AMBIENT_CLEAR_ALL, _SECCOMP_MODE_FILTER = 4, 2
+_CAPABILITY_VERSION_3 = 0x20080522
+_HIGH = 500  # where nothing is in the way of the numbers that descriptors are to have
+
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+def join(placeholder: int) -> int:
+    """Join the namespaces of the process `placeholder`, but for its user namespace; return a descriptor of that one.
+
+    This process becomes the master of the user namespace that owns the others, which the kernel grants to the user who
+    has made it. Its next child is in the pid namespace, too.
+    """
+    theirs, ours = Path(f"/proc/{placeholder}/ns"), Path("/proc/self/ns")
+    others = [_open(theirs / name) for name in _NAMESPACES if not (theirs / name).samefile(ours / name)]
+    user = _open(theirs / "user")
+    join_user(fcntl.ioctl(_open(theirs / "mnt"), _NS_GET_USERNS))
+    for descriptor in others:
+        _setns(descriptor)
+    return user
+
+
+def join_user(descriptor: int) -> None:
+    """Join a user namespace, where that is not the present one."""
+    if not os.path.samestat(os.fstat(descriptor), Path("/proc/self/ns/user").stat()):
+        _setns(descriptor)
+
+
+def place(fds: list[int], numbers: list[int], spare: int) -> int:
+    """Give descriptors their numbers, stdin /dev/null, and close all but these and the other two standard streams.
+
+    Returns:
+        the new number of `spare`, which is kept, too.
+    """
+    lowest = max([_HIGH, *(number + 1 for number in numbers)])
+    high = [fcntl.fcntl(number, fcntl.F_DUPFD_CLOEXEC, lowest) for number in (spare, _open(Path(os.devnull)), *fds)]
+    for descriptor, number in zip(high[1:], [0, *numbers], strict=True):
+        os.dup2(descriptor, number)
+    kept = {0, 1, 2, *numbers, high[0]}
+    for number in {int(name) for name in os.listdir("/proc/self/fd")} - kept:
+        os.closerange(number, number + 1)  # the listing's own is closed by now, which is no error here
+    return high[0]
+
+
+def limit(limits: dict[str, tuple[int, int]]) -> None:
+    """Set the kernel's limits on this process, by their names in `resource`."""
+    for name, (soft, hard) in limits.items():
+        resource.setrlimit(getattr(resource, name), (soft, hard))
+
+
+def drop_privileges() -> None:
+    """Give up every capability, and the system calls that a sandbox does not get."""
+    for capability in range(int(Path("/proc/sys/kernel/cap_last_cap").read_text()) + 1):
+        _check(_libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0))
+    _check(_libc.prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0))
+    header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
+    _check(_libc.capset(header, (ctypes.c_uint32 * 6)()))
+    _check(_libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
+    program = seccomp.program()
+    steps = ctypes.create_string_buffer(program)
+    named = struct.pack("HP", len(program) // 8, ctypes.addressof(steps))  # struct sock_fprog
+    _check(_libc.prctl(_PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, named, 0, 0))
+    # Whoever changes its user namespace loses its own /proc files; starting a program gives them back.
+    _check(_libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0))
+
+
+def _open(path: Path) -> int:
+    return os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+
+
+def _setns(descriptor: int) -> None:
+    _check(_libc.setns(descriptor, 0))
+
+
+def _check(result: int) -> None:
+    if result != 0:
+        number = ctypes.get_errno()
+        raise OSError(number, os.strerror(number))

@@ -1,0 +1,93 @@
+"""What a fork server imports before it forks programs: one table.
+
+A profile imports nothing that its programs would not import anyway. A student's program that lacks an import has to
+fail in the grader as it does elsewhere.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import import_module, util
+from importlib.metadata import distributions
+from pathlib import Path
+
+AUTOGRADER = Path(__file__).resolve().parents[2]
+MESSAGES = (
+    *("rcl_interfaces", "type_description_interfaces", "action_msgs", "rosgraph_msgs"),
+    *("std_msgs", "std_srvs", "geometry_msgs", "sensor_msgs", "nav_msgs"),
+)
+KINDS = ("generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport_introspection_c")
+
+
+@dataclass(frozen=True)
+class Profile:
+    """What is imported early for one kind of program."""
+
+    load: Callable[[], None]  # imports it
+    forks: bool = False  # whether what such a program starts is forked, too (`children.py`)
+    own: tuple[str, ...] = ()  # first words of the names of packages that the programs it starts do not have
+
+
+def _import(*names: str, folder: Path | None = None) -> None:
+    """Import modules; those that no path leads to are in `folder`."""
+    if folder is not None:
+        sys.path.append(str(folder))
+    for name in names:
+        import_module(name)
+    if folder is not None:
+        sys.path.remove(str(folder))
+
+
+def _ros() -> None:
+    """Load the libraries of ROS and of the common messages, and no module of them.
+
+    A module of messages imports rosidl's generator if it can, which takes an eighth of a program's start: it cannot.
+    """
+    sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
+    for name in ("rmw_fastrtps_cpp", *(f"{package}__rosidl_{kind}" for package in MESSAGES for kind in KINDS)):
+        with suppress(OSError):  # a ROS that does without one of them is as good
+            ctypes.CDLL(f"lib{name}.so")
+
+
+def _lockstep() -> None:
+    """Import what the host of programs in lockstep imports."""
+    _ros()
+    _import("lockstep_host.host", folder=AUTOGRADER / "run" / "lockstep")
+
+
+def _tests() -> None:
+    """Import pytest, and what `import numpy` and `import rclpy` bring."""
+    _ros()
+    _import("numpy", "rclpy", "pytest")
+    _import(*(f"_pytest.{name}" for name in sys.modules["_pytest.config"].default_plugins))
+
+
+def _launch() -> None:
+    """Import the launch packages, the real ones or their stand-ins, and what the programs that are launched share."""
+    _tests()
+    names = ("launch_ros.actions", "launch_ros.substitutions", "launch.launch_description_sources")
+    _import(*names, folder=AUTOGRADER / "ros" / "standins" if util.find_spec("launch") is None else None)
+
+
+def _colcon() -> None:
+    """Import what colcon imports to build Python packages, and what their setup.py imports."""
+    # colcon looks for CMake when it is imported, and finds it in the sandbox there.
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"])
+    _import("asyncio.subprocess", "setuptools", "distutils.core", "colcon_core.command")
+    for point in (point for package in distributions() for point in package.entry_points):
+        if point.group.startswith("colcon_") or point.group in ("distutils.commands", "egg_info.writers"):
+            with suppress(Exception):  # colcon and setuptools do without it, too
+                point.load()
+
+
+PROFILES = {
+    "lockstep": Profile(_lockstep),
+    "tests": Profile(_tests),
+    "launch": Profile(_launch, forks=True, own=("launch", "standin")),
+    "colcon": Profile(_colcon, forks=True, own=("colcon",)),
+}

@@ -1,0 +1,12 @@
+"""Lockstep: the grader steps a student's unmodified node through ROS time.
+
+`lockstep_host` runs in the sandbox and calls the student's `main()`. `stepper` is the trusted end of its two pipes, and
+`protocol` defines their messages. A step is over when the node has taken every message that was sent to it and has run
+every timer that is due. So a run is faster than real time, and the same every time. `harness.steps`
+says how long a step is.
+"""
+
+from autograder.run.lockstep.protocol import Crash, Description, Reply
+from autograder.run.lockstep.stepper import Stepper, UnsteppableError
+
+__all__ = ["Crash", "Description", "Reply", "Stepper", "UnsteppableError"]

@@ -1,0 +1,179 @@
+"""Why a student's program ended or stopped, in a sentence that the student can act on."""
+
+from __future__ import annotations
+
+import re
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.run.lockstep.protocol import Crash, Deadlock
+from autograder.run.lockstep.tracebacks import own_frames
+from autograder.run.sandbox import Ending, Process
+
+_LINES = 25
+_FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
+
+_PHASES = {
+    "import": (Kind.CRASHED_AT_IMPORT, "Your module could not be imported"),
+    "start": (Kind.CRASHED_AT_START, "Your node crashed while it was being set up, before it started to spin"),
+    "spin": (Kind.CRASHED_LATER, "Your node crashed while it was running"),
+}
+
+_LIMITS = {
+    Ending.WALL_TIME: (Kind.TIMED_OUT, "Your program took too long and was stopped: look for a loop that never ends."),
+    Ending.MEMORY: (
+        Kind.OUT_OF_MEMORY,
+        "Your program used more memory than a node needs and was stopped: look for a list that only ever grows.",
+    ),
+    Ending.THREADS: (
+        Kind.OUT_OF_MEMORY,
+        "Your program started far too many threads or processes and was stopped: start them once, not in a callback.",
+    ),
+    Ending.FILES: (
+        Kind.OUT_OF_MEMORY,
+        "Your program made far too many files and was stopped: write one file, and not one in each callback.",
+    ),
+    Ending.OUTPUT: (
+        Kind.FLOODED_OUTPUT,
+        "Your program printed without end and was stopped: log when something changes, "
+        "or give the logger throttle_duration_sec=1.0.",
+    ),
+}
+
+
+def diagnose_crash(crash: Crash) -> Diagnosis:
+    """Return the diagnosis of a reported exception; syntax errors and unwritten exercises have their own."""
+    trace = tail(own_frames(crash.traceback))
+    if crash.type in ("SyntaxError", "IndentationError", "TabError"):
+        return Diagnosis(
+            Kind.SYNTAX_ERROR,
+            f"Python cannot read your file: {crash.message}. Fix that line, then run the file again.",
+            trace,
+        )
+    if crash.type == "NotImplementedError":
+        frames = _FRAME.findall(trace)
+        where = f", in {frames[-1]}" if frames else ""
+        sentence = (
+            f"A part of the exercise is still to be written{where}: replace the line "
+            "raise NotImplementedError(...) with your code."
+        )
+        return Diagnosis(Kind.UNFINISHED, sentence, trace)
+    kind, what = _PHASES[crash.phase]
+    if crash.type == "TypeError" and "in send_response" in crash.traceback:  # rclpy says no more than TypeError
+        sentence = "A service's callback has not returned the response: it has to return it on every path."
+        return Diagnosis(kind, sentence, trace)
+    reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
+    return Diagnosis(
+        kind,
+        f"{what}: {reason}. The last lines of the traceback say where.",
+        trace,
+    )
+
+
+def diagnose_ending(process: Process) -> Diagnosis:
+    """Return the diagnosis of a program that ended, or no longer answers, and reported no exception."""
+    detail = tail(process.output)
+    if process.ending in _LIMITS:
+        kind, sentence = _LIMITS[process.ending]
+        return Diagnosis(kind, sentence, detail)
+    if process.ending is None:
+        return Diagnosis(
+            Kind.STUCK,
+            "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not use "
+            "or close file descriptors that your program did not open.",
+            detail,
+        )
+    status = process.returncode
+    if "Assertion `" in process.output:
+        return Diagnosis(
+            Kind.ENDED_EARLY,
+            "Your program was aborted when it sent a message: a field, or the whole message, is of another type. "
+            "The line with Assertion says which type it should have been.",
+            detail,
+        )
+    how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
+    return Diagnosis(
+        Kind.ENDED_EARLY,
+        f"Your program ended by itself ({how}) while its node should have kept spinning: "
+        "main() has to call rclpy.spin(node), and nothing may call exit().",
+        detail,
+    )
+
+
+def diagnose_no_answer(kind: Kind, waited: str, output: str) -> Diagnosis:
+    """Return the diagnosis of a program that did not answer in time.
+
+    Args:
+        kind: `NEVER_STARTED` or `STUCK`.
+        waited: how long the wait was, in words, such as "60 s".
+        output: what the program printed.
+    """
+    if kind is Kind.NEVER_STARTED:
+        sentence = (
+            f"Your node did not start to spin within {waited}: look for a loop, an input() or a sleep in "
+            "__init__ or in main() before rclpy.spin(node)."
+        )
+    else:
+        sentence = (
+            f"Your node did not come back from a callback within {waited}: a callback must return quickly. "
+            "Look for a loop that waits, a time.sleep or a blocking call."
+        )
+    return Diagnosis(kind, sentence, tail(output))
+
+
+def diagnose_too_much(output: str) -> Diagnosis:
+    """Return the diagnosis of a program whose nodes, topics and timers are too many to be told in one message."""
+    sentence = (
+        "Your program has more nodes, topics, services or timers than can be graded: make each of them once, in "
+        "__init__, and none in a loop or in a callback."
+    )
+    return Diagnosis(Kind.STUCK, sentence, tail(output))
+
+
+UNSTEPPABLE = {  # why a program cannot be stepped, as a clause, by each of the protocol's `REASONS`
+    "thread": "it uses rclpy in threads of its own",
+    "clock": "it has a timer on a clock that is not the ROS clock",
+    "sleep": "it sleeps in a loop instead of spinning",
+}
+
+
+def diagnose_unsteppable(reason: str, output: str) -> Diagnosis:
+    """Return the diagnosis of a program whose time cannot be stepped."""
+    sentence = (
+        f"Your node's time cannot be stepped: {UNSTEPPABLE[reason]}. Let a timer of the node do the work, and "
+        "rclpy.spin(node) run it."
+    )
+    return Diagnosis(Kind.NEVER_STARTED, sentence, tail(output))
+
+
+_DEADLOCKS = {
+    "thread": "the only thread that could run {it} is waiting itself. In a callback, use call_async() or "
+    "send_goal_async() and a done callback, or a timer for what happens again and again",
+    "group": "{it} is in a callback group that the waiting callback holds, so it can never run. Use a done callback, "
+    "or put the two into different callback groups",
+    "spin": "nothing spins yet, so {it} can never run. Use call_async() or send_goal_async() with "
+    "rclpy.spin_until_future_complete()",
+}
+
+
+def diagnose_deadlock(deadlock: Deadlock, output: str) -> Diagnosis:
+    """Return the diagnosis of a call that will never return."""
+    asked = f" for an answer of {deadlock.name}" if deadlock.name else ""
+    it = "what takes the answer" if deadlock.name else "the callback that would end the wait"
+    why = _DEADLOCKS[deadlock.reason].format(it=it)
+    sentence = f"Your node waits for ever in {deadlock.what}{asked}, a deadlock: {why}."
+    return Diagnosis(Kind.STUCK, sentence, tail(output))
+
+
+def tail(text: str, lines: int = _LINES) -> str:
+    """Return the last lines of a text."""
+    return "\n".join(text.strip().splitlines()[-lines:])
+
+
+def diagnose_output(process: Process) -> Diagnosis | None:
+    """Return the diagnosis of a crash from the traceback that a program in real time printed; None without one."""
+    if "Traceback (most recent call last)" not in process.output:
+        return None
+    trace = process.output.rpartition("Traceback (most recent call last)")[2]
+    last = next((line for line in reversed(trace.strip().splitlines()) if line and not line[0].isspace()), "")
+    kind, _, message = last.partition(": ")
+    return diagnose_crash(Crash("start", kind, message, tail(trace)))

@@ -1,0 +1,17 @@
+"""Running students' code where it can do no harm.
+
+A submission is handled in a *cell* (`cell.py`): a trusted worker in a user and network namespace that no other
+submission is in, with a scratch file system of limited size. In it every piece of student code runs in a *sandbox*
+(`bubblewrap.py`): its own process tree that sees a read-only system and the workspace, watched (`process.py`) against
+`Limits`. Most programs are forked into it, from an interpreter that has done their imports
+(`autograder.run.fork_server`).
+
+Both exist in two tiers (`tiers.py`): `bubblewrap`, and the weaker `process` for machines that have no namespaces.
+"""
+
+from autograder.run.sandbox.limits import Limits
+from autograder.run.sandbox.process import Ending, Process
+from autograder.run.sandbox.spec import Mount, Sandbox
+from autograder.run.sandbox.tiers import Tier, best_tier, require
+
+__all__ = ["Ending", "Limits", "Mount", "Process", "Sandbox", "Tier", "best_tier", "require"]

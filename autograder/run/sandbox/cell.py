@@ -1,0 +1,146 @@
+"""A cell: a trusted worker process in namespaces of its own, with a scratch folder that dies with it."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from autograder import layout
+from autograder.ros.environment import without_wheel_bootstrap
+from autograder.run.sandbox import bubblewrap, cgroup
+from autograder.run.sandbox.identity import ordinary_user
+from autograder.run.sandbox.launcher import TIER_VARIABLE
+from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
+from autograder.run.sandbox.process import Ending, Process
+from autograder.run.sandbox.spec import View
+from autograder.run.sandbox.tiers import Tier, require
+from autograder.run.sandbox.trees import copy_unread
+from autograder.submission.intake.files import MAX_DEPTH, MAX_READ_BYTES, MAX_SCANNED
+from autograder.submission.intake.ignored import environment_parts, is_ignored
+
+NOTHING = View()
+# One more of each than intake takes, so that it refuses a copy as it refuses the original.
+_SUBMITTED = TreeLimits(names=MAX_SCANNED + 2, size=MAX_READ_BYTES, depth=MAX_DEPTH + 2)
+_PREFIX = "autograder-cell-"
+_PASSED = (
+    *("PATH", "LANG", "LC_", "TZ", "PYTHON", "LD_LIBRARY_PATH", "COVERAGE_", "AUTOGRADER_"),
+    *("AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "FASTDDS_", "FASTRTPS_", "RCUTILS_", "RMW_", "ROS_"),
+)
+_YOUNG = 60.0  # s in which a folder that was just made gets its lock
+
+
+@dataclass(frozen=True)
+class CellReport:
+    """How a worker ended, what it wrote to stdout and stderr, and the files that it left."""
+
+    ending: Ending
+    returncode: int
+    output: str
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def run_in_cell(
+    make_command: Callable[[Path], list[str]], tier: Tier, limits: Limits = GRADING_CELL, *, view: View = NOTHING
+) -> CellReport:
+    """Run a trusted command in a new cell and wait for its end; arguments and errors are those of `in_cell`."""
+    with in_cell(make_command, tier, limits, view=view) as (process, _):
+        return ended(process)
+
+
+def ended(process: Process) -> CellReport:
+    """Wait for a process to end, and report it."""
+    process.wait(None)
+    assert process.ending is not None
+    return CellReport(process.ending, process.returncode or 0, process.output)
+
+
+@contextmanager
+def in_cell(
+    make_command: Callable[[Path], list[str]],
+    tier: Tier,
+    limits: Limits = GRADING_CELL,
+    *,
+    view: View = NOTHING,
+    pass_fds: tuple[int, ...] = (),
+) -> Iterator[tuple[Process, Path]]:
+    """Start a trusted command in a new cell; give its process and the cell's scratch folder, which both end with it.
+
+    Args:
+        make_command: gets the cell's scratch folder, returns the command.
+        tier: how strongly the cell is kept apart; an IsolationError where this machine cannot give it.
+        limits: a bound on the whole cell, students' processes included.
+        view: what the cell sees of the machine, in the tier `bubblewrap`.
+        pass_fds: descriptors that the command inherits.
+    """
+    require(tier)
+    _sweep()
+    scratch = Path(tempfile.mkdtemp(prefix=_PREFIX))
+    held = os.open(scratch, os.O_RDONLY)
+    fcntl.flock(held, fcntl.LOCK_EX)  # the kernel lets go of it when this process is killed
+    try:
+        command = make_command(scratch)
+        with ExitStack() as stack:
+            group, environment = None, {**without_wheel_bootstrap(os.environ), **_own(scratch, tier)}
+            if tier is Tier.BUBBLEWRAP:
+                user = stack.enter_context(ordinary_user())
+                group = cgroup.make_nested(limits, user)
+                view = view if user is None else _reachable(view, scratch, user)
+                command = group.enter(bubblewrap.cell(command, view, scratch=scratch, user=user, groups=group.folders))
+                environment = {**_passed(environment), **_own(scratch, tier), "HOME": "/tmp", "TMPDIR": "/tmp"}
+            # `python -m` imports from the folder it is started in, and that may hold submissions.
+            place = Path("/")
+            process = Process(command, limits, environment=environment, pass_fds=pass_fds, group=group, cwd=place)
+            stack.enter_context(process)
+            yield process, scratch
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+        os.close(held)
+
+
+def _reachable(view: View, scratch: Path, user: int) -> View:
+    """Return a view of which a user can read what was handed in, and write to what is writable."""
+    copies = {path: scratch / "submitted" / f"{number}" for number, path in enumerate(view.submitted)}
+    for path, copy in copies.items():
+        copy.parent.mkdir(exist_ok=True)
+        copy_submission(path, copy)
+    for folder in view.writable:
+        os.chown(folder, user, user)
+    return replace(view, copies=copies)
+
+
+def copy_submission(path: Path, copy: Path) -> None:
+    """Copy what was handed in, for intake to read it as it would read the original."""
+    copy_unread(path, copy, _SUBMITTED, lambda names: {*filter(is_ignored, names), *environment_parts(names)})
+
+
+def _own(scratch: Path, tier: Tier) -> dict[str, str]:
+    found = [str(layout.ROOT), os.environ.get("PYTHONPATH", "")]  # this grader, from whatever folder it was started
+    path = {} if layout.ROOT.is_relative_to(sys.prefix) else {"PYTHONPATH": os.pathsep.join(filter(None, found))}
+    return {TIER_VARIABLE: tier.value, "ROS_LOG_DIR": str(scratch / "ros-log"), **path}
+
+
+def _passed(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables that a cell gets: a shell's others may hold keys, which are nobody's business in it."""
+    return {name: value for name, value in environment.items() if name.startswith(_PASSED)}
+
+
+def _sweep() -> None:
+    """Remove cells' folders whose grader was killed: nobody holds their lock."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if folder.stat().st_uid != os.geteuid() or time.time() - folder.stat().st_mtime < _YOUNG:
+                continue
+            held = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(folder, ignore_errors=True)
+            finally:
+                os.close(held)

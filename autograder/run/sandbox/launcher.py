@@ -1,0 +1,143 @@
+"""Starting a sandboxed command in the tier that this process works in."""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+from dataclasses import replace
+from pathlib import Path
+
+from autograder.ros.environment import WHEEL_BOOTSTRAP_VARIABLES
+from autograder.run import patience
+from autograder.run.fork_server import seccomp
+from autograder.run.fork_server.client import PLACEHOLDER_COMMAND, TIMEOUT, ForkError, ForkServer
+from autograder.run.fork_server.request import ForkRequest
+from autograder.run.sandbox import bubblewrap, cgroup
+from autograder.run.sandbox.cgroup import ControlGroup
+from autograder.run.sandbox.process import Process
+from autograder.run.sandbox.spec import INTERPRETER, Sandbox
+from autograder.run.sandbox.tiers import Tier
+
+TIER_VARIABLE = "AUTOGRADER_TIER"
+
+# Where a fork server finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
+_SEARCHED = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
+
+_lock = threading.Lock()
+_log = logging.getLogger(__name__)
+_servers: dict[str, ForkServer | None] = {}  # by their profiles; None where programs could not be forked
+
+
+def current_tier() -> Tier:
+    """Return the tier of the cell that this process is in; `process` outside any cell."""
+    return Tier(os.environ.get(TIER_VARIABLE, Tier.PROCESS.value))
+
+
+def restore_sigint() -> None:
+    """Let SIGINT end what this process will start; call it in the main thread.
+
+    A shell's background job ignores SIGINT, and all its descendants inherit that: the same node would end on Ctrl-C
+    when it is graded in the foreground, and not when it is graded in the background.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), profile: str | None = None) -> Process:
+    """Start `command` in the sandbox that `spec` describes, as strongly as the current tier can.
+
+    Args:
+        command: what is run.
+        spec: the sandbox.
+        pass_fds: descriptors that it inherits.
+        profile: for a Python script, what the interpreter from which it is forked has imported (`prefork.profiles`).
+
+    Raises:
+        StudentError: the grading has no time left for programs. What runs when the time is over is stopped.
+    """
+    patience.require()
+    limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
+    spec = replace(spec, limits=limits)
+    if profile is not None and current_tier() is Tier.BUBBLEWRAP:
+        process = _forked(command[1:], spec, pass_fds, profile)
+        if process is not None:
+            return process
+    return _started(command, spec, cgroup.make(spec.limits), pass_fds)
+
+
+def warm_up(profile: str) -> None:
+    """Let the fork server of a profile begin its imports, if there is none yet."""
+    with _lock:
+        if profile not in _servers:
+            kept = {name: os.environ[name] for name in _SEARCHED if name in os.environ}
+            server = _servers[profile] = ForkServer(profile, {"PATH": os.defpath, **INTERPRETER, **kept})
+            atexit.register(server.close)
+
+
+def _started(
+    command: list[str],
+    spec: Sandbox,
+    group: ControlGroup,
+    pass_fds: tuple[int, ...] = (),
+    stdin: int = subprocess.DEVNULL,
+    is_placeholder: bool = False,
+) -> Process:
+    contained = current_tier() is Tier.BUBBLEWRAP
+    with tempfile.TemporaryFile() as calls:
+        calls.write(seccomp.program())
+        calls.seek(0)
+        if contained:
+            command = bubblewrap.sandbox(command, spec, calls.fileno())
+        else:
+            command = [*bubblewrap.rlimits(spec.limits), *command]
+        return Process(
+            group.enter(command),
+            spec.limits,
+            environment={"PATH": os.defpath, **({} if contained else spec.environment)},
+            pass_fds=(*pass_fds, calls.fileno()) if contained else pass_fds,
+            cwd=None if contained else spec.workdir,
+            contained=contained,
+            writable=(Path("/tmp"), Path("/dev/shm"), spec.workdir) if contained else (),
+            group=group,
+            stdin=stdin,
+            is_placeholder=is_placeholder,
+        )
+
+
+def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
+    """Fork a program; None where that cannot be, and it has not begun."""
+    warm_up(profile)
+    server = _servers[profile]
+    if server is None:
+        return None
+    group = cgroup.make(spec.limits)
+    status, theirs = socket.socketpair()
+    with status:
+        with theirs:
+            process = _started(PLACEHOLDER_COMMAND, spec, group, stdin=theirs.fileno(), is_placeholder=True)
+        try:
+            status.settimeout(TIMEOUT)
+            if not status.recv(1):
+                raise ForkError(f"the sandbox was not made: {process.output}")
+            request = ForkRequest(
+                command,
+                dict(spec.environment),
+                str(spec.workdir),
+                bubblewrap.resources(spec.limits),
+                process.innermost(),
+                list(map(str, group.folders)),
+                list(pass_fds),
+            )
+            process.adopt(server.spawn(request, status.fileno()))
+        except (ForkError, TimeoutError) as error:
+            process.kill()
+            _servers[profile] = None
+            _log.warning("programs are started one by one, which takes longer: %s", error)
+            return None
+    return process

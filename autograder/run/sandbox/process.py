@@ -1,0 +1,243 @@
+"""A watched process: its output is bounded, its tree is measured while it runs, and nothing of it survives."""
+
+from __future__ import annotations
+
+import math
+import os
+import selectors
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from enum import Enum
+from pathlib import Path
+
+from autograder.run.sandbox.cgroup import ControlGroup
+from autograder.run.sandbox.limits import Limits
+from autograder.run.sandbox.procfs import Tree, children, cpu_seconds, measure, name
+
+_TICK = 0.1  # s between two looks at the clock while the process is silent
+_MEASURE = 0.25  # s between two measurements of the tree
+_MANY = 8  # at least so many processes fill the memory together: then it is their number, not what one of them holds
+
+
+class Ending(str, Enum):
+    """Why a process is no more."""
+
+    EXITED = "exited"
+    KILLED = "killed"
+    WALL_TIME = "wall_time"
+    MEMORY = "memory"
+    THREADS = "threads"
+    OUTPUT = "output"
+    FILES = "files"
+
+
+class Process:
+    """A started command, watched by a thread of its own until it has ended.
+
+    Use it as a context manager: leaving the block kills what is still alive.
+
+    Args:
+        command: what is run.
+        limits: what its tree may use.
+        environment: its environment variables; the present ones when not given.
+        pass_fds: descriptors that it inherits, beside its standard streams.
+        cwd: its working folder; the present one when not given.
+        contained: the end of the outermost process takes the whole tree with it, as in a pid namespace.
+        group: a control group that the command enters, closed after its end; leaving the block waits for it.
+        writable: folders as it sees them, on whose file systems `Limits.files` more files may come.
+        stdin: its standard input.
+        is_placeholder: the command stands in for a program that is adopted later; the time counts from then.
+    """
+
+    def __init__(
+        self,
+        command: list[str],
+        limits: Limits,
+        *,
+        environment: Mapping[str, str] | None = None,
+        pass_fds: tuple[int, ...] = (),
+        cwd: Path | None = None,
+        contained: bool = False,
+        group: ControlGroup | None = None,
+        writable: tuple[Path, ...] = (),
+        stdin: int = subprocess.DEVNULL,
+        is_placeholder: bool = False,
+    ) -> None:
+        self._group = group
+        self._contained = contained
+        self._writable = writable
+        self._limits = limits
+        self._output = bytearray()
+        self._ending: Ending | None = None
+        self._lock = threading.Lock()
+        self._adopted: tuple[int, ...] = ()
+        self._started = math.inf if is_placeholder else time.monotonic()
+        self._popen = subprocess.Popen(
+            command,
+            stdin=stdin,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=None if environment is None else dict(environment),
+            pass_fds=pass_fds,
+            cwd=cwd,
+            start_new_session=True,
+        )
+        assert self._popen.stdout is not None
+        os.set_blocking(self._popen.stdout.fileno(), False)
+        self._ended = threading.Event()
+        self._watcher = threading.Thread(target=self._watch, name=f"watch-{self._popen.pid}", daemon=True)
+        self._watcher.start()
+
+    @property
+    def pid(self) -> int:
+        """The process id of the outermost process."""
+        return self._popen.pid
+
+    @property
+    def output(self) -> str:
+        """What it has written so far, at most `Limits.output` bytes; bytes that are no UTF-8 are replaced."""
+        return self.written(0).decode("utf-8", errors="replace")
+
+    def written(self, start: int) -> bytes:
+        """Return what it has written so far, from the byte number `start` on."""
+        self._read()  # the watcher may not have come to what is in the pipe by now
+        with self._lock:
+            return bytes(self._output[start:])
+
+    @property
+    def ending(self) -> Ending | None:
+        """Why it ended, or None while it runs."""
+        return self._ending if self._ended.is_set() else None
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit status; negative for a signal. None while it runs."""
+        return self._popen.returncode if self._ended.is_set() else None
+
+    def wait(self, timeout: float | None) -> bool:
+        """Wait until it has ended, at most `timeout` seconds if given; return whether it has."""
+        return self._ended.wait(timeout)
+
+    def cpu_seconds(self) -> float:
+        """Return the processor time that its processes of now have used."""
+        return cpu_seconds(self._measure().pids)
+
+    def adopt(self, pid: int) -> None:
+        """Watch a process, too, that has joined the sandbox from outside; its time begins now."""
+        self._adopted = (pid,)
+        self._started = time.monotonic()
+
+    def innermost(self) -> int:
+        """Return the process id of the student's own process below the sandbox's helpers."""
+        if self._adopted:
+            return self._adopted[0]
+        pid = self.pid
+        while name(pid) == "bwrap" and (below := children(pid)):
+            pid = below[0]
+        return pid
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send a signal to the student's own process. Does nothing once it has ended."""
+        if not self._ended.is_set():
+            with suppress(ProcessLookupError):
+                os.kill(self.innermost(), number)
+
+    def kill(self) -> None:
+        """End the whole tree now."""
+        self._end(Ending.KILLED)
+        self._ended.wait(10.0)
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
+        self._watcher.join(10.0)
+
+    def _measure(self) -> Tree:
+        return measure(self._popen.pid, *self._adopted, most=self._limits.threads)
+
+    def _files(self) -> int:
+        """Return the number of files on the file systems that it can write to; 0 once it is gone."""
+        root, found = f"/proc/{self.innermost()}/root", 0
+        for folder in self._writable:
+            with suppress(OSError):
+                statistics = os.statvfs(f"{root}{folder}")
+                found += statistics.f_files - statistics.f_ffree
+        return found
+
+    def _end(self, why: Ending) -> None:
+        if self._ending is None and self._popen.poll() is None:
+            self._ending = why
+        pids = self._measure().pids
+        # A parent that is dead leaves children that are found no more, so children first, unless they die with it.
+        for pid in pids if self._contained else reversed(pids):
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._popen.pid, signal.SIGKILL)
+
+    def _watch(self) -> None:
+        assert self._popen.stdout is not None
+        measured, files = 0.0, math.inf
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._popen.stdout, selectors.EVENT_READ)
+            open_stream = True
+            while self._popen.poll() is None:
+                if open_stream:
+                    if selector.select(_TICK):
+                        open_stream = self._read()
+                else:
+                    with suppress(subprocess.TimeoutExpired):
+                        self._popen.wait(_TICK)
+                now = time.monotonic()
+                if now - self._started > self._limits.wall_seconds:
+                    self._end(Ending.WALL_TIME)
+                if now - measured > _MEASURE:
+                    measured = now
+                    tree = self._measure()
+                    if tree.threads > self._limits.threads:
+                        self._end(Ending.THREADS)
+                    elif tree.memory > self._limits.memory:
+                        many = tree.largest < self._limits.memory / _MANY
+                        self._end(Ending.THREADS if many else Ending.MEMORY)
+                    elif self._ran_out():
+                        self._end(Ending.MEMORY)
+                    elif (now_there := self._files()) > files + self._limits.files:
+                        self._end(Ending.FILES)
+                    else:
+                        files = min(files, now_there)
+            # What was written just before the end; a grandchild may hold the pipe open, so only what is there.
+            while open_stream and selector.select(0):
+                open_stream = self._read()
+        with self._lock:
+            self._popen.stdout.close()
+        self._popen.wait()
+        self._ending = self._ending or (Ending.MEMORY if self._ran_out() else Ending.EXITED)
+        self._ended.set()
+        if self._group is not None:
+            self._group.close()
+
+    def _ran_out(self) -> bool:
+        return self._group is not None and self._group.ran_out()
+
+    def _read(self) -> bool:
+        """Take in what is in the pipe, all that it can hold; return whether more may come."""
+        assert self._popen.stdout is not None
+        with self._lock:
+            if self._popen.stdout.closed:
+                return False
+            try:
+                chunk = os.read(self._popen.stdout.fileno(), 65536)
+            except BlockingIOError:
+                return True
+            room = self._limits.output - len(self._output)
+            self._output += chunk[: max(room, 0)]
+        if len(chunk) > room:
+            self._end(Ending.OUTPUT)
+            return self._popen.poll() is None
+        return bool(chunk)

@@ -1,0 +1,52 @@
+"""What a sandbox shows to the code in it: a description, no effects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from autograder.run.sandbox.limits import NODE, Limits
+
+INTERPRETER = {
+    "PYTHONHASHSEED": "0",
+    "PYTHONUNBUFFERED": "1",
+    "PYTHONDONTWRITEBYTECODE": "1",
+    "PYTHONNOUSERSITE": "1",
+    # Message packages import numpy: one thread of its library is quicker to start than one for each core.
+    "OPENBLAS_NUM_THREADS": "1",
+    "LANG": "C.UTF-8",
+}
+"""Environment variables that every Python of a workspace is started with."""
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A folder or file of the machine that the sandbox sees at the same path."""
+
+    path: Path
+    writable: bool = False
+
+
+@dataclass(frozen=True)
+class View:
+    """What a cell sees of the machine, beyond the system, the grader's own code and its scratch folder."""
+
+    shown: tuple[Path, ...] = ()  # folders and files that it reads; they are read-only
+    # What was handed in. A worker of root's is another user, and may be unable to read it: it gets a copy.
+    submitted: tuple[Path, ...] = ()
+    writable: tuple[Path, ...] = ()  # folders that it writes to
+    copies: Mapping[Path, Path] = field(default_factory=dict)  # what is shown in the place of a path, if not itself
+
+
+@dataclass(frozen=True)
+class Sandbox:
+    """One sandbox: what is seen, what may be used, with which environment."""
+
+    workdir: Path  # the working folder; it must lie in a mount
+    # Beyond the read-only system and the grader's Python; suites and solutions in them are covered.
+    mounts: tuple[Mount, ...] = ()
+    # All environment variables that the code gets, nothing is inherited.
+    environment: Mapping[str, str] = field(default_factory=dict)
+    network: bool = False  # True shares the cell's loopback (to meet the grader over DDS), False has none at all
+    limits: Limits = NODE  # what the tree may use

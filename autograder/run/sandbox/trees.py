@@ -1,0 +1,161 @@
+"""Files that somebody else's code has written, on their way out of a sandbox or a cell: listed, bounded and copied.
+
+Sizes are apparent ones. A sparse file costs nothing where it is written, and all of its size where it is copied.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable, Container, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.run.sandbox.limits import MIB, TreeLimits
+
+Ignored = Callable[[Sequence[str]], Container[str]]
+_CHUNK = 1 << 20
+_UNFOLLOWED = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+
+
+class TreeError(Exception):
+    """A tree breaks a limit, or holds what is neither a file, a folder nor a link inside; the message says what."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One name in a tree: a file, a folder or a link."""
+
+    path: str  # below the root
+    kind: str  # "file", "folder" or "link"
+    executable: bool = False
+    size: int = 0  # apparent bytes
+
+
+def survey(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
+    """List a tree, folders before what is in them; nothing of it is opened.
+
+    Raises:
+        TreeError: it is larger than `limits`, nested deeper, or holds a device, a FIFO, a socket, or a link that leads
+            out of it or goes round in circles.
+    """
+    found, total = [], 0
+    for entry in _walk(root, "", limits.depth):
+        found.append(entry)
+        total += entry.size
+        if len(found) > limits.names:
+            raise TreeError(f"more than {limits.names} files and folders")
+        if total > limits.size:
+            raise TreeError(f"files of more than {limits.size // MIB} MiB in all, holes in them counted")
+        if entry.kind == "link" and not _leads_inside(root, root / entry.path):
+            raise TreeError(f"{root.name}/{entry.path[:200]}, which leads out of the install space")
+    return tuple(found)
+
+
+def read_tree(root: Path, limits: TreeLimits) -> dict[Entry, bytes]:
+    """Read all of a tree: what is in each file, and where each link leads. Raises TreeError as `survey` does."""
+    return {entry: _read(root / entry.path, entry) for entry in survey(root, limits)}
+
+
+def _read(path: Path, entry: Entry) -> bytes:
+    if entry.kind == "file":
+        return _read_file(path, entry.size)
+    return os.fsencode(path.readlink()) if entry.kind == "link" else b""
+
+
+def _walk(root: Path, below: str, depth: int) -> Iterator[Entry]:
+    try:
+        with os.scandir(root / below) as names:
+            listed = sorted(names, key=lambda name: name.name)
+    except OSError as error:
+        raise TreeError(f"{root.name}/{below[:200]}, which cannot be read ({error.strerror})") from None
+    for name in listed:
+        path = f"{below}/{name.name}" if below else name.name
+        info = name.stat(follow_symlinks=False)
+        if stat.S_ISLNK(info.st_mode):
+            yield Entry(path, "link")
+        elif stat.S_ISREG(info.st_mode):
+            yield Entry(path, "file", bool(info.st_mode & stat.S_IXUSR), info.st_size)
+        elif stat.S_ISDIR(info.st_mode):
+            if not depth:
+                raise TreeError(f"{root.name}/{path[:200]}, which is nested too deep")
+            yield Entry(path, "folder")
+            yield from _walk(root, path, depth - 1)
+        else:
+            kind = {stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}.get(stat.S_IFMT(info.st_mode), "a device")
+            raise TreeError(f"{root.name}/{path[:200]}, which is {kind}")
+
+
+def _leads_inside(root: Path, link: Path) -> bool:
+    try:
+        link.stat()  # raises at a loop of links, which `resolve` has not done since Python 3.13
+    except FileNotFoundError:
+        pass
+    except OSError:
+        return False
+    try:
+        return link.resolve().is_relative_to(root.parent.resolve() / root.name)
+    except (OSError, RuntimeError):  # a name too long, a loop of links
+        return False
+
+
+def _read_file(path: Path, size: int) -> bytes:
+    """Read a plain file of at most `size` bytes, and nothing that has taken its place since it was listed."""
+    with os.fdopen(os.open(path, _UNFOLLOWED), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise TreeError(f"{path.name} is no plain file any more")
+        data = file.read(size + 1)
+    if len(data) > size:
+        raise TreeError(f"{path.name} grows")
+    return data
+
+
+def copy_unread(source: Path, target: Path, limits: TreeLimits, ignored: Ignored) -> None:
+    """Copy what was handed in, for a reader that may not reach it; nothing is followed or looked into.
+
+    The copy is refused for the same reasons as the original. Links stay links, devices and pipes become pipes. Of what
+    is larger than `limits`, the size is kept and not the content: the reader sees that it is too large. `ignored` says
+    which names of a folder are left out.
+    """
+    left = _Left(limits)
+    _copy(source, target, left, ignored, limits.depth)
+
+
+@dataclass
+class _Left:
+    limits: TreeLimits
+
+    def __post_init__(self) -> None:
+        self.names, self.size = self.limits.names, self.limits.size
+
+
+def _copy(source: Path, target: Path, left: _Left, ignored: Ignored, depth: int) -> None:
+    info = source.lstat()
+    left.names -= 1
+    if stat.S_ISLNK(info.st_mode):
+        target.symlink_to(source.readlink())
+    elif stat.S_ISREG(info.st_mode):
+        _copy_file(source, target, info, left)
+    elif stat.S_ISDIR(info.st_mode):
+        target.mkdir(mode=0o755)
+        names = sorted(os.listdir(source)) if depth else []
+        skipped = ignored(names)
+        for name in names:
+            if name not in skipped and left.names > 0:
+                _copy(source / name, target / name, left, ignored, depth - 1)
+    else:
+        os.mkfifo(target)
+
+
+def _copy_file(source: Path, target: Path, info: os.stat_result, left: _Left) -> None:
+    with os.fdopen(os.open(source, _UNFOLLOWED), "rb") as old, target.open("xb") as new:
+        os.fchmod(new.fileno(), 0o644 | info.st_mode & 0o111)
+        if info.st_size > left.size:
+            new.truncate(info.st_size)
+            left.size = 0
+            return
+        left.size -= info.st_size
+        rest = info.st_size
+        while rest and (chunk := old.read(min(rest, _CHUNK))):
+            new.write(chunk)
+            rest -= len(chunk)

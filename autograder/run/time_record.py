@@ -1,0 +1,49 @@
+"""What a grading learns about time: which programs ran in real time and why, and how long the machine held them up."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field
+
+from autograder.run.lockstep.failures import UNSTEPPABLE
+
+LOCKSTEP, REAL = "lockstep", "real"
+
+
+@dataclass
+class TimeRecord:
+    """The record of one grading. Its workspace carries it to the harnesses; the worker reads it at the end.
+
+    Attributes:
+        unsteppable: by what identifies a harness's programs, the reason for each executable that cannot be stepped.
+        real_time: by executable that ran in real time, the reason; empty where the reason is another program's.
+        longest_wait: the longest time in s for which a program or the grader could not run although it was ready.
+    """
+
+    unsteppable: dict[Hashable, dict[str, str]] = field(default_factory=dict)
+    real_time: dict[str, str] = field(default_factory=dict)
+    longest_wait: float = 0.0
+
+    def add_wait(self, seconds: float) -> None:
+        """Keep a waiting time in s if it is the longest."""
+        self.longest_wait = max(self.longest_wait, seconds)
+
+    def add_real_time(self, executables: Iterable[str], reasons: dict[str, str]) -> None:
+        """Note that programs run in real time together; `reasons` are of those that cause it, as in `UNSTEPPABLE`."""
+        for executable in executables:
+            self.real_time[executable] = reasons.get(executable) or self.real_time.get(executable, "")
+
+    @property
+    def time(self) -> str:
+        """`LOCKSTEP` if every program was stepped, else `REAL`."""
+        return REAL if self.explain() else LOCKSTEP
+
+    def explain(self) -> str:
+        """Return which programs were not stepped, and why, in sentences; an empty string if all were stepped."""
+        sentences = [
+            f"{name} ran in real time, because {UNSTEPPABLE.get(why, 'that was asked for')}."
+            for name, why in sorted(self.real_time.items())
+            if why
+        ]
+        beside = ", ".join(sorted(name for name, why in self.real_time.items() if not why))
+        return " ".join([*sentences, f"What runs beside it ran in real time, too: {beside}."] if beside else sentences)

@@ -1,0 +1,1 @@
+"""What was handed in: read within bounds, its ROS packages found, its unfinished files named."""

@@ -1,0 +1,217 @@
+"""Reads a submission into memory, and finds what counts in it. Nothing in it is executed here.
+
+A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip or tar archive of such a folder,
+the notebook alone, or a source tree with `src/`. It may lie deeper, in an archive in an archive, under another name and
+beside other files. Links, devices, absolute paths and parent paths are refused, or left out where they are not needed.
+Sizes, counts and depths are limited. What tools leave in folders is ignored.
+
+    path -> reading -> files -> answer (which notebook and source tree) -> counting (files in `ws/src`, else cells)
+"""
+
+from __future__ import annotations
+
+import stat
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError
+from autograder.submission.intake.answer import Answer, broken_sentence, find_answer
+from autograder.submission.intake.counting import Counted, count, merge, read_code, with_given
+from autograder.submission.intake.exercises import SOURCE, exercises_of
+from autograder.submission.intake.files import (
+    MAX_DEPTH,
+    MAX_FILE_BYTES,
+    MAX_FILES,
+    MAX_PATH_BYTES,
+    MAX_TOTAL_BYTES,
+    MAX_WRAPPED_BYTES,
+    LeftOut,
+    SubmittedFile,
+    digest,
+    unsafe,
+    write_tree,
+)
+from autograder.submission.intake.reading import read_contents, read_source_folder
+from autograder.submission.reading import reading as door
+
+__all__ = [
+    "MAX_DEPTH",
+    "MAX_FILES",
+    "MAX_FILE_BYTES",
+    "MAX_PATH_BYTES",
+    "MAX_TOTAL_BYTES",
+    "MAX_WRAPPED_BYTES",
+    "LeftOut",
+    "Submission",
+    "SubmittedFile",
+    "detect_layout",
+    "read_files",
+    "read_packages",
+    "read_submission",
+    "what_counts",
+    "with_given_packages",
+    "write_tree",
+]
+TIMESTAMP = PurePosixPath("timestamp.txt")  # of nbgrader
+MAX_LISTED = 20  # names of files that were not used
+
+
+@dataclass(frozen=True)
+class Submission:
+    """The files of a submission, in the layout that grading uses."""
+
+    notebook: bytes | None  # content of the assignment's notebook, or None
+    source: tuple[SubmittedFile, ...]  # files below `ws/src`, with paths relative to it
+    # Files beside the notebook that it may read, with paths relative to the assignment's folder.
+    extra: tuple[SubmittedFile, ...]
+    sha256: str  # digest of all files' paths and contents, in hexadecimal digits
+    graded_sha256: str  # likewise, of what a grading reads: a folder and a zip of it have the same
+    # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to make some of them.
+    packages: tuple[SubmittedFile, ...] | None = None
+    notices: tuple[str, ...] = ()  # sentences for the student about what counts
+    unused: tuple[str, ...] = ()  # what was found and plays no part, by its path
+
+
+def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
+    """Read the files in `root`/src, a workspace that a student's code may have changed, with paths relative to it.
+
+    Raises:
+        StudentError: `src` is not a folder, or holds something unsafe.
+    """
+    for folder in (root, root / "src"):
+        try:
+            mode = folder.lstat().st_mode
+        except OSError:
+            mode = 0
+        if not stat.S_ISDIR(mode):
+            sentence = "After the notebook has run there is no folder ws/src: create your package there."
+            raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
+    return read_source_folder(root / "src")
+
+
+def read_submission(path: Path, assignment: str) -> Submission:
+    """Read a submission of an assignment from disk: a folder, an archive or a notebook.
+
+    Raises:
+        UsageError: `path` does not exist.
+        StudentError: the submission is unsafe, unreadable or unclear, or has neither the notebook nor a package.
+    """
+    with door("Your submission"):
+        contents = read_contents(path, assignment)
+        return detect_layout(contents.files, assignment, contents.left_out)
+
+
+def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
+    """Read all files of a submission, with paths below its root. Args and errors are those of `read_submission`."""
+    with door("Your submission"):
+        contents = read_contents(path, assignment)
+        detect_layout(contents.files, assignment, contents.left_out)
+        return contents.files
+
+
+def detect_layout(files: Sequence[SubmittedFile], assignment: str, left_out: Sequence[LeftOut] = ()) -> Submission:
+    """Find the notebook and the packages among a submission's files, whose paths are below its root.
+
+    Raises:
+        StudentError: there is neither the notebook nor a package, they are unclear or unsafe, or a file and a folder
+            have the same path.
+    """
+    _require_tree(files)
+    exercises = exercises_of(assignment)
+    answer = find_answer(files, left_out, assignment, exercises)
+    source = tuple(answer.tree.files.values()) if answer.tree is not None else ()
+    extra = _extra(files, answer)
+    notebook = None if answer.notebook is None else answer.notebook.file.data
+    counted = Counted(source)
+    if answer.notebook is not None and answer.notebook.broken:
+        notebook, counted = None, Counted(source, (f"{broken_sentence(answer.notebook)} ws/src counts.",))
+    elif answer.notebook is not None:
+        counted = Counted(None)
+        if exercises is not None:
+            code = read_code(answer.notebook.cells, exercises)
+            counted = count({file.path: file for file in source}, code, exercises)
+    return Submission(
+        notebook,
+        source,
+        extra,
+        digest(files),
+        digest(_graded(notebook, source, extra, assignment) if counted.packages is None else counted.packages),
+        counted.packages,
+        counted.notices,
+        _unused(files, left_out, answer, assignment),
+    )
+
+
+def with_given_packages(submission: Submission, assignment: str) -> tuple[SubmittedFile, ...]:
+    """Return the source tree in which the notebook of a submission runs."""
+    exercises = exercises_of(assignment)
+    source = {file.path: file for file in submission.source}
+    return tuple((source if exercises is None else with_given(source, exercises)).values())
+
+
+def what_counts(submission: Submission, written: Sequence[SubmittedFile], assignment: str) -> Counted:
+    """Return what counts of a submission whose notebook has left the packages `written`."""
+    exercises = exercises_of(assignment)
+    if exercises is None:
+        return Counted(tuple(written))
+    return merge({file.path: file for file in submission.source}, written, exercises)
+
+
+def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFile, ...]:
+    """Return the files beside the notebook that it may read."""
+    if answer.notebook is not None:
+        root = answer.notebook.root
+    elif answer.tree is not None:
+        root = answer.tree.root
+    found = []
+    for file in files:
+        if file.path == root or not file.path.is_relative_to(root):
+            continue
+        path = file.path.relative_to(root)
+        is_source = answer.tree is not None and answer.tree.holds(file.path)
+        is_notebook = answer.notebook is not None and file.path == answer.notebook.file.path
+        if not (is_source or is_notebook or path.parts[0] in ("ws", "src")):
+            found.append(SubmittedFile(path, file.data, file.executable))
+    return tuple(found)
+
+
+def _graded(
+    notebook: bytes | None, source: Sequence[SubmittedFile], extra: Sequence[SubmittedFile], assignment: str
+) -> list[SubmittedFile]:
+    """Return what a grading reads whose notebook runs, in one layout for all submissions."""
+    found = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
+    if notebook is not None:
+        found.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
+    return found
+
+
+def _unused(
+    files: Sequence[SubmittedFile],
+    left_out: Sequence[LeftOut],
+    answer: Answer,
+    assignment: str,
+) -> tuple[str, ...]:
+    """Return the names of what was found and plays no part, with a reason where it was not read."""
+    notebook = answer.notebook.file.path if answer.notebook is not None else None
+    root = notebook.parent if notebook is not None else answer.tree.root if answer.tree is not None else PurePosixPath()
+    exercises = exercises_of(assignment)
+    released = exercises.beside if exercises is not None else frozenset()
+    names = []
+    for file in files:
+        own = file.path.relative_to(root) if file.path.is_relative_to(root) else file.path
+        is_source = answer.tree is not None and answer.tree.holds(file.path)
+        if not (is_source or file.path == notebook or own in released or own.parts[0] == "ws" or own == TIMESTAMP):
+            names.append(str(file.path))
+    names = sorted(names) + [each.sentence for each in left_out]
+    more = len(names) - MAX_LISTED
+    return tuple(names if more <= 0 else [*names[:MAX_LISTED], f"{more} more"])
+
+
+def _require_tree(files: Sequence[SubmittedFile]) -> None:
+    """Refuse two files with the same path, and a file whose path is also that of a folder."""
+    paths = {file.path for file in files}
+    folders = {folder for path in paths for folder in path.parents}
+    if len(paths) < len(files) or paths & folders:
+        raise unsafe("two of its files or folders have the same path")

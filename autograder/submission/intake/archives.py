@@ -1,0 +1,246 @@
+"""Reads archives: zip, and tar with any compression of the standard library. What cannot be read gets a sentence."""
+
+from __future__ import annotations
+
+import bz2
+import copy
+import gzip
+import io
+import lzma
+import stat
+import struct
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import IO, Any
+
+from autograder.submission.intake.files import MAX_READ_BYTES, MAX_UNPACKED_BYTES, Contents, unsafe
+from autograder.submission.intake.ignored import IgnoredPaths
+from autograder.submission.intake.names import reading_rank
+
+# By their first bytes: archives that the standard library does not open.
+FOREIGN = {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!\x1a\x07": "RAR", b"\x28\xb5\x2f\xfd": "Zstandard"}
+MAX_DIRECTORY = 32 * 1024 * 1024  # bytes of a zip's list of its files
+MAX_NAME = 1024  # characters; what is longer, or lies deeper, is never an answer, and looking at it takes long
+MAX_FOLDERS = 64
+MAX_DICTIONARY = 128 * 1024 * 1024  # bytes of memory to decompress xz
+_EXECUTABLE = 0o100
+_COMPRESSED: dict[bytes, Callable[[IO[bytes]], Any]] = {
+    b"\x1f\x8b": lambda raw: gzip.GzipFile(fileobj=raw),
+    b"BZh": lambda raw: bz2.BZ2File(raw),
+    b"\xfd7zXZ\x00": lambda raw: _decompressed(raw, lzma.LZMADecompressor(memlimit=MAX_DICTIONARY)),
+}
+# `zipfile`, `tarfile` and the decompressors raise these for what is damaged, encrypted or packed by an unknown method.
+DAMAGED = (
+    *(zipfile.BadZipFile, zipfile.LargeZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, struct.error),
+    *(NotImplementedError, EOFError, OSError, RuntimeError, ValueError, OverflowError),
+)
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file of an archive. `problem` says what else it is: a link, or no regular file."""
+
+    path: PurePosixPath
+    size: int
+    executable: bool
+    read: Callable[[], bytes]
+    problem: str = ""
+
+
+def foreign_kind(head: bytes) -> str:
+    """Return the kind of an archive that is not opened here, by its first bytes, or an empty string."""
+    return next((kind for magic, kind in FOREIGN.items() if head.startswith(magic)), "")
+
+
+def foreign_sentence(name: str, kind: str) -> str:
+    """Return what to do with an archive that is not opened here."""
+    return f"{name} is a {kind} archive, which the grader does not open: unpack it, and hand in the folder as a zip"
+
+
+def read_archive(file: IO[bytes], name: str, prefix: PurePosixPath, contents: Contents) -> None:
+    """Add the files of an archive to `contents`, with paths below `prefix`.
+
+    Raises:
+        StudentError: a path leads out of the archive, or its list of files is too long.
+        ValueError, or another of `DAMAGED`: it is not an archive, or damaged, or encrypted.
+    """
+    head = file.read(512)
+    file.seek(0)
+    if head.startswith(b"PK"):
+        _read_zip(file, prefix, contents)
+        return
+    opener = next((opener for magic, opener in _COMPRESSED.items() if head.startswith(magic)), None)
+
+    def opened() -> IO[bytes]:
+        file.seek(0)
+        return io.BufferedReader(_Counted(file if opener is None else opener(file), contents), 64 * 1024)
+
+    start = opened().read(512)
+    if start[257:262] == b"ustar":
+        _read_tar(opened, prefix, contents)
+    elif opener is None:
+        raise ValueError("it is not a zip or tar archive")
+    else:  # one compressed file, such as 10_mapping.ipynb.gz
+        data = opened().read()
+        contents.add(prefix / (PurePosixPath(name).stem or "file"), len(data), lambda: data)
+
+
+def inside(name: str) -> PurePosixPath:
+    """Return a member's path. Raises StudentError if it leads out of the archive."""
+    name = name.replace("\\", "/")
+    if len(name) > MAX_NAME or name.count("/") > MAX_FOLDERS:
+        raise unsafe(f"the name {name[:60]!r}... has more than {MAX_NAME} characters or {MAX_FOLDERS} folders")
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
+        raise unsafe(f"{name} points outside the archive")
+    return path
+
+
+def _read_zip(file: IO[bytes], prefix: PurePosixPath, contents: Contents) -> None:
+    _require_short_directory(file)
+    with zipfile.ZipFile(file) as archive:
+        infos = [(inside(info.filename), info) for info in archive.infolist()]
+        for _ in infos:
+            contents.scan()
+        left_out = IgnoredPaths([path for path, _ in infos])
+
+        def member(path: PurePosixPath, info: zipfile.ZipInfo) -> Member:
+            mode = info.external_attr >> 16
+            problem = "" if stat.S_IFMT(mode) in (0, stat.S_IFREG) else "is not a regular file"
+            return Member(path, info.file_size, bool(mode & _EXECUTABLE), lambda: _inflate(archive, info), problem)
+
+        members = (member(path, info) for path, info in infos if not info.is_dir() and path not in left_out)
+        _add(sorted(members, key=lambda member: reading_rank(member.path)), prefix, contents)
+
+
+def _require_short_directory(file: IO[bytes]) -> None:
+    """Refuse a zip whose list of files, which `zipfile` reads as a whole, is too long."""
+    size = file.seek(0, 2)
+    file.seek(max(0, size - 65_557))
+    tail = file.read()
+    at = tail.rfind(b"PK\x05\x06")
+    directory = struct.unpack_from("<I", tail, at + 12)[0] if 0 <= at <= len(tail) - 22 else 0
+    if directory == 0xFFFFFFFF:
+        at = tail.rfind(b"PK\x06\x06")
+        directory = struct.unpack_from("<Q", tail, at + 40)[0] if 0 <= at <= len(tail) - 56 else MAX_DIRECTORY + 1
+    if directory > MAX_DIRECTORY:
+        raise unsafe("it holds too many files")
+    file.seek(0)
+
+
+def _inflate(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    # The archive's directory may state a wrong size: read at most one byte more than it states.
+    if info.compress_type in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA):
+        data = _inflate_in_steps(archive, info)
+    else:
+        with archive.open(info) as stream:
+            data = stream.read(info.file_size + 1)
+    if len(data) != info.file_size:
+        raise zipfile.BadZipFile(f"{info.filename} is not as large as the archive says")
+    return data
+
+
+def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    """Decompress what `zipfile` would decompress at once: 4 KB of bzip2 can become 4 GB."""
+    stored = copy.copy(info)
+    stored.compress_type, stored.file_size = zipfile.ZIP_STORED, info.compress_size
+    del stored.CRC  # of the content, which is compared below
+    with archive.open(stored) as packed:
+        if info.compress_type == zipfile.ZIP_BZIP2:
+            data = _decompressed(packed, bz2.BZ2Decompressor()).read(info.file_size)
+        else:
+            packed.read(2)  # the version of an SDK
+            properties = packed.read(*struct.unpack("<H", packed.read(2)))
+            decompressor = lzma.LZMADecompressor(lzma.FORMAT_ALONE, memlimit=MAX_DICTIONARY)
+            head = properties + bytes(8 * [0xFF])  # the size is not said
+            data = _decompressed(packed, decompressor, head).read(info.file_size)
+    if zlib.crc32(data) != info.CRC:
+        raise zipfile.BadZipFile(f"{info.filename} is not what the archive says")
+    return data
+
+
+def _read_tar(opened: Callable[[], IO[bytes]], prefix: PurePosixPath, contents: Contents) -> None:
+    """Read a tar: its names first, as the mark of an environment may come last, then what may be the answer."""
+    with tarfile.open(fileobj=opened(), mode="r|") as archive:
+        paths = []
+        for info in archive:
+            contents.scan()
+            paths.append(inside(info.name))
+    left_out = IgnoredPaths(paths)
+    for first in (True, False):
+        with tarfile.open(fileobj=opened(), mode="r|") as archive:
+            for info in archive:
+                path = inside(info.name)
+                if not info.isdir() and path not in left_out and (reading_rank(path) == 0) is first:
+                    _add([_tar_member(archive, info, path)], prefix, contents)
+
+
+def _tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo, path: PurePosixPath) -> Member:
+    problem = "is a link" if info.issym() or info.islnk() else "" if info.isfile() else "is not a regular file"
+    return Member(path, info.size, bool(info.mode & _EXECUTABLE), lambda: _extract(archive, info), problem)
+
+
+def _extract(archive: tarfile.TarFile, info: tarfile.TarInfo) -> bytes:
+    file = archive.extractfile(info)
+    data = file.read(info.size) if file is not None else b""
+    if len(data) != info.size:
+        raise ValueError(f"{info.name} is not as large as the archive says")
+    return data
+
+
+def _add(members: Iterable[Member], prefix: PurePosixPath, contents: Contents) -> None:
+    for member in members:
+        if member.problem:
+            contents.omit(prefix / member.path, member.problem)
+        else:
+            contents.add(prefix / member.path, member.size, member.read, member.executable)
+
+
+class _Counted(io.RawIOBase):
+    """A stream that ends with an error after `MAX_READ_BYTES`, or when its submission has been unpacked too much."""
+
+    def __init__(self, raw: IO[bytes], contents: Contents) -> None:
+        self._raw, self._contents, self._count = raw, contents, 0
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
+        data = self._raw.read(len(buffer))
+        self._count += len(data)
+        self._contents.unpacked += len(data)
+        if self._count > MAX_READ_BYTES:
+            raise unsafe(f"it is larger than {MAX_READ_BYTES // 2**20} MiB when it is unpacked")
+        if self._contents.unpacked > MAX_UNPACKED_BYTES:
+            raise unsafe("its archives hold too much in all")
+        buffer[: len(data)] = data
+        return len(data)
+
+
+def _decompressed(raw: IO[bytes], decompressor: Any, head: bytes = b"") -> IO[bytes]:
+    """Return a stream of what a decompressor makes of `head` and what follows, in steps."""
+    return io.BufferedReader(_Decompressed(raw, decompressor, head))
+
+
+class _Decompressed(io.RawIOBase):
+    def __init__(self, raw: IO[bytes], decompressor: Any, head: bytes) -> None:
+        self._raw, self._decompressor, self._head = raw, decompressor, head
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
+        while not self._decompressor.eof:
+            fresh = self._head + self._raw.read(64 * 1024) if self._decompressor.needs_input else b""
+            self._head = b""
+            data = self._decompressor.decompress(fresh, len(buffer))
+            if data:
+                buffer[: len(data)] = data
+                return len(data)
+            if self._decompressor.needs_input and not fresh:
+                raise EOFError("the archive ends too early")
+        return 0

@@ -1,0 +1,45 @@
+"""What the name of a file says: a notebook, an archive, the assignment, its student."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+
+NOTEBOOKS = (".ipynb", ".ipynb.txt", ".ipynb.json")  # browsers add an ending to what they show as text
+# Also of archives that the grader does not open: it says so.
+ARCHIVES = (
+    *(".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tbz", ".tar.xz", ".txz"),
+    *(".gz", ".bz2", ".xz", ".7z", ".rar", ".zst", ".tzst", ".tar.zst"),
+)
+
+
+def is_notebook(name: str) -> bool:
+    """Return whether a file's name is that of a notebook."""
+    return name.casefold().endswith(NOTEBOOKS)
+
+
+def is_archive(name: str) -> bool:
+    """Return whether a file's name is that of an archive."""
+    return name.casefold().endswith(ARCHIVES)
+
+
+def names_assignment(name: str, assignment: str) -> bool:
+    """Return whether a file is called after an assignment: `10_mapping (1).ipynb`, `Copy of 10_mapping.ipynb`."""
+    return _letters(assignment) in _letters(PurePosixPath(name).name)
+
+
+def stem(name: str) -> str:
+    """Return a file's name without the endings of archives and notebooks: `ada` for `ada.tar.gz` and `ada.ZIP`."""
+    low = name.casefold()
+    endings = (ending for ending in (*ARCHIVES, *NOTEBOOKS) if low.endswith(ending) and len(low) > len(ending))
+    return name[: len(name) - len(max(endings, key=len, default=""))]
+
+
+def reading_rank(path: PurePosixPath) -> int:
+    """Return when a file is read: what may be the answer comes before what lies beside it."""
+    if "src" in path.parts or is_notebook(path.name):
+        return 0
+    return 1 if is_archive(path.name) else 2
+
+
+def _letters(name: str) -> str:
+    return "".join(filter(str.isalnum, name.casefold()))

@@ -1,0 +1,127 @@
+"""Finds and reads the files of a submission: in a folder, in archives, and in archives that these hold."""
+
+from __future__ import annotations
+
+import io
+import stat
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.exceptions import StudentError, UsageError
+from autograder.submission.intake import archives
+from autograder.submission.intake.files import MAX_DEPTH, Contents, SubmittedFile, unsafe
+from autograder.submission.intake.ignored import environment_parts, is_ignored
+from autograder.submission.intake.names import is_archive, is_notebook, reading_rank
+
+MAX_ARCHIVES = 20  # that lie in a submission, at any depth
+MAX_NESTING = 3
+_EXECUTABLE = 0o100
+
+
+def read_contents(path: Path, assignment: str) -> Contents:
+    """Read the files of a submission, with paths below its root. What an archive in it holds lies below its name.
+
+    Raises:
+        UsageError: `path` does not exist.
+        StudentError: it cannot be read, or is unsafe as a whole.
+    """
+    contents = Contents()
+    if path.is_dir():
+        _read_folder(path, contents, unpack=True)
+    elif path.is_file() and is_notebook(path.name):
+        contents.add(PurePosixPath(f"{assignment}.ipynb"), path.stat().st_size, path.read_bytes)
+    elif path.is_file():
+        _read_file(path, contents)
+    else:
+        raise UsageError(f"{path}: there is no such file or folder")
+    _open_archives(contents, MAX_NESTING)
+    return contents
+
+
+def read_source_folder(folder: Path) -> tuple[SubmittedFile, ...]:
+    """Read the files below a folder. Raises StudentError if one of them is unsafe."""
+    contents = Contents()
+    _read_folder(folder, contents)
+    if contents.left_out:
+        raise unsafe(contents.left_out[0].sentence)
+    return tuple(contents.files)
+
+
+def _read_file(path: Path, contents: Contents) -> None:
+    with path.open("rb") as file:
+        kind = archives.foreign_kind(file.read(8))
+        if kind:
+            raise StudentError(Diagnosis(Kind.UNREADABLE, f"{archives.foreign_sentence(path.name, kind)}."))
+        file.seek(0)
+        try:
+            archives.read_archive(file, path.name, PurePosixPath(), contents)
+        except archives.DAMAGED as error:
+            sentence = (
+                f"{path.name} is not a folder, a notebook or a readable zip or tar archive ({error}): hand in one of "
+                "these."
+            )
+            raise StudentError(Diagnosis(Kind.UNREADABLE, sentence)) from None
+
+
+def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> None:
+    """Read the files below a folder; with `unpack`, put the files of archives in the place of these."""
+    pending, found = [root], []
+    while pending:
+        folder = pending.pop()
+        children = sorted(folder.iterdir())
+        skipped = environment_parts(child.name for child in children)
+        for child in children:
+            contents.scan()
+            if is_ignored(child.name) or child.name in skipped:
+                continue
+            path, info = PurePosixPath(child.relative_to(root)), child.lstat()
+            if stat.S_ISREG(info.st_mode):
+                found.append((path, child, info))
+            elif not stat.S_ISDIR(info.st_mode):
+                contents.omit(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
+            elif len(path.parts) > MAX_DEPTH:
+                contents.omit(path, "", f"folders are nested more than {MAX_DEPTH} deep")
+            else:
+                pending.append(child)
+    for path, child, info in sorted(found, key=lambda item: (reading_rank(item[0]), item[0])):
+        if unpack and _is_wrapping(path):
+            with child.open("rb") as file:
+                _unpack(file, path, contents)
+        else:
+            contents.add(path, info.st_size, child.read_bytes, bool(info.st_mode & _EXECUTABLE))
+
+
+def _open_archives(contents: Contents, nesting: int) -> None:
+    """Put the files of archives in the place of these."""
+    packed = [file for file in contents.files if _is_wrapping(file.path)]
+    for file in packed:
+        contents.take(file)
+        if nesting:
+            _unpack(io.BytesIO(file.data), file.path, contents)
+        else:
+            contents.omit(file.path, f"lies in {MAX_NESTING} archives or more: hand in the folder as one zip")
+    if packed and nesting:
+        _open_archives(contents, nesting - 1)
+
+
+def _is_wrapping(path: PurePosixPath) -> bool:
+    """Return whether a file is an archive that may hold an answer: one in a source tree is a package's own data."""
+    return is_archive(path.name) and "src" not in path.parts
+
+
+def _unpack(file: IO[bytes], path: PurePosixPath, contents: Contents) -> None:
+    contents.archives += 1
+    kind = archives.foreign_kind(file.read(8))
+    file.seek(0)
+    before = len(contents.files)
+    if contents.archives > MAX_ARCHIVES:
+        contents.omit(path, f"is one of more than {MAX_ARCHIVES} archives")
+    elif kind:
+        contents.omit(path, "", archives.foreign_sentence(str(path), kind))
+    else:
+        try:
+            archives.read_archive(file, path.name, path, contents)
+        except (StudentError, *archives.DAMAGED) as error:
+            contents.drop(before)
+            contents.omit(path, f"cannot be opened ({error})")

@@ -1,0 +1,266 @@
+"""What a check is: one function, one behaviour, and the sentence that the student reads.
+
+A suite is a pytest module. Each of its tests is a check, in the group of checks that the module names:
+
+    check = group("reaction")
+
+    @check(points=2, holds="turns", needs=("starts",), doc=contract.LASER_SCAN)
+    @hint("Where is 0 rad in a scan?")
+    @hint("Compare the smallest forward range with 1.0.")
+    def test_turns_when_blocked(robot: Robot) -> None:
+        \"\"\"The robot turns when something stands within 1 m in front of it.\"\"\"
+        ...
+        expect(turned, "it kept driving straight at a wall 0.6 m ahead")
+
+`check` itself takes the group as an argument, for a module whose checks belong to several. `check_each_row` declares a
+check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
+
+A check passes, fails (with the fraction of its points that was reached) or is not checked, because a check that it
+`needs` did not pass: there is no program to run, or no topic to look at. A check `after` another is run in any case and
+judges its own sentence; if both fail, feedback shows it under the other. Any other exception is the grader's own
+failure, never the student's zero.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from autograder.exceptions import AutograderError, GraderError
+
+F = TypeVar("F", bound=Callable[..., Any])
+PREFIX = "test_"
+
+
+class Visibility(str, Enum):
+    """Whether students get the source of a check."""
+
+    VISIBLE = "visible"
+    HIDDEN = "hidden"
+
+
+class Outcome(str, Enum):
+    """How a check ended."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    NOT_CHECKED = "not_checked"
+
+    @property
+    def text(self) -> str:
+        """The outcome as people read it, in feedback and in notebooks."""
+        return self.value.replace("_", " ")
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check's contract, taken from its function and the `check` decorator.
+
+    Attributes:
+        id: the function's name without `test_`; unique in its suite.
+        title: the first paragraph of its docstring.
+        points: what it is worth, above 0.
+        group: the locked grade cell that it counts for.
+        hints: shown one after the other when it fails.
+        doc: a page to read, or None.
+        needs: ids of checks without which this one cannot be run; it is not checked unless all of them passed.
+        holds: ids of the sentences of the contract that it holds; see `autograder.suite.contract`.
+        after: ids of checks whose failure is likely to be the cause if this one fails, too; it is run in any case.
+    """
+
+    id: str
+    title: str
+    points: float
+    group: str
+    visibility: Visibility
+    hints: tuple[str, ...]
+    doc: str | None
+    needs: tuple[str, ...] = ()
+    holds: tuple[str, ...] = ()
+    after: tuple[str, ...] = ()
+
+    @property
+    def dependencies(self) -> tuple[str, ...]:
+        """Ids of the checks that it needs or comes after. They stand earlier in the suite."""
+        return self.needs + self.after
+
+
+class FractionError(GraderError, ValueError):
+    """A failed check's fraction is none: the check is wrong, or did not expect the data that it worked it out of."""
+
+
+class CheckFailed(AutograderError):
+    """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
+
+    `hints` are what helps with this failure; None for the hints of the check.
+    """
+
+    def __init__(self, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
+        super().__init__(message)
+        if not (math.isfinite(fraction) and 0.0 <= fraction < 1.0):
+            raise FractionError(f"a failed check's fraction must be in [0, 1), not {fraction!r}")
+        self.message = message
+        self.fraction = fraction
+        self.hints = hints
+
+
+class Declare(Protocol):
+    """Declares a function a check of one group; see `check`."""
+
+    def __call__(
+        self,
+        *,
+        points: float,
+        holds: str | tuple[str, ...] = ...,
+        needs: tuple[str, ...] = ...,
+        after: tuple[str, ...] = ...,
+        doc: str | None = ...,
+    ) -> Callable[[F], F]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckRow:
+    """A row of a table of checks that share a body; a table's own class adds what the body needs.
+
+    Attributes:
+        id: the check's, as in `Check`; so are the others.
+    """
+
+    id: str
+    title: str
+    points: float
+    hints: tuple[str, ...]
+    doc: str
+    holds: str | tuple[str, ...] = ()
+
+
+R = TypeVar("R", bound=CheckRow)
+
+
+def check(
+    *,
+    points: float,
+    group: str,
+    holds: str | tuple[str, ...] = (),
+    needs: tuple[str, ...] = (),
+    after: tuple[str, ...] = (),
+    doc: str | None = None,
+) -> Callable[[F], F]:
+    """Declare a pytest function a check; what the arguments are, `Check` says. One sentence needs no tuple.
+
+    Raises:
+        GraderError: the function's name, docstring or points break the contract of a check.
+    """
+
+    def declare(function: F) -> F:
+        name = function.__name__
+        title = " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
+        if not name.startswith(PREFIX):
+            raise GraderError(f"check {name!r}: its name must start with {PREFIX!r}")
+        if not title:
+            raise GraderError(f"check {name!r}: it needs a docstring, the sentence that the student reads")
+        if not (math.isfinite(points) and points > 0):
+            raise GraderError(f"check {name!r}: points must be above 0, not {points!r}")
+        visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
+        visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
+        hints = getattr(function, "__hints__", ())
+        held = (holds,) if isinstance(holds, str) else holds
+        id = name.removeprefix(PREFIX)
+        declared = Check(id, title, float(points), group, visibility, hints, doc, needs, held, after)
+        function.__check__ = declared  # type: ignore[attr-defined]
+        return function
+
+    return declare
+
+
+def group(name: str, *, needs: tuple[str, ...] = (), after: tuple[str, ...] = (), doc: str | None = None) -> Declare:
+    """Return `check` for one group, with what its checks need, come after and link to unless a check says otherwise."""
+    default_needs, default_after, default_doc = needs, after, doc
+
+    def check_of_group(
+        *,
+        points: float,
+        holds: str | tuple[str, ...] = (),
+        needs: tuple[str, ...] = default_needs,
+        after: tuple[str, ...] = default_after,
+        doc: str | None = default_doc,
+    ) -> Callable[[F], F]:
+        return check(points=points, group=name, holds=holds, needs=needs, after=after, doc=doc)
+
+    return check_of_group
+
+
+def hint(*texts: str) -> Callable[[F], F]:
+    """Add hints to the function of a check, before those of the `hint` below it. It stands below `check`.
+
+    Raises:
+        GraderError: it stands above `check`, which would not see it.
+    """
+
+    def add(function: F) -> F:
+        if check_of(function):
+            raise GraderError(f"check {function.__name__!r}: its hints must stand below `check`, not above")
+        function.__hints__ = (*texts, *getattr(function, "__hints__", ()))  # type: ignore[attr-defined]
+        return function
+
+    return add
+
+
+def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
+    """Declare a check for each row of a table, as a function `test_ID` of the module in which the body stands.
+
+    The body takes a row, and then fixtures.
+
+    Args:
+        check: declares each check, with the row's points and page.
+        rows: the table.
+
+    Raises:
+        GraderError: pytest would take the body itself for a test.
+    """
+
+    def declare_each(body: F) -> F:
+        if body.__name__.startswith("test"):
+            raise GraderError(f"body {body.__name__!r}: its name must not start with 'test', its checks' names do")
+        for row in rows:
+            declare = check(points=row.points, holds=row.holds, doc=row.doc)
+            body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))
+        return body
+
+    return declare_each
+
+
+def expect(condition: bool, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
+    """Fail the check with `message` unless `condition` holds, and with `hints` if those of the check do not fit.
+
+    Raises:
+        CheckFailed: it does not hold.
+    """
+    if not condition:
+        raise CheckFailed(message, fraction=fraction, hints=hints)
+
+
+def check_of(function: object) -> Check | None:
+    """Return the check that a function declares, or None."""
+    found = getattr(function, "__check__", None)
+    return found if isinstance(found, Check) else None
+
+
+def _with_row(body: Callable[..., None], row: CheckRow) -> Callable[..., None]:
+    """Return a test that calls a body with a row, and asks pytest for the body's fixtures."""
+
+    @functools.wraps(body)
+    def test(**fixtures: Any) -> None:
+        body(row, **fixtures)
+
+    _, *fixtures = inspect.signature(body).parameters.values()
+    test.__name__ = PREFIX + row.id
+    test.__doc__ = row.title
+    test.__signature__ = inspect.Signature(fixtures)  # type: ignore[attr-defined]
+    return test

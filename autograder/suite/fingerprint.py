@@ -1,0 +1,128 @@
+"""The version of a suite, and a digest of all files that a grading reads.
+
+A submission that is graded twice with the same seed and the same version gets the same mark: `autograder grade
+--resume` relies on this. A version holds the digest of the chapter's files and of what its checks declare to read, and
+`GRADER_VERSION` for everything else.
+
+The digest of all files changes with every comment. It is for those who ask for more than the same mark: the proof of
+the grader, and the machines of a cluster.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from autograder import layout
+
+# The version of the grader and the simulator, of what the checks of all chapters use. Raise it by one with each change
+# by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
+# another version are graded again by `--resume`.
+GRADER_VERSION = 3
+
+# Parts of the autograder that no grading reads.
+NOT_READ = frozenset(
+    {"author", "bootstrap.py", "cli", "doctor", "grade/cluster", "lms", "notebook", "report", "result/causes.py"}
+)
+# In a chapter's checks, for the proof only.
+PROOF = frozenset(
+    {"attack_payloads.py", "attacks.py", "mutants.snapshot.yaml", "mutants.yaml", "survivors.yaml", "variants"}
+)
+CHECKS_IMPORT = re.compile(r"\bautograder\.checks\.(ch\d[\w.]+)(?: import (\([\w\s,]+\)|[^\n#]+))?")
+
+
+def version(assignment: str, reads: Iterable[str] = ()) -> str:
+    """Return the version of an assignment's suite: `GRADER_VERSION`, a dash and 12 hexadecimal digits.
+
+    Args:
+        assignment: name of the assignment.
+        reads: files and folders that its checks read beside their own, as paths in the course's folder.
+    """
+    return f"{GRADER_VERSION}-{_digest(chapter_files(assignment, reads))}"
+
+
+def digest(assignment: str, reads: Iterable[str] = ()) -> str:
+    """Return a digest of all files that a grading reads, 12 hexadecimal digits; the arguments are as in `version`."""
+    return _digest(files(assignment, reads))
+
+
+def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
+    """Return the sorted paths of all files that a grading reads; the arguments are as in `version`."""
+    home = layout.ROOT
+    shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
+    read = (path for path in shared if _is_read(path.relative_to(home).parts))
+    course = layout.COURSE
+    return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
+
+
+def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
+    """Return the sorted paths of a chapter's files and of what its checks read; the arguments are as in `version`."""
+    return sorted(_below(layout.COURSE.root, places(assignment, reads)))
+
+
+def _digest(paths: Iterable[Path]) -> str:
+    """Return a digest of the names and contents of files, as 12 hexadecimal digits."""
+    found = hashlib.sha256()
+    for path in paths:
+        name = path.relative_to(layout.COURSE.root if path.is_relative_to(layout.COURSE.root) else layout.ROOT)
+        found.update(f"{name}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+    return found.hexdigest()[:12]
+
+
+def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
+    """Return the files and folders of the course that are an assignment's own in a grading: nothing of them is shared.
+
+    They are its checks without what is for the proof, the modules of other chapters' checks that those import, its
+    notebook, the packages that it gives, and what its suite says that it reads.
+
+    Args:
+        assignment: name of the assignment.
+        reads: files and folders that its checks read beside their own, as paths in the course's folder.
+        parts: which of its suites.
+    """
+    course = layout.COURSE
+    checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
+    suite = checks / f"ch{assignment}"
+    unread = PROOF | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
+    own = [path for path in suite.iterdir() if path.name not in unread] if suite.is_dir() else []
+    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
+    named = [*own, *_imported(own, checks), *given, *(course.root / name for name in reads)]
+    return sorted({path for path in named if path.exists()})
+
+
+def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
+    """Yield the files at and below some paths, without what tools left there."""
+    for path in (path for top in tops for path in (top, *top.rglob("*")) if path.is_file()):
+        parts = path.relative_to(root).parts
+        if "__pycache__" not in parts and not any(part.startswith(".") for part in parts):
+            yield path
+
+
+def _imported(own: Iterable[Path], checks: Path) -> set[Path]:
+    """Return the modules of other chapters' checks that some checks import, and those that these import."""
+    pending, found = [path for top in own for path in (top, *top.rglob("*")) if path.suffix == ".py"], set[Path]()
+    while pending:
+        for name, names in CHECKS_IMPORT.findall(pending.pop().read_text(encoding="utf-8")):
+            dotted = [name, *(f"{name}.{each}" for each in re.findall(r"\w+", names))]
+            for path in (path for each in dotted for path in _modules(each, checks)):
+                if path not in found and not any(path == top or top in path.parents for top in own):
+                    found.add(path)
+                    pending.append(path)
+    return found
+
+
+def _modules(dotted: str, checks: Path) -> Iterator[Path]:
+    """Yield the files of a module of the checks and of the packages around it."""
+    parts = dotted.strip(".").split(".")
+    for count in range(1, len(parts) + 1):
+        path = checks.joinpath(*parts[:count])
+        yield from filter(Path.is_file, (path / "__init__.py", path.with_suffix(".py")))
+
+
+def _is_read(parts: tuple[str, ...]) -> bool:
+    """Return whether each grading reads a file of the autograder or the simulator."""
+    if parts[:2] == ("autograder", "checks"):
+        return len(parts) == 3  # what a check is; the chapters stand in folders
+    return parts[0] != "autograder" or not NOT_READ & {parts[1], "/".join(parts[1:3])}

@@ -1,0 +1,174 @@
+"""A suite: the visible or the hidden checks of one assignment, read from the modules of one package.
+
+The package, `chNN_name.visible` or `chNN_name.hidden`, says in its `__init__.py`:
+
+    PACKAGES          the ROS 2 packages that a submission must bring
+    MODULES           its modules that hold checks, in the order in which they are run
+    GROUPS            optional: the groups of checks in the order in which results show them, instead of MODULES
+    FOLDERS           optional: folders in `src` that a submission brings besides its packages
+    READS             optional: files and folders of the course, by their paths below its root, that the checks read
+                      besides what lies in their own chapter's folder
+    BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see
+                      it by the fixture `builds`, and those of a built package name one that asks for it in `needs`.
+    OWN_TESTS         optional: the checks that lose points by what the submission's own tests say of its other files
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+from threading import RLock
+
+from autograder.exceptions import GraderError, UsageError
+from autograder.suite import fingerprint
+from autograder.suite.declaration import Check, check_of
+
+HOME = "autograder.checks"
+VISIBLE, HIDDEN = "visible", "hidden"
+_importing = RLock()  # two threads that import checks at once may each wait for a module that the other imports
+
+
+@dataclass(frozen=True)
+class Suite:
+    """The checks of an assignment, hidden or visible.
+
+    Attributes:
+        assignment: the assignment that it judges.
+        packages: ROS 2 packages that a submission must bring.
+        files: its modules, in the order in which they are run.
+        checks: every check, in the order in which results show them.
+        build_may_fail: whether its checks are run even if a package is missing or does not build.
+        folders: what a submission brings in `src` besides its packages.
+        reads: files and folders of the course that its checks read besides their own packages, by their paths.
+        own_tests: ids of the checks that lose points by what a submission's own tests say of its other files.
+    """
+
+    assignment: str
+    packages: tuple[str, ...]
+    files: tuple[Path, ...]
+    checks: tuple[Check, ...]
+    build_may_fail: bool = False
+    folders: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ()
+    own_tests: tuple[str, ...] = ()
+
+    @cached_property
+    def version(self) -> str:
+        """The version, which changes when marks can: see `fingerprint.version`."""
+        return fingerprint.version(self.assignment, self.reads)
+
+    @cached_property
+    def files_digest(self) -> str:
+        """A digest of every file that a grading with the suite reads."""
+        return fingerprint.digest(self.assignment, self.reads)
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the chapter's checks."""
+        return self.files[0].parents[1]
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The folders of `src` that an answer is made of: the packages and the rest."""
+        return self.packages + self.folders
+
+    @property
+    def max_score(self) -> float:
+        """The sum of the checks' points."""
+        return sum(check.points for check in self.checks)
+
+    @property
+    def groups(self) -> dict[str, float]:
+        """The points of each group of checks, in the order of the suite."""
+        points: dict[str, float] = {}
+        for check in self.checks:
+            points[check.group] = points.get(check.group, 0.0) + check.points
+        return points
+
+    def with_dependencies(self, *wanted: str) -> tuple[str, ...]:
+        """Return the ids of checks and of all that they need, in the order of the suite."""
+        needs, needed, pending = {check.id: check.needs for check in self.checks}, set[str](), list(wanted)
+        while pending:
+            if (name := pending.pop()) not in needed:
+                needed.add(name)
+                pending += needs.get(name, ())
+        return tuple(check.id for check in self.checks if check.id in needed)
+
+
+@cache
+def hidden(assignment: str) -> Suite:
+    """Return the suite that grades an assignment. Raises as `read` does."""
+    return read(HOME, assignment, HIDDEN)
+
+
+@cache
+def visible(assignment: str) -> Suite:
+    """Return the checks of an assignment that students run themselves. Raises as `read` does."""
+    return read(HOME, assignment, VISIBLE)
+
+
+def graded_assignments() -> list[str]:
+    """Return the names of the assignments that have a hidden suite."""
+    return assignments_with(HOME, HIDDEN)
+
+
+def checkable_assignments() -> list[str]:
+    """Return the names of the assignments that have visible checks."""
+    return assignments_with(HOME, VISIBLE)
+
+
+def read(home: str, assignment: str, kind: str) -> Suite:
+    """Read the suite of an assignment from the package `home`.chASSIGNMENT.`kind`.
+
+    Args:
+        home: the package that holds a package for each chapter.
+        assignment: the assignment's name.
+        kind: "visible" or "hidden".
+
+    Raises:
+        UsageError: there is none.
+        GraderError: it breaks the contract of a check.
+    """
+    package = f"{home}.ch{assignment}.{kind}"
+    if assignment not in (there := assignments_with(home, kind)):
+        raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(there)}")
+    with _importing:
+        described = importlib.import_module(package)
+        modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
+    files = tuple(Path(inspect.getfile(module)) for module in modules)
+    checks = [found for module in modules for value in vars(module).values() if (found := check_of(value))]
+    _require_order(assignment, checks)
+    if groups := getattr(described, "GROUPS", ()):
+        if unlisted := {check.group for check in checks}.difference(groups):
+            raise GraderError(f"{assignment}: GROUPS of the {kind} checks does not name {sorted(unlisted)}")
+        checks.sort(key=lambda check: groups.index(check.group))
+    return Suite(
+        assignment,
+        tuple(described.PACKAGES),
+        files,
+        tuple(checks),
+        getattr(described, "BUILD_MAY_FAIL", False),
+        tuple(getattr(described, "FOLDERS", ())),
+        tuple(getattr(described, "READS", ())),
+        tuple(getattr(described, "OWN_TESTS", ())),
+    )
+
+
+def assignments_with(home: str, kind: str) -> list[str]:
+    """Return the names of the assignments that have a suite of this kind in the package `home`."""
+    folder = Path(importlib.import_module(home).__path__[0])
+    return sorted(path.parents[1].name.removeprefix("ch") for path in folder.glob(f"ch*/{kind}/__init__.py"))
+
+
+def _require_order(assignment: str, checks: list[Check]) -> None:
+    seen: set[str] = set()
+    for check in checks:
+        if check.id in seen:
+            raise GraderError(f"{assignment}: two checks are called {check.id!r}")
+        unmet = set(check.dependencies) - seen
+        if unmet:
+            raise GraderError(f"{assignment}: {check.id!r} names {sorted(unmet)}, which must stand before it")
+        seen.add(check.id)

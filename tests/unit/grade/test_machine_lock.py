@@ -1,0 +1,66 @@
+"""Gradings share the machine, and an exclusive grading has it alone."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from autograder.grade.machine_lock import MachineLock
+
+SECONDS = 60.0  # for what must happen
+
+
+def test_several_gradings_share_the_machine() -> None:
+    machine, all_in = MachineLock(), threading.Barrier(3)
+
+    def use() -> int:
+        with machine.shared():
+            return all_in.wait(SECONDS)
+
+    with ThreadPoolExecutor(3) as pool:
+        assert sorted(future.result() for future in [pool.submit(use) for _ in range(3)]) == [0, 1, 2]
+
+
+def test_an_exclusive_grading_waits_for_the_others_and_later_ones_wait_for_it() -> None:
+    machine, order = MachineLock(), list[str]()
+    begun, ended = threading.Event(), threading.Event()
+
+    def beside(name: str, wait: threading.Event | None = None) -> None:
+        with machine.shared():
+            begun.set()
+            if wait is not None:
+                wait.wait(SECONDS)
+            order.append(name)
+
+    def alone(name: str) -> None:
+        with machine.exclusive():
+            order.append(f"{name} begins")
+            order.append(f"{name} ends")
+
+    with ThreadPoolExecutor(4) as pool:
+        futures = [pool.submit(beside, "first", ended)]
+        assert begun.wait(SECONDS)
+        futures.append(pool.submit(alone, "a"))
+        deadline = time.monotonic() + SECONDS
+        while not machine._turn.locked():
+            assert time.monotonic() < deadline
+            threading.Event().wait(0.01)
+        futures.append(pool.submit(beside, "late"))
+        ended.set()
+        for future in futures:
+            future.result(SECONDS)
+    assert order == ["first", "a begins", "a ends", "late"]
+
+
+@pytest.mark.parametrize("way", ["shared", "exclusive"])
+def test_an_error_releases_the_machine(way: str) -> None:
+    machine = MachineLock()
+    with pytest.raises(ValueError, match="mine"), getattr(machine, way)():
+        raise ValueError("mine")
+    with machine.exclusive(), pytest.raises(ZeroDivisionError):
+        _ = 1 / 0
+    with machine.shared():
+        pass

@@ -1,0 +1,172 @@
+"""What a worker says is checked, a point lost on a busy machine is graded once more, and all has one budget of time."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.grade import grade_submission, pipeline
+from autograder.grade.job import Job
+from autograder.result.model import Artifact, CheckResult, Result, Status
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import CellReport
+from autograder.run.sandbox.process import Ending
+from autograder.suite import Check, Outcome, suites
+
+CHAPTER = "02_nodes"
+MakeResult = Callable[..., Result]
+DONE, FAILED = CellReport(Ending.EXITED, 0, ""), CellReport(Ending.EXITED, 1, "Traceback: of the grader")
+
+
+class Worker:
+    """Stands for the workers: comes to one result after the other, and notes whether it was alone."""
+
+    def __init__(self, *results: Result | None) -> None:
+        self.left, self.alone, self.times = list(results), list[bool](), list[float]()
+        self.last: list[bool] = []  # whether each try was said to be the last one
+
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        self.alone.append(pipeline._machine._turn.locked())
+        self.times.append(seconds)
+        self.last.append(job.last)
+        result = self.left.pop(0)
+        if result is None:
+            return FAILED
+        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(result.to_json()).encode()})
+
+
+@pytest.fixture
+def lost(make_result: MakeResult) -> Result:
+    """A result with a point lost in real time, while the machine was busy."""
+    suite = suites.hidden(CHAPTER)
+    first, *others = suite.checks
+    checks = (CheckResult.of(first, Outcome.FAILED), *(CheckResult.of(check, Outcome.PASSED) for check in others))
+    told = {"suite_version": suite.version, "files_digest": suite.files_digest, "max_score": suite.max_score}
+    return make_result("s", checks=checks, time="real", held_up=0.6, isolation="process", seed=1, **told)
+
+
+def whole(lost: Result) -> Result:
+    """The same result with all points."""
+    return dataclasses.replace(lost, checks=tuple(map(passed, suites.hidden(CHAPTER).checks)))
+
+
+def passed(check: Check) -> CheckResult:
+    return CheckResult.of(check, Outcome.PASSED)
+
+
+def grade(folder: Path, worker: Worker, seconds: float = 900.0) -> Result:
+    """Grade something by a worker."""
+    return grade_submission(
+        folder,
+        CHAPTER,
+        student="s",
+        seed=1,
+        out=folder / "out",
+        isolation=Tier.PROCESS,
+        run_job=worker,
+        seconds=seconds,
+    )
+
+
+def test_a_result_in_doubt_is_graded_again_alone_and_replaced(tmp_path: Path, lost: Result) -> None:
+    worker = Worker(lost, whole(lost))
+    result = grade(tmp_path, worker)
+    assert result.checks[0].outcome is Outcome.PASSED
+    assert not result.in_doubt
+    assert worker.alone == [False, True]
+
+
+def test_a_result_in_doubt_is_graded_again_only_once_and_stays_in_doubt(tmp_path: Path, lost: Result) -> None:
+    worker = Worker(lost, dataclasses.replace(lost, held_up=0.7))
+    result = grade(tmp_path, worker)
+    assert result.in_doubt
+    assert result.held_up == 0.7
+    assert worker.alone == [False, True]
+
+
+@pytest.mark.parametrize("change", [{"held_up": 0.05}, {"time": "lockstep"}], ids=["a quiet machine", "lockstep"])
+def test_a_point_that_is_lost_without_doubt_is_not_graded_again(
+    tmp_path: Path, lost: Result, change: dict[str, object]
+) -> None:
+    worker = Worker(dataclasses.replace(lost, **change))  # type: ignore[arg-type]
+    assert grade(tmp_path, worker).score == lost.score
+    assert worker.alone == [False]
+
+
+def test_a_grader_that_fails_in_the_second_grading_gives_no_mark_and_keeps_its_log(
+    tmp_path: Path, lost: Result
+) -> None:
+    result = grade(tmp_path, Worker(lost, None, None))
+    assert result.status is Status.NOT_GRADED
+    assert "Traceback: of the grader" in (tmp_path / "out" / "grader.log").read_text()
+
+
+class SlowWorker(Worker):
+    """A worker that takes a part of the time that it gets."""
+
+    def __init__(self, part: float, *results: Result | None) -> None:
+        super().__init__(*results)
+        self.part = part
+
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        time.sleep(self.part * seconds)
+        return super().__call__(job, seconds)
+
+
+def test_a_second_try_has_only_what_the_first_has_left_of_one_budget(tmp_path: Path, lost: Result) -> None:
+    worker = SlowWorker(0.5, None, whole(lost))
+    assert grade(tmp_path, worker, seconds=0.4).status is Status.GRADED
+    first, second = worker.times
+    assert first == 0.4
+    assert second <= 0.2
+
+
+def test_a_submission_that_has_used_its_budget_up_is_not_tried_again_and_gets_no_zero(tmp_path: Path) -> None:
+    worker = SlowWorker(0.9, None)
+    result = grade(tmp_path, worker, seconds=0.4)
+    assert worker.left == []
+    assert result.status is Status.NOT_GRADED
+    assert "The grader failed on this submission. This is no zero" in result.diagnosis.sentence
+
+
+def numbered(result: Result) -> enumerate[CheckResult]:
+    return enumerate(result.checks)
+
+
+FORGED: dict[str, Callable[[Result], Result]] = {
+    "another student": lambda result: dataclasses.replace(result, student="bob"),
+    "another assignment": lambda result: dataclasses.replace(result, assignment="03_interfaces"),
+    "another seed": lambda result: dataclasses.replace(result, seed=2),
+    "another tier": lambda result: dataclasses.replace(result, isolation="bubblewrap"),
+    "another version": lambda result: dataclasses.replace(result, suite_version="1-000000000000"),
+    "a larger maximum": lambda result: dataclasses.replace(result, max_score=result.max_score + 1),
+    "fewer checks": lambda result: dataclasses.replace(result, checks=result.checks[1:]),
+    "more points than a check is worth": lambda result: dataclasses.replace(
+        result,
+        checks=(dataclasses.replace(result.checks[0], points=result.checks[0].max_points + 1), *result.checks[1:]),
+    ),
+    "a picture elsewhere": lambda result: dataclasses.replace(
+        result, artifacts=(Artifact("../bob/result.json", "track", "a" * 64, "x"),)
+    ),
+}
+
+
+@pytest.mark.parametrize("forgery", FORGED)
+def test_a_worker_that_answers_something_else_has_failed_and_nothing_of_its_answer_is_kept(
+    tmp_path: Path, lost: Result, forgery: str
+) -> None:
+    result = grade(tmp_path, Worker(*2 * [FORGED[forgery](whole(lost))]))
+    assert (result.status, result.student) == (Status.NOT_GRADED, "s")
+    assert "a worker" in (tmp_path / "out" / "grader.log").read_text()
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"result.json", "grader.log"}
+
+
+def test_a_worker_is_told_which_try_is_the_last(tmp_path: Path, lost: Result) -> None:
+    worker = Worker(None, whole(lost))
+    grade(tmp_path, worker)
+    assert worker.last == [False, True]

@@ -1,0 +1,161 @@
+"""The examination makes the runs of a student's tests that the checks need."""
+
+from __future__ import annotations
+
+import random
+import shutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from autograder import layout
+from autograder.checks.ch06_testing.hidden.examination import FILES, Examination
+from autograder.checks.ch06_testing.hidden.faults import faults
+from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMITS
+from autograder.harness import Workspace
+from autograder.probes import student_test_runs
+from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source, TestRun
+from autograder.ros import environment
+from autograder.suite import CheckFailed
+
+ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for number in range(8)}), 0, "")
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    shutil.copytree(layout.SOLUTIONS / "speed_guard", tmp_path / "ws/src/speed_guard")
+    (tmp_path / "home").mkdir()
+    return Workspace(tmp_path / "ws", environment.find(), tmp_path / "home")
+
+
+@pytest.fixture
+def ordered(monkeypatch: pytest.MonkeyPatch) -> list[TestRun]:
+    """What was ordered; every run is said to pass."""
+    wanted: list[TestRun] = []
+
+    def note(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        wanted.extend(more)
+        return [ALL_PASS] * len(more)
+
+    monkeypatch.setattr(student_test_runs, "run", note)
+    return wanted
+
+
+def test_only_the_runs_that_one_check_and_its_dependencies_need_are_made(
+    workspace: Workspace, ordered: list[TestRun]
+) -> None:
+    examination = Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow")))
+    assert set(examination.runs) == {(LIMITS, what) for what in ("second", "reworded", "backwards", "step", "smooth")}
+    assert {order.files for order in ordered} == {(LIMITS,)}
+    assert len(ordered) == 6
+
+
+def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered: list[TestRun]) -> None:
+    examination = Examination(workspace, 1, frozenset(FILES))
+    assert {what for _, what in examination.runs} == {fault.id for fault in faults()} | {
+        "second",
+        "reworded",
+        "backwards",
+    }
+    assert [order.files[0] for order in ordered[:3]] == [LIMITS, GUARD, LAUNCH]
+    assert [order.files[0] for order in ordered if order.sniffed] == [GUARD]
+
+
+def test_a_run_does_not_depend_on_which_other_runs_are_made(workspace: Workspace, ordered: list[TestRun]) -> None:
+    def versions(*checks: str) -> list[TestRun]:
+        ordered.clear()
+        assert Examination(workspace, 1, frozenset(checks)).runs
+        return list(ordered)
+
+    few = versions("limits_pass", "limits_right", "stop")
+    many = versions("limits_pass", "limits_right", "stop", "slow", "refused")
+    assert all(order in many for order in few)
+
+
+def test_right_and_faulty_versions_are_mixed_anew_for_each_seed(workspace: Workspace, ordered: list[TestRun]) -> None:
+    mixed = {tuple(Examination(workspace, seed, frozenset(FILES)).runs) for seed in range(5)}
+    assert len(mixed) == 5
+    assert len(ordered) > 5 * len(faults())
+
+
+Verdict = Callable[[TestRun, str], bool]  # whether a test, by its name, fails in a run
+
+
+def examine(monkeypatch: pytest.MonkeyPatch, workspace: Workspace, fails: Verdict) -> tuple[Examination, list[TestRun]]:
+    """Return an examination of a test with parameters a to f, and all runs of it as they are made."""
+    made: list[TestRun] = []
+
+    def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        made.extend(more)
+        return [_report(wanted, fails) for wanted in more]
+
+    monkeypatch.setattr(student_test_runs, "run", run)
+    return Examination(workspace, 1, frozenset(("limits_pass", "limits_right", "slow"))), made
+
+
+def _report(wanted: TestRun, fails: Verdict) -> Report:
+    ran: dict[str, ClaimedOutcome] = {}
+    for name in (f"test_limits::test[{letter}]" for letter in "abcdef"):
+        if name in wanted.without or (wanted.first_failure and ClaimedOutcome.FAILED in ran.values()):
+            continue
+        ran[name] = ClaimedOutcome.FAILED if fails(wanted, name[-2]) else ClaimedOutcome.PASSED
+    report = Report(None, int(ClaimedOutcome.FAILED in ran.values()), Claims(ran), 0, "")
+    return report if wanted.shown else report.closed(frozenset({"test_limits::test"}))
+
+
+def _kind(examination: Examination, wanted: TestRun) -> str:
+    """Return what a run of the examination is made for."""
+    for salt in ((), ("again",)):
+        for what, run in examination._wanted(LIMITS, (), *salt).items():
+            if wanted.version == run.version:
+                return what
+    return "trial"
+
+
+def test_a_test_that_fails_on_the_given_package_costs_no_line_that_the_others_see(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    examination, made = examine(
+        monkeypatch,
+        workspace,
+        lambda wanted, test: test == "b" or (test == "c" and _kind(examination, wanted) in {"step", "smooth"}),
+    )
+    examination.expect_right(LIMITS, "backwards")
+    examination.expect_objection("slow", "it is a line.")
+    assert {wanted.without for wanted in made[1:]} == {("test_limits::test[b]",)}
+
+
+def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(wanted: TestRun, test: str) -> bool:
+        kind = _kind(examination, wanted)
+        return (test == "b" and kind != "trial") or (test == "c" and kind in {"step", "smooth"})
+
+    examination, made = examine(monkeypatch, workspace, fails)
+    with pytest.raises(
+        CheckFailed, match=r"test in test_limits\.py fails on a right speed_guard that is written differently"
+    ):
+        examination.expect_right(LIMITS, "backwards")
+    examination.expect_objection("slow", "it is a line.")
+    assert made[-1].without == ("test_limits::test[b]",)
+
+
+def test_tests_that_object_to_every_other_version_earn_no_line(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    examination, _ = examine(monkeypatch, workspace, lambda wanted, test: _kind(examination, wanted) != "trial")
+    with pytest.raises(CheckFailed, match="none says anything of a faulty one"):
+        examination.expect_objection("slow", "it is a line.")
+
+
+def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    luck = random.Random(1)
+    examination, _ = examine(
+        monkeypatch, workspace, lambda wanted, test: _kind(examination, wanted) != "trial" and luck.random() < 0.5
+    )
+    with pytest.raises(CheckFailed, match="so that"):
+        examination.expect_objection("slow", "it is a line.")

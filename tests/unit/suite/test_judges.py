@@ -1,0 +1,51 @@
+"""The controller of 08 is judged behind the student's processor, and without it where that fails."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from autograder.checks.ch08_capstone.hidden.judges import judge_driving
+from autograder.suite import CheckFailed
+
+
+class Kept:
+    """Stands for a system that is kept: a check's body only sees which of the two it is."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.closed = name, 0
+
+    def get(self, *needed: str) -> Any:
+        return self.name
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+def judge(fractions: dict[str, float]) -> tuple[Any, Any]:
+    """Judge a body that fails in the systems that are named, with these fractions."""
+    shared, lone = Kept("shared"), Kept("lone")
+
+    def body(system: Any) -> None:
+        if system in fractions:
+            raise CheckFailed(system, fraction=fractions[system])
+
+    judge_driving(shared, lone, body)  # type: ignore[arg-type]
+    return shared, lone
+
+
+def test_what_is_right_in_one_of_the_two_passes() -> None:
+    assert judge({})[0].closed == 0
+    shared, lone = judge({"shared": 0.0})
+    assert (shared.closed, lone.closed) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("fractions", "said"),
+    [({"shared": 0.0, "lone": 0.0}, "shared"), ({"shared": 0.25, "lone": 0.5}, "lone")],
+)
+def test_what_is_wrong_in_both_has_the_better_of_the_two_outcomes(fractions: dict[str, float], said: str) -> None:
+    with pytest.raises(CheckFailed) as failed:
+        judge(fractions)
+    assert failed.value.message == said

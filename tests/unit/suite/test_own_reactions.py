@@ -1,0 +1,59 @@
+"""A robot of 02 is judged by its own reactions, where it has them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from geometry_msgs.msg import Twist
+
+from autograder.checks.ch02_nodes.support.robot import CONTRACT, is_stop, own_reactions
+from autograder.harness import ReceivedMessage
+from autograder.suite import CheckFailed
+
+Pair = tuple[float, float]
+
+
+def _commands(*pairs: Pair) -> list[ReceivedMessage]:
+    made = []
+    for linear, angular in pairs:
+        command = Twist()
+        command.linear.x, command.angular.z = linear, angular
+        made.append(ReceivedMessage(0.0, command))
+    return made
+
+
+def test_a_wrong_velocity_is_a_reaction_of_its_own() -> None:
+    own = own_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
+    assert (own.forward, own.turn) == ((30.0, 0.0), (0.0, -0.5))
+    own.expect_forward(_commands((30.0, 0.0)), "Now")
+    with pytest.raises(CheckFailed, match=r"the robot drove forward at 0\.30 m/s: it should"):
+        own.expect_forward(_commands((0.3, 0.0)), "Now")
+
+
+@pytest.mark.parametrize(
+    ("clear", "blocked"),
+    [
+        ((), ()),
+        (((0.0, 0.0),), ((0.0, 0.0),)),
+        (((0.3, 0.0),), ((0.3, 0.0),)),
+        (((0.3, 0.0), (0.1, 0.0)), ((0.0, 0.5), (0.0, 0.0))),
+        (((math.nan, 0.0),), ((0.0, math.inf),)),
+    ],
+    ids=["nothing came", "it never moves", "it never turns", "it wavers", "no numbers"],
+)
+def test_a_robot_without_reactions_is_judged_by_the_contract_s(
+    clear: tuple[Pair, ...], blocked: tuple[Pair, ...]
+) -> None:
+    assert own_reactions(_commands(*clear), _commands(*blocked)) == CONTRACT
+
+
+def test_a_robot_that_only_stops_in_front_of_things_turns_by_standing_still() -> None:
+    own = own_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
+    assert own.turns(_commands((0.0, 0.0)))
+    assert not own.drives(_commands((0.0, 0.0)))
+
+
+@pytest.mark.parametrize(("pair", "stops"), [((0.0, 0.0), True), ((0.0, 0.5), False), ((math.nan, 0.0), False)])
+def test_a_stop_is_a_command_of_zeros(pair: Pair, stops: bool) -> None:
+    assert is_stop(*_commands(pair)) is stops

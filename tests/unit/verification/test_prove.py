@@ -1,0 +1,131 @@
+"""The submissions of a proof are graded by all workers at once, and each result has its own place."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from autograder.author.verification.cases import WITHOUT_PICTURES, Case
+from autograder.author.verification.claims import CaseKind, verify_full_marks
+from autograder.author.verification.prove import prove
+from autograder.author.verification.worker_pool import WorkerPool
+from autograder.diagnosis import Diagnosis, Kind
+from autograder.grade.job import Job, Scope
+from autograder.grade.pipeline import refused
+from autograder.result.model import Status
+from autograder.run.sandbox import Tier
+from autograder.run.sandbox.cell import CellReport
+from autograder.run.sandbox.process import Ending
+from autograder.submission.intake import read_submission
+from autograder.suite import suites
+from autograder.suite.suites import Suite
+
+WORKERS = 3
+CHAPTERS = ("01_package_structure", "02_nodes", "03_interfaces")
+
+
+class NoGrader:
+    """A pool in which every grading fails, and none before as many as there are workers have begun."""
+
+    tier, count = Tier.PROCESS, WORKERS
+
+    def __init__(self) -> None:
+        self._together = threading.Barrier(WORKERS, timeout=60.0)
+
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        self._together.wait()
+        return CellReport(Ending.EXITED, 1, f"nobody grades {job.student}")
+
+
+class OneByOne(NoGrader):
+    """One worker."""
+
+    count = 1
+
+    def __init__(self) -> None:
+        self._together = threading.Barrier(1)
+
+
+class Recorder(OneByOne):
+    """One worker that records a result without points, and counts how often it is asked to."""
+
+    count, asked = 1, 0
+
+    def __call__(self, job: Job, seconds: float) -> CellReport:
+        self.asked += 1
+        suite, digest = suites.hidden(job.assignment), read_submission(job.path, job.assignment).sha256
+        result = refused(suite, job.student, job.seed, job.tier, Diagnosis(Kind.OK, "It was looked at."))
+        told = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
+        return CellReport(Ending.EXITED, 0, "", {"result.json": json.dumps(told).encode()})
+
+
+def case(assignment: str, write: Callable[[Path], None] = Path.mkdir) -> Case:
+    return Case(assignment, CaseKind.REFERENCE, "reference", write, verify_full_marks)
+
+
+def run(proof: list[Case], out: Path, **options: Any) -> list[str]:
+    claims = prove(proof, seed=1, out=out, workers=cast(WorkerPool, NoGrader()), **options)
+    return [claim.mismatch for claim in claims]
+
+
+def test_submissions_of_several_chapters_may_have_the_same_name(tmp_path: Path) -> None:
+    came: list[str] = []
+    said = run([case(name) for name in CHAPTERS], tmp_path, on_claim=lambda claim: came.append(claim.assignment))
+    assert all(said), "what was not graded shows nothing"
+    assert sorted(came) == list(CHAPTERS)
+    logs = [(tmp_path / name / "reference" / "grader.log").read_text() for name in CHAPTERS]
+    assert all("nobody grades reference" in log for log in logs)
+
+
+def test_chapters_are_graded_at_the_same_time_and_reported_in_order(tmp_path: Path) -> None:
+    made: list[str] = []
+
+    def named(assignment: str, name: str) -> Case:
+        def write(folder: Path) -> None:
+            folder.mkdir()
+            made.append(f"{assignment[:2]} {name}")
+
+        return replace(case(assignment, write), name=name)
+
+    proof = [*(named("01_package_structure", name) for name in "abcd"), *(named("02_nodes", name) for name in "ab")]
+    claims = prove(proof, seed=1, out=tmp_path, workers=cast(WorkerPool, OneByOne()))
+    assert [(claim.assignment, claim.name) for claim in claims] == [(case.assignment, case.name) for case in proof]
+    assert made == ["01 a", "01 b", "02 a", "01 c", "01 d", "02 b"]
+
+
+def test_a_submission_that_cannot_be_made_ends_the_proof(tmp_path: Path) -> None:
+    def fails(folder: Path) -> None:
+        raise FileNotFoundError("no such reference")
+
+    with pytest.raises(FileNotFoundError, match="no such reference"):
+        run([case(CHAPTERS[0], fails)], tmp_path)
+
+
+def test_a_result_counts_again_only_for_the_same_files_and_submission_and_the_whole_suite(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worker = Recorder()
+
+    def asked(text: str, scope: Scope = WITHOUT_PICTURES, seed: int = 1) -> int:
+        def write(folder: Path) -> None:
+            (folder / "src").mkdir(parents=True)
+            (folder / "src" / "package.xml").write_text(text)
+
+        before = worker.asked
+        prove(
+            [replace(case(CHAPTERS[0], write), scope=scope)], seed=seed, out=tmp_path, workers=cast(WorkerPool, worker)
+        )
+        return worker.asked - before
+
+    part = replace(WITHOUT_PICTURES, only=("found",))
+    assert [asked("one"), asked("one")] == [1, 0]
+    assert [asked("one", seed=2), asked("two"), asked("two")] == [1, 1, 0]
+    assert [asked("two", part), asked("two", part), asked("two")] == [1, 1, 0]
+    monkeypatch.setattr(Suite, "files_digest", property(lambda suite: "of another comment"))
+    assert [asked("two"), asked("two")] == [1, 0]

@@ -1,0 +1,86 @@
+"""What the named mutants fail is recorded from their results, and a mutant that proves nothing is not recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autograder.author.verification import snapshot
+from autograder.author.verification.claims import CaseKind, Claim
+from autograder.author.verification.mutants import mutants
+from autograder.author.verification.record import compared_again, record_failures
+from autograder.result.model import CheckResult, Status
+from autograder.suite import Outcome, suites
+from tests.conftest import MakeResult
+
+ASSIGNMENT = "02_nodes"
+CHECKS = suites.hidden(ASSIGNMENT).checks
+FIRST, SECOND = mutants(ASSIGNMENT)[:2]
+
+
+@pytest.fixture(autouse=True)
+def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The snapshot's file, a copy of the real one."""
+    path = tmp_path / "mutants.snapshot.yaml"
+    path.write_bytes(snapshot.snapshot_file(ASSIGNMENT).read_bytes())
+    monkeypatch.setattr(snapshot, "snapshot_file", lambda assignment: path)
+    return path
+
+
+@pytest.fixture
+def graded(make_result: MakeResult) -> Callable[..., Claim]:
+    """Make the claim of a mutant that failed these checks."""
+
+    def claim(name: str, *failed: str, status: Status = Status.GRADED) -> Claim:
+        checks = tuple(
+            CheckResult.of(check, Outcome.FAILED if check.id in failed else Outcome.PASSED, "so") for check in CHECKS
+        )
+        return Claim(ASSIGNMENT, CaseKind.MUTANT, name, make_result(checks=checks, status=status), "")
+
+    return claim
+
+
+def test_a_graded_mutant_s_record_is_replaced_and_the_others_stay(file: Path, graded: Callable[..., Claim]) -> None:
+    before = snapshot.recorded(ASSIGNMENT)
+    other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
+    said = record_failures(ASSIGNMENT, [graded(FIRST.id, FIRST.check, other)])
+    assert said == "02_nodes: 1 mutants graded, 1 records changed"
+    assert snapshot.recorded(ASSIGNMENT) == before | {FIRST.id: {FIRST.check, other}}
+    assert file.read_text().startswith("# All checks that each mutant")
+
+
+def test_a_record_that_has_not_changed_is_written_as_it_was(file: Path, graded: Callable[..., Claim]) -> None:
+    before = file.read_bytes()
+    record_failures(ASSIGNMENT, [graded(FIRST.id, *FIRST.fails)])
+    assert file.read_bytes() == before
+
+
+def test_a_mutant_that_passes_its_own_check_is_not_recorded(graded: Callable[..., Claim]) -> None:
+    before = snapshot.recorded(ASSIGNMENT)
+    other = next(check.id for check in CHECKS if check.id != FIRST.check)
+    said = record_failures(ASSIGNMENT, [graded(FIRST.id, other)])
+    assert said.endswith(f"0 records changed; not recorded, because they pass their own check: {FIRST.id}")
+    assert snapshot.recorded(ASSIGNMENT) == before
+
+
+def test_a_submission_that_was_not_graded_keeps_its_record(graded: Callable[..., Claim]) -> None:
+    before = snapshot.recorded(ASSIGNMENT)
+    record_failures(ASSIGNMENT, [graded(SECOND.id, status=Status.NOT_GRADED)])
+    assert snapshot.recorded(ASSIGNMENT) == before
+
+
+def test_a_mutant_that_is_gone_loses_its_record(file: Path) -> None:
+    file.write_text(file.read_text() + "no_such_mutant: all\n")
+    record_failures(ASSIGNMENT, [])
+    assert "no_such_mutant" not in file.read_text()
+
+
+def test_a_result_that_was_just_recorded_is_as_claimed(graded: Callable[..., Claim]) -> None:
+    other = next(check.id for check in CHECKS if check.id not in {FIRST.check, *FIRST.fails})
+    claims = [graded(FIRST.id, FIRST.check, other), graded(SECOND.id, other)]
+    record_failures(ASSIGNMENT, claims)
+    first, second = compared_again(claims)
+    assert first.mismatch == ""
+    assert second.mismatch.startswith(f"passes {SECOND.check}, for which it was written")

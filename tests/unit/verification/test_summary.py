@@ -1,0 +1,109 @@
+"""The summary of a proof, and when a proof succeeds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from autograder.author.verification.cases import cases
+from autograder.author.verification.claims import CaseKind, Claim, verify_full_marks, verify_mutant, verify_zero
+from autograder.author.verification.mutants import mutants
+from autograder.author.verification.summary import summary
+from autograder.diagnosis import OK
+from autograder.result.model import CheckResult, Result
+from autograder.suite import Outcome, suites
+
+ASSIGNMENT = "02_nodes"
+SUITE = suites.hidden(ASSIGNMENT)
+
+
+def result(*lost: str) -> Result:
+    """Return a result in which these checks failed and all others passed."""
+    checks = tuple(
+        CheckResult.of(check, Outcome.FAILED if check.id in lost else Outcome.PASSED, "so" if check.id in lost else "")
+        for check in SUITE.checks
+    )
+    return Result(
+        assignment=ASSIGNMENT,
+        student="x",
+        submission_sha256="0" * 64,
+        suite_version=SUITE.version,
+        seed=1,
+        isolation="bubblewrap",
+        checks=checks,
+        max_score=SUITE.max_score,
+        started="2026-01-01T00:00:00+00:00",
+        seconds=1.0,
+        diagnosis=OK,
+        build=None,
+        artifacts=(),
+        phases={},
+    )
+
+
+def claim(kind: CaseKind, mismatch: str = "", *lost: str) -> Claim:
+    return Claim(ASSIGNMENT, kind, "x", result(*lost), mismatch)
+
+
+def test_a_right_answer_has_every_point() -> None:
+    assert verify_full_marks(result()) == ""
+    assert verify_full_marks(result("nan")) == "loses nan"
+
+
+def test_a_release_gains_nothing() -> None:
+    assert verify_zero(result(*(check.id for check in SUITE.checks))) == ""
+    assert verify_zero(result("nan")).startswith("it scores")
+
+
+def test_a_mutant_fails_its_own_check_and_what_is_recorded_and_no_other() -> None:
+    mutant = next(m for m in mutants(ASSIGNMENT) if m.id == "minus_inf_dropped")
+    assert verify_mutant(mutant, result(*mutant.fails)) == ""
+    wrong = verify_mutant(mutant, result("nan"))
+    assert wrong.startswith(f"passes {mutant.check}, for which it was written; also fails nan; passes ")
+    assert "`autograder verify --record`" in wrong
+    unrecorded = replace(mutant, fails=frozenset())
+    assert verify_mutant(unrecorded, result(*mutant.fails)).startswith("has no recorded failures")
+
+
+def test_the_summary_counts_each_kind() -> None:
+    claims = [
+        claim(CaseKind.REFERENCE),
+        claim(CaseKind.RELEASE, "", *(check.id for check in SUITE.checks)),
+        claim(CaseKind.VARIANT),
+        claim(CaseKind.MUTANT, "", "nan"),
+        claim(CaseKind.MUTANT, "also loses blind", "nan", "blind"),
+        claim(CaseKind.MUTANT, "keeps nan"),
+        claim(CaseKind.ATTACK, "gains nan"),
+    ]
+    assert summary(claims, 12.34) == {
+        "reference": 100.0,
+        "release": 0.0,
+        "variants": [100.0],
+        "mutants": 3,
+        "mutants_missed": 1,
+        "mutants_wrong_check": 1,
+        "attacks": 1,
+        "attacks_gained": 1,
+        "seconds": 12.3,
+    }
+
+
+def test_the_whole_proof_contains_every_kind_and_each_submission_once() -> None:
+    found = cases(ASSIGNMENT)
+    assert {case.kind for case in found} >= set(CaseKind) - {CaseKind.VARIANT}
+    assert len({case.name for case in found}) == len(found)
+
+
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
+def test_the_quick_proof_fails_every_check(assignment: str) -> None:
+    names = {case.name for case in cases(assignment, quick=True)}
+    covered = {name for mutant in mutants(assignment) if mutant.id in names for name in mutant.fails}
+    assert covered == {check.id for check in suites.hidden(assignment).checks}
+
+
+@pytest.mark.parametrize("assignment", suites.graded_assignments())
+def test_each_check_has_three_mutants(assignment: str) -> None:
+    lost = Counter(name for mutant in mutants(assignment) for name in mutant.fails)
+    assert [check.id for check in suites.hidden(assignment).checks if lost[check.id] < 3] == []
