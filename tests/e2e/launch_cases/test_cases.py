@@ -44,5 +44,5 @@ def test_a_case_does_what_it_does_with_the_real_packages(name: str, records: dic
     expected = dict(EXPECTED[name])
     if STAND_IN and name in DIFFERENCES:
         assert DIFFERENCES[name]["log"] != expected["log"]
-        expected["log"] = DIFFERENCES[name]["log"]
+        expected |= {part: said for part, said in DIFFERENCES[name].items() if part != "reason"}
     assert records[name] == expected

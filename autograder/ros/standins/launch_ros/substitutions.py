@@ -10,6 +10,7 @@ from typing import Any
 
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
+from launch.substitution import DirectorySubstitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from standin_notice import guard
@@ -21,7 +22,7 @@ def _described(parts: list[Substitution]) -> str:
     return " + ".join(part.describe() for part in parts)
 
 
-class FindPackage(Substitution):
+class FindPackage(DirectorySubstitution):
     """A folder of a package; PackageNotFoundError if the package is not in the ament index."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:

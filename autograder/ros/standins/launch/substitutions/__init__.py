@@ -6,7 +6,7 @@ from standin_notice import guard
 
 from ..exceptions import SubstitutionFailure
 from ..substitution import TextSubstitution
-from .evaluate import Command, FileContent, FindExecutable, PathJoinSubstitution, PythonExpression
+from .evaluate import Command, FileContent, FindExecutable, PathJoinSubstitution, PathSubstitution, PythonExpression
 from .logic import (
     AllSubstitution,
     AndSubstitution,
@@ -45,6 +45,7 @@ __all__ = [
     "NotSubstitution",
     "OrSubstitution",
     "PathJoinSubstitution",
+    "PathSubstitution",
     "PythonExpression",
     "SubstitutionFailure",
     "TextSubstitution",

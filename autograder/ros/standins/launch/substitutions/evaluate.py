@@ -14,6 +14,7 @@ from typing import Any
 from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
 from ..substitution import (
+    DirectorySubstitution,
     SomeSubstitutionsType,
     Substitution,
     describe_substitutions,
@@ -104,20 +105,29 @@ class FindExecutable(Substitution):
         return found
 
 
-class PathJoinSubstitution(Substitution):
-    """A path from its components, each of which is a text or one substitution."""
+class PathJoinSubstitution(DirectorySubstitution):
+    """A path from its components, each of which is a text, a substitution, or several of them in a row."""
 
-    def __init__(self, substitutions: Iterable[str | Substitution]) -> None:
-        self.substitutions = normalize_to_list_of_substitutions(substitutions)
+    def __init__(self, substitutions: SomeSubstitutionsType | Iterable[SomeSubstitutionsType]) -> None:
+        if isinstance(substitutions, (str, Substitution)):
+            substitutions = [substitutions]
+        self.substitutions = [normalize_to_list_of_substitutions(component) for component in substitutions]
 
     def describe(self) -> str:
         """Return a description with the components."""
-        return f"PathJoin({', '.join(part.describe() for part in self.substitutions)})"
+        return f"PathJoin({', '.join(map(describe_substitutions, self.substitutions))})"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the joined path."""
-        parts = [context.perform_substitution(part) for part in self.substitutions]
+        parts = [perform_substitutions(context, component) for component in self.substitutions]
         return os.path.join(*parts)  # noqa: PTH118  # a Path would drop slashes and dots that belong
+
+
+class PathSubstitution(PathJoinSubstitution):
+    """A path of one component, to be continued with ``/``."""
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        super().__init__([path])
 
 
 class FileContent(Substitution):

@@ -12,6 +12,7 @@ from ..exceptions import SubstitutionFailure
 from ..launch_context import LaunchContext
 from ..logging import launch_config
 from ..substitution import (
+    DirectorySubstitution,
     SomeSubstitutionsType,
     Substitution,
     describe_substitutions,
@@ -125,13 +126,13 @@ class ThisLaunchFile(_OfLaunchFile):
     local = "current_launch_file_path"
 
 
-class ThisLaunchFileDir(_OfLaunchFile):
+class ThisLaunchFileDir(_OfLaunchFile, DirectorySubstitution):
     """The folder of the launch file that is being executed."""
 
     local = "current_launch_file_directory"
 
 
-class LaunchLogDir(Substitution):
+class LaunchLogDir(DirectorySubstitution):
     """The folder of this launch's log files."""
 
     def describe(self) -> str:
