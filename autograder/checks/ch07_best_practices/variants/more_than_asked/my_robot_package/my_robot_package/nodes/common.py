@@ -1,0 +1,24 @@
+"""One main for every node of this package."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+
+
+def serve(factory, args):
+    """Spin what factory() returns with two threads until a signal comes."""
+    rclpy.init(args=args)
+    try:
+        node = factory()
+        try:
+            executor = MultiThreadedExecutor(num_threads=2)
+            executor.add_node(node)
+            executor.spin()
+        finally:
+            node.destroy_node()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except RuntimeError:
+        if rclpy.ok():
+            raise
+    finally:
+        rclpy.try_shutdown()
