@@ -1,7 +1,7 @@
 """Configures nbgrader, with this folder as the course directory.
 
-The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names the
-exchange folder of a class. Without it the folder is `.build/exchange`.
+The isolated grader (`autograder.lms.nbgrader`) computes the scores, and nbgrader books them. `NBGRADER_EXCHANGE` names
+the exchange folder of a class. Without it the folder is `.build/exchange`.
 
 `nbgrader autograde` grades one submission after the other, and books what is graded already. These commands grade a
 class on all cores, or on a cluster by `--scheduler`, and then book it:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from autograder import layout
 from autograder.ros.environment import without_wheel_bootstrap
-from autograder.run.sandbox import bubblewrap, cgroup
+from autograder.run.sandbox import bubblewrap, cgroup, warm_caches
 from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.launcher import TIER_VARIABLE
 from autograder.run.sandbox.limits import GRADING_CELL, Limits, TreeLimits
@@ -82,6 +82,8 @@ def in_cell(
     """
     require(tier)
     _sweep()
+    if tier is Tier.BUBBLEWRAP:
+        warm_caches.compile_grader()
     scratch = Path(tempfile.mkdtemp(prefix=_PREFIX))
     held = os.open(scratch, os.O_RDONLY)
     fcntl.flock(held, fcntl.LOCK_EX)  # the kernel lets go of it when this process is killed
