@@ -50,8 +50,13 @@ class ControlGroup:
     def ran_out(self) -> bool:
         """Return whether the kernel has ended a process because the group's memory was used up."""
         folder = self.by_controller.get("memory")
-        events = folder and _read(folder / "memory.events") + _read(folder / "memory.oom_control")
-        return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in (events or "").splitlines())
+        if folder is None:
+            return False
+        # Of version 2, `memory.events` counts what happened in the groups below, too: a cell is not out of memory
+        # because a sandbox in it is.
+        events = _read(folder / "memory.events.local") or _read(folder / "memory.events")
+        events += _read(folder / "memory.oom_control")
+        return any(line.split()[0] == "oom_kill" and line.split()[1] != "0" for line in events.splitlines())
 
     def close(self) -> None:
         """Kill what is left of the group, and remove it; one that is not empty after 5 s is left to a later `make`."""

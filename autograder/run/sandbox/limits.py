@@ -24,6 +24,7 @@ class Limits:
     open_files: int = 512
     output: int = 1 * MIB  # bytes written to stdout and stderr together
     scratch: int = 64 * MIB  # bytes of the private /tmp
+    looks: int = 1  # at the tree, a quarter of a second apart, that find too much memory or threads before it is ended
 
     @property
     def tasks(self) -> int:
@@ -55,7 +56,9 @@ TEST_RUN = Limits(wall_seconds=60.0, cpu_seconds=40, memory=768 * MIB)
 # Calls of a student's functions.
 CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
 # A whole cell: a trusted worker and all that it starts, for a grading or for a notebook's request.
-GRADING_CELL = Limits(wall_seconds=900.0, memory=6 * GIB, threads=2048, output=4 * MIB)
+# Its sandboxes have bounds of their own, and a bomb in one of them grows beyond these until it is seen. It must not end
+# the worker, too: the cell has room for six at once, and time for their ends.
+GRADING_CELL = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, looks=8)
 NOTEBOOK_CELL = replace(GRADING_CELL, wall_seconds=300.0)
 # A cell in which a submission is read, and nothing of it is run.
 READING_CELL = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)

@@ -183,7 +183,7 @@ class Process:
 
     def _watch(self) -> None:
         assert self._popen.stdout is not None
-        measured, files = 0.0, math.inf
+        measured, files, over = 0.0, math.inf, 0
         with selectors.DefaultSelector() as selector:
             selector.register(self._popen.stdout, selectors.EVENT_READ)
             open_stream = True
@@ -200,9 +200,11 @@ class Process:
                 if now - measured > _MEASURE:
                     measured = now
                     tree = self._measure()
-                    if tree.threads > self._limits.threads:
+                    is_over = tree.threads > self._limits.threads or tree.memory > self._limits.memory
+                    over = over + 1 if is_over else 0
+                    if over >= self._limits.looks and tree.threads > self._limits.threads:
                         self._end(Ending.THREADS)
-                    elif tree.memory > self._limits.memory:
+                    elif over >= self._limits.looks:
                         many = tree.largest < self._limits.memory / _MANY
                         self._end(Ending.THREADS if many else Ending.MEMORY)
                     elif self._ran_out():

@@ -121,3 +121,11 @@ def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.
     group = cgroup.make(Limits())
     assert not any(folder.exists() for folder in left.folders)
     group.close()
+
+
+def test_a_group_whose_members_groups_ran_out_of_memory_did_not_run_out_itself(tmp_path: Path) -> None:
+    group = cgroup.ControlGroup({"memory": tmp_path})
+    (tmp_path / "memory.events").write_text("oom 1\noom_kill 1\n")
+    assert group.ran_out()
+    (tmp_path / "memory.events.local").write_text("oom 0\noom_kill 0\n")
+    assert not group.ran_out()

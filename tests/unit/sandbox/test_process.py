@@ -215,3 +215,12 @@ def test_many_processes_at_once_are_each_watched() -> None:
     finally:
         for process in running:
             process.__exit__()
+
+
+@pytest.mark.parametrize(("seconds", "ending"), [(0.5, Ending.EXITED), (LONG, Ending.THREADS)])
+def test_a_cell_outlives_a_bomb_that_is_ended_in_it(seconds: float, ending: Ending) -> None:
+    code = "import threading, time\nwait = threading.Event()\nfor _ in range(30):\n    "
+    code += f"threading.Thread(target=wait.wait).start()\ntime.sleep({seconds})\nwait.set()"
+    with Process(_python(code), Limits(threads=10, looks=8)) as process:
+        assert process.wait(LONG)
+        assert process.ending is ending

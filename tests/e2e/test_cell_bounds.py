@@ -1,0 +1,39 @@
+"""A bomb in a sandbox ends with its sandbox, and not with the cell around it: the submission is graded."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from autograder.run.sandbox import Ending, Tier, cgroup
+from autograder.run.sandbox.cell import run_in_cell
+
+# The bounds of `ros2 launch` are the widest: its program can have 4,096 threads before the watcher looks.
+WORKER = """
+import sys
+from pathlib import Path
+from autograder.run.sandbox import Sandbox
+from autograder.run.sandbox.launcher import launch
+from autograder.run.sandbox.limits import LAUNCH
+BOMB = '''
+import threading, time
+threading.stack_size(65536)
+try:
+    while True:
+        threading.Thread(target=time.sleep, args=(60,), daemon=True).start()
+except BaseException:
+    time.sleep(60)
+'''
+for _ in range(3):
+    with launch([sys.executable, "-I", "-c", BOMB], Sandbox(workdir=Path("/tmp"), limits=LAUNCH)) as process:
+        process.wait(60)
+        print(process.ending.value, flush=True)
+"""
+
+
+@pytest.mark.skipif("pids" not in cgroup.bounds(), reason="root without control groups: a bomb stops the machine")
+def test_a_bomb_in_the_widest_sandbox_does_not_end_the_worker() -> None:
+    report = run_in_cell(lambda scratch: [sys.executable, "-c", WORKER], Tier.BUBBLEWRAP)
+    assert (report.ending, report.returncode) == (Ending.EXITED, 0), report.output
+    assert report.output.split() == [Ending.THREADS.value] * 3
