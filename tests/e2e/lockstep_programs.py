@@ -300,6 +300,20 @@ while context.ok():
     executor.spin_once(timeout_sec=0.25)
 """
 
+BY_EVENTS = """
+from rclpy.experimental import EventsExecutor
+
+class Ticker(Speaker):
+    def __init__(self):
+        super().__init__('ticker')
+        self.create_timer(0.1, lambda: self.out.publish(String(data='tick')))
+
+rclpy.init()
+executor = EventsExecutor()
+executor.add_node(Ticker())
+executor.spin()
+"""
+
 SLEEPS_BY_CLOCKS = """
 class Sleeper(Speaker):
     def __init__(self):

@@ -256,8 +256,9 @@ def test_the_wall_clock_and_sleep_follow_ros_time() -> None:
     ]
 
 
-def test_a_program_with_a_context_of_its_own_is_stepped() -> None:
-    heard, _, _, notes = in_cell(alone, programs.OWN_CONTEXT, 0.35)
+@pytest.mark.parametrize("program", ["OWN_CONTEXT", "BY_EVENTS"])
+def test_a_program_with_a_context_or_an_executor_of_its_own_is_stepped(program: str) -> None:
+    heard, _, _, notes = in_cell(alone, getattr(programs, program), 0.35)
     assert not notes
     assert heard == [[0.1, "tick"], [0.2, "tick"], [0.3, "tick"]]
 

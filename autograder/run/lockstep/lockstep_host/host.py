@@ -15,10 +15,17 @@ from pathlib import Path
 from typing import Any
 
 import rclpy.executors
+import rclpy.experimental.events_executor
 import rclpy.time_source
 from rclpy.clock import ClockType, ROSClock
 from rclpy.context import Context
-from rclpy.executors import ConditionReachedException, Executor, TimeoutException, TimeoutObject
+from rclpy.executors import (
+    ConditionReachedException,
+    Executor,
+    SingleThreadedExecutor,
+    TimeoutException,
+    TimeoutObject,
+)
 from rclpy.impl.rcutils_logger import Throttle
 from rclpy.time import Time
 
@@ -85,6 +92,8 @@ class Host:
             executor, future, timeout_sec, lambda: self.time
         )
         rclpy.executors.MultiThreadedExecutor = CallbackThreadsExecutor
+        # Its own wait is in C++, where no step can be waited for. To a node both executors look the same.
+        rclpy.experimental.EventsExecutor = rclpy.experimental.events_executor.EventsExecutor = SingleThreadedExecutor
         Throttle.params["throttle_time_source_type"] = self._log_clock
 
     # What rclpy calls instead of its own functions.
