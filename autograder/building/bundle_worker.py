@@ -6,11 +6,11 @@ python -m autograder.building.bundle_worker SCRATCH DESCRIPTOR
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from autograder.building.interface_bundle import build_alone
+from autograder.building.keeper import refused
 from autograder.exceptions import StudentError
 from autograder.ros import activate
 from autograder.run.sandbox.launcher import restore_sigint
@@ -32,7 +32,7 @@ def main() -> None:
         try:
             build_alone(workspace, scratch / "made")
         except StudentError as error:
-            send_message(line, {"diagnosis": asdict(error.diagnosis)})
+            send_message(line, refused(error))
         else:
             send_message(line, {})
             send_tree(line, read_tree(scratch / "made", INSTALLED))

@@ -20,6 +20,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from autograder.building.colcon import StoppedBuildError
 from autograder.building.interfaces import Cache
 from autograder.building.interfaces.prefix import identity
 from autograder.diagnosis import Diagnosis, Kind
@@ -84,10 +85,20 @@ def ask(line: Connection, sources: Mapping[Entry, bytes], target: Path) -> None:
     send_tree(line, sources)
     reply = receive_message(line)
     if "diagnosis" in reply:
-        raise StudentError(Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])}))
+        raise _refusal(reply)
     if "failed" in reply:
         raise GraderError(reply["failed"])
     write_received(receive_tree(line, INSTALLED), target)
+
+
+def refused(error: StudentError) -> dict[str, Any]:
+    """Return the message that packages do not build, and whether another try would only take as long."""
+    return {"diagnosis": asdict(error.diagnosis), "stopped": isinstance(error, StoppedBuildError)}
+
+
+def _refusal(reply: Mapping[str, Any]) -> StudentError:
+    diagnosis = Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])})
+    return StoppedBuildError(diagnosis) if reply.get("stopped") else StudentError(diagnosis)
 
 
 def key(sources: Mapping[Entry, bytes]) -> str:
@@ -102,7 +113,7 @@ def _answer(line: Connection, sources: Mapping[Entry, bytes], tier: Tier) -> Non
     try:
         entry = Cache.default(CACHE).get(key(sources), partial(_make, sources, tier))
     except StudentError as error:
-        send_message(line, {"diagnosis": asdict(error.diagnosis)})
+        send_message(line, refused(error))
     except GraderError as error:
         send_message(line, {"failed": str(error)})
     else:
@@ -125,7 +136,7 @@ def _make(sources: Mapping[Entry, bytes], tier: Tier, entry: Path) -> None:
             send_tree(ours, sources)
             reply = receive_message(ours)
             if "diagnosis" in reply:
-                raise StudentError(Diagnosis(**{**reply["diagnosis"], "kind": Kind(reply["diagnosis"]["kind"])}))
+                raise _refusal(reply)
             write_received(receive_tree(ours, INSTALLED), entry)
         except (EOFError, OSError, ParcelError, KeyError, ValueError, TypeError) as error:
             process.kill()
