@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 sys.modules["typing.io"] = typing
 import rtamt  # noqa: E402
 
+from autograder.suite.declaration import expect  # noqa: E402
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -44,7 +46,9 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
 
     Raises:
         rtamt.RTAMTException: the formula is malformed.
+        CheckFailed: the trace has fewer than two samples, as when a program has sent nothing.
     """
+    expect(len(times) > 1, "Fewer than two messages came, so nothing could be judged.")
     specification = rtamt.StlDiscreteTimeSpecification()
     for name in signals:
         specification.declare_var(name, "float")

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from autograder.suite import CheckFailed
 from autograder.suite.temporal import always, rtamt
 
 TIMES = [0.0, 0.5, 1.0, 1.5]
@@ -42,3 +43,8 @@ def test_always_agrees_with_the_definition_of_robustness(gaps: list[float]) -> N
     first = next((index for index, gap in enumerate(gaps) if gap - 1.0 <= 0.0), None)
     assert verdict.robustness == pytest.approx(min(gaps) - 1.0)
     assert verdict.violated_at == first
+
+
+def test_a_trace_of_fewer_than_two_samples_fails_the_check() -> None:
+    with pytest.raises(CheckFailed, match="Fewer than two messages came"):
+        always("gap > 0.1", [0.5], {"gap": [1.0]})
