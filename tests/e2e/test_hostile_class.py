@@ -29,7 +29,7 @@ FEW = ("threshold", "ten_hertz")  # of the checks, for the small class
 # What a student reads first. A payload that changes nothing leaves the sentence of the error that the program has.
 SENTENCES = {
     **dict.fromkeys(
-        ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "It published 5.0 commands"
+        ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "It published a command every 0.20 s"
     ),
     **dict.fromkeys(("spoofed ROS", "constants"), "the robot drove forward at 0.30 m/s: it should turn left"),
     "nan commands": "was told to move at nan m/s and nan rad/s",
